@@ -109,6 +109,25 @@ fn a_check_judges_what_the_encoder_says_of_itself() {
     bench.run(&["do", "biss", "check", "restart", "--link", "sim:"]).fails(2, &["no argument"]);
 }
 
+/// Issue 22.20: of an encoder that does not tell its frame the position is the word alone, until the link gives turns and
+/// steps: turn 1234h and 270°.
+#[test]
+fn a_position_that_nothing_explains_is_raw_until_the_link_explains_it() {
+    let bench = Bench::new();
+    let Some(adapter) = bench.adapter(&["--stranger"]) else { return };
+    let read = |parameters: &str| {
+        let link = format!("{}{parameters}", adapter.url);
+        bench.run(&["position", "biss", JSON, "--link", &link]).json()
+    };
+    let raw = read("");
+    assert_eq!(raw["raw"], json!(0x2469_8000));
+    assert!(["turns", "steps", "degrees"].iter().all(|key| raw[key].is_null()), "{raw}");
+    let text = bench.run(&["position", "biss", "--link", &adapter.url]);
+    assert!(text.out.contains("mt= and st=") && !text.out.contains('°'), "{text:?}");
+    let told = read("?mt=16&st=17&crc=0x43");
+    assert_eq!((&told["turns"], &told["steps"], &told["degrees"]), (&json!(4660), &json!(98_304), &json!(270.0)));
+}
+
 /// Turn 1234h and 270°: one word however it comes, and over BiSS the frame with its CRC beside it.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {

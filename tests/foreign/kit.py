@@ -39,6 +39,7 @@ def add_options(add):
     add("--calibration-fails", type=number, help="status with which the second run ends")
     add("--revolutions", type=float, default=3.0, help="of the Wiegand test, each way")
     add("--left-in", type=number, default=0, help="device mode in which another host has left it, with the password set")
+    add("--stranger", action="store_true", help="an encoder of nobody known, without a data sheet")
     add("--silent-after", type=number, help="accesses after which nothing is answered")
 
 
@@ -153,6 +154,8 @@ class Kit:
         fixed = {0x40: self.bank, 0x41: 2, 0x42: 0x61, 0x43: 0x29, 0x66: self.options.temperature + 50,
                  0x68: self.options.errors, 0x69: self.options.warnings, 0x6A: self.mode, 0x6B: self.protection,
                  0x6E: self.filter, 0x7E: 0x46, 0x7F: 0x72}
+        if self.options.stranger and (address in (0x42, 0x43) or 0x78 <= address <= 0x7F):
+            return 0x58
         if 0x44 <= address <= 0x47:
             return self.options.serial_number.to_bytes(4, "big")[address - 0x44]
         if 0x74 <= address <= 0x76:

@@ -15,8 +15,23 @@ use crate::signal::history::Value;
 /// Positions of the same widths that came one after the other.
 #[derive(Default)]
 struct Batch {
-    widths: Option<(u8, u8)>,
+    widths: Option<Widths>,
     sightings: Vec<Sighting>,
+}
+
+/// Bits of turns and of steps, and whether it is known which are which.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Widths {
+    multiturn: u8,
+    singleturn: u8,
+    is_split_known: bool,
+}
+
+impl From<&PositionReading> for Widths {
+    fn from(reading: &PositionReading) -> Self {
+        let PositionReading { multiturn_bits: multiturn, singleturn_bits: singleturn, is_split_known, .. } = *reading;
+        Widths { multiturn, singleturn, is_split_known }
+    }
 }
 
 /// The recorder of an encoder, and what it said last.
@@ -107,7 +122,7 @@ impl Record {
     fn see(&mut self, reading: &PositionReading, batch: &mut Batch) {
         self.stream = None;
         self.add_crc_errors(reading.crc_errors);
-        let widths = (reading.multiturn_bits, reading.singleturn_bits);
+        let widths = Widths::from(reading);
         if batch.widths.is_some_and(|own| own != widths) {
             self.keep(batch);
         }
@@ -128,7 +143,8 @@ impl Record {
         let FrameRun { period_ns, clock_hz, is_limited, .. } = *run;
         self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns, clock_hz, is_limited });
         self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
-        let widths = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
+        let (multiturn, singleturn) = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
+        let widths = Widths { multiturn, singleturn, is_split_known: run.is_split_known };
         if batch.widths.is_some_and(|own| own != widths) {
             self.keep(batch);
         }
@@ -139,6 +155,7 @@ impl Record {
                 continue;
             };
             let reading = PositionReading::in_frame(at, reading, &run.layout);
+            let reading = PositionReading { is_split_known: run.is_split_known, ..reading };
             batch.sightings.push(sighting(&reading));
             self.last = Some(reading);
         }
@@ -148,7 +165,7 @@ impl Record {
         if batch.sightings.is_empty() {
             return;
         }
-        let before = self.last.as_ref().map(|own| (own.multiturn_bits, own.singleturn_bits));
+        let before = self.last.as_ref().map(Widths::from);
         // Where nothing was read in this session, it goes on as what it was in the one before.
         let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::of_steps(None));
         let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
@@ -226,8 +243,11 @@ fn sighting(reading: &PositionReading) -> Sighting {
 }
 
 /// What positions of such widths are, multiturn and singleturn.
-fn meaning((multiturn, singleturn): (u8, u8)) -> Meaning {
+fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Meaning {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
+    if !is_split_known {
+        return Meaning::of_steps(range);
+    }
     Meaning::of_turns(range, f64::from(singleturn).exp2())
 }
 
@@ -270,6 +290,7 @@ mod tests {
             lost,
             frames: (first..first + count).map(frame).collect(),
             layout: Arc::default(),
+            is_split_known: true,
             clock_hz: 2_000_000,
             is_limited: false,
         }
@@ -292,6 +313,21 @@ mod tests {
         );
         let last = record.last().unwrap();
         assert_eq!((last.raw().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
+    }
+
+    /// Issue 22.20: a position of which nothing tells what a turn is has no turns and no degrees.
+    #[test]
+    fn what_is_not_known_to_be_an_angle_is_recorded_in_steps() {
+        let mut record = Record::default();
+        let units = |record: &Record| -> Vec<String> {
+            let lines = record.recorder().lines();
+            lines.iter().flat_map(|line| line.scales().iter().map(|scale| scale.unit.id().to_owned())).collect()
+        };
+        record.add(vec![Sample::Frames(FrameRun { is_split_known: false, ..run(0, 10, 0) })], 0);
+        assert_eq!(record.last().unwrap().angle(), None);
+        assert_eq!(units(&record), ["unit.steps", "unit.steps_per_second", "unit.steps_per_second_squared"]);
+        record.add(vec![Sample::Frames(run(10, 10, 0))], 0);
+        assert!(units(&record).contains(&"unit.degrees".to_owned()) && record.last().unwrap().angle().is_some());
     }
 
     #[test]

@@ -53,6 +53,12 @@ pub struct BissForm {
     pub echo: Echo,
     /// The clock on the bus in hertz.
     pub clock: String,
+    /// Bits of turns of an encoder that does not tell its frame.
+    pub turns: String,
+    /// Bits of steps of such an encoder.
+    pub steps: String,
+    /// The polynomial of its checksum; empty: the usual one.
+    pub crc: String,
     /// Milliseconds that a reply may come later than usual.
     pub margin: String,
     /// The virtual encoder's speed in revolutions a minute.
@@ -82,6 +88,9 @@ impl Default for BissForm {
             order: None,
             echo: Echo::Unknown,
             clock: none(),
+            turns: none(),
+            steps: none(),
+            crc: none(),
             margin: none(),
             rpm: none(),
             fault: none(),
@@ -129,6 +138,9 @@ impl BissForm {
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == BissWay::Virtual;
         let entry = match name {
+            "mt" => &mut self.turns,
+            "st" => &mut self.steps,
+            "crc" => &mut self.crc,
             "margin" => &mut self.margin,
             "clock" => &mut self.clock,
             "baud" => &mut self.baud,
@@ -224,6 +236,9 @@ impl BissForm {
                 Echo::Off => parameters.set("echo", "off"),
             }
         }
+        parameters.entry("mt", &self.turns);
+        parameters.entry("st", &self.steps);
+        parameters.entry("crc", &self.crc);
         parameters.entry("margin", &self.margin);
         parameters.rest(&self.rest, |name| self.belongs(name));
         parameters
@@ -258,6 +273,9 @@ mod tests {
             "tcp:[::1]:4001",
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:adapter:5000",
+            // Issue 22.20.
+            "bridge:/dev/ttyACM0?mt=12&st=19&crc=0x43",
+            "serial:/dev/ttyUSB0?st=14&crc=none",
             "replay:monday.trace",
             "replay:monday.trace?bridge=on&clock=2000000",
             "sim:?bridge=on&noise=0.1&temperature=80",

@@ -62,6 +62,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     let frame = match identity.source {
         FrameSource::DataSheet => "as its data sheet says",
         FrameSource::Description => "as its description says",
+        FrameSource::Given => "as the link says",
         FrameSource::Checksum => "found by its checksum: how many bits are turns is not known",
         FrameSource::Assumed => "taken for granted: nothing tells it",
     };
@@ -202,9 +203,9 @@ fn show(output: &Output, reading: &PositionReading) -> Result<()> {
         "t_s": t,
         "raw": reading.raw().value,
         "frame": reading.frame.map(|frame| frame.to_string()),
-        "turns": reading.turns,
-        "steps": reading.steps,
-        "degrees": reading.degrees(),
+        "turns": reading.is_split_known.then_some(reading.turns),
+        "steps": reading.is_split_known.then_some(reading.steps),
+        "degrees": reading.angle(),
         "valid": reading.is_valid(),
         "warning": reading.warning,
     });
@@ -213,6 +214,9 @@ fn show(output: &Output, reading: &PositionReading) -> Result<()> {
 }
 
 fn place(reading: &PositionReading) -> String {
+    if !reading.is_split_known {
+        return format!("{} (turns and steps are not known: mt= and st= in the link give them)", reading.position());
+    }
     let steps = 1u64 << reading.singleturn_bits;
     format!("turn {}, step {} of {steps}, {:.6}°", reading.turns, reading.steps, reading.degrees())
 }
@@ -226,13 +230,14 @@ fn flags(reading: &PositionReading) -> &'static str {
 }
 
 fn row(reading: &PositionReading) -> String {
+    let known = |words: String| if reading.is_split_known { words } else { String::new() };
     format!(
         "{:.6},{},{},{},{},{},{}\n",
         reading.at.since_start().as_secs_f64(),
         reading.raw().value,
-        reading.turns,
-        reading.steps,
-        reading.degrees(),
+        known(reading.turns.to_string()),
+        known(reading.steps.to_string()),
+        known(reading.degrees().to_string()),
         reading.is_valid(),
         reading.warning.map_or_else(String::new, |warning| warning.to_string()),
     )

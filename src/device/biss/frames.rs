@@ -40,6 +40,8 @@ pub struct FrameRun {
     pub frames: Vec<Frame>,
     /// What their bits are.
     pub layout: Arc<Layout>,
+    /// How many bits of a position are turns is known.
+    pub is_split_known: bool,
     /// The clock of the bus in hertz.
     pub clock_hz: u32,
     /// They cannot come as close to each other as was wished.
@@ -51,7 +53,7 @@ impl FrameRun {
     pub(super) fn new(
         portion: &Portion,
         frames: Vec<Frame>,
-        layout: Arc<Layout>,
+        (layout, is_split_known): (Arc<Layout>, bool),
         clock_hz: u32,
         wished_us: u32,
     ) -> Self {
@@ -59,7 +61,7 @@ impl FrameRun {
         let is_limited = period_ns > i64::from(wished_us) * 1000;
         // Not before the stream began.
         let at = Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
-        FrameRun { first, at, period_ns, lost, frames, layout, clock_hz, is_limited }
+        FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }
 
     /// A stream begins.

@@ -48,10 +48,22 @@ pub enum FrameSource {
     DataSheet,
     /// The encoder's description.
     Description,
+    /// The user, in the link.
+    Given,
     /// The checksum of its frames, while the shaft turned: how many bits are turns is not known.
     Checksum,
     /// Nobody: it is taken for that of the kit encoder.
     Assumed,
+}
+
+impl FrameSource {
+    /// It tells how many bits of a position are turns.
+    pub const fn is_told(self) -> bool {
+        match self {
+            FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
+            FrameSource::Checksum | FrameSource::Assumed => false,
+        }
+    }
 }
 
 /// The data sheet: two banks of registers.
@@ -103,7 +115,7 @@ impl Identity {
     }
 
     fn is_told(&self) -> bool {
-        matches!(self.source, FrameSource::DataSheet | FrameSource::Description)
+        self.source.is_told()
     }
 }
 
@@ -140,11 +152,16 @@ pub(super) fn identify_with(
     let source = match (&told, description.layout()) {
         (Some(_), _) => FrameSource::DataSheet,
         (None, Some(_)) => FrameSource::Description,
+        (None, None) if station.given.is_some() => FrameSource::Given,
         (None, None) => FrameSource::Assumed,
     };
-    station.layout = told;
+    if station.given.is_some() && source != FrameSource::Given {
+        tracing::warn!("mt, st and crc of the link are not used: the encoder tells its frame itself");
+    }
+    station.layout = told.or_else(|| station.given.clone().filter(|_| source == FrameSource::Given));
     let source = if source == FrameSource::Assumed { look_at_frames(master)? } else { source };
     let station = master.station();
+    station.source = Some(source);
     Ok(Identity {
         mismatch: near_miss(types, &kind).filter(|_| description.identity().is_none()),
         layout: station.frame(),

@@ -65,7 +65,7 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
 /// round unseen between two of them.
 fn speed(readings: &[PositionReading]) -> Option<f64> {
     let (first, last) = (readings.first()?, readings.last()?);
-    if first.multiturn_bits < COUNTED {
+    if first.multiturn_bits < COUNTED || !first.is_split_known {
         return None;
     }
     let range = 1_i64.checked_shl((first.multiturn_bits + first.singleturn_bits).into())?;

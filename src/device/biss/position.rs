@@ -27,6 +27,8 @@ pub struct PositionReading {
     pub multiturn_bits: u8,
     /// Bits within a revolution, 0…32.
     pub singleturn_bits: u8,
+    /// How many of its bits are turns is known; else turns and steps are nothing but the upper and the lower part of it.
+    pub is_split_known: bool,
     /// The whole frame that it came in, with its flags and its CRC; `None` over the configuration pin.
     pub frame: Option<Word>,
 }
@@ -43,6 +45,7 @@ impl PositionReading {
             crc_errors: 0,
             multiturn_bits: layout.multiturn_bits(),
             singleturn_bits: layout.singleturn_bits(),
+            is_split_known: true,
             frame: None,
         }
     }
@@ -65,6 +68,11 @@ impl PositionReading {
     /// Revolutions and place as one number of steps.
     pub const fn position(&self) -> u64 {
         (self.turns as u64) << self.singleturn_bits | self.steps as u64
+    }
+
+    /// Degrees within the revolution, from 0 up to 360; `None` where nothing tells what a revolution is.
+    pub fn angle(&self) -> Option<f64> {
+        self.is_split_known.then(|| self.degrees())
     }
 
     /// Degrees within the revolution, from 0 up to 360.

@@ -5,18 +5,31 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::flags::Flags;
+use super::identify::FrameSource;
 use crate::device::bridge::flow::Flow;
 use crate::device::bridge::{AdapterState, SupplyAfter};
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
-use crate::protocol::biss::{Access, ByteOrder, Description, Firmware, Layout, RegisterAddress};
+use crate::protocol::biss::{Access, ByteOrder, Crc, Description, Firmware, Layout, RegisterAddress};
 use crate::protocol::ubicom::{FORMAT, REPLY_TIME_OUT};
 use crate::signal::Time;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
 /// Link parameters that describe the line and the encoder.
-pub const PARAMETERS: [&str; 9] =
-    ["baud", "parity", "order", "echo", "timeout", "margin", "clock", "voltage", SupplyAfter::PARAMETER];
+pub const PARAMETERS: [&str; 12] = [
+    "baud",
+    "parity",
+    "order",
+    "echo",
+    "timeout",
+    "margin",
+    "clock",
+    "voltage",
+    SupplyAfter::PARAMETER,
+    "mt",
+    "st",
+    "crc",
+];
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +44,8 @@ impl Way {
     /// Those of [`PARAMETERS`] that mean something over it.
     pub const fn parameters(self) -> &'static [&'static str] {
         match self {
-            Way::ConfigPin => &["baud", "parity", "order", "echo", "timeout", "margin"],
-            Way::Adapter => &["margin", "clock", "voltage", SupplyAfter::PARAMETER],
+            Way::ConfigPin => &["baud", "parity", "order", "echo", "timeout", "margin", "mt", "st", "crc"],
+            Way::Adapter => &["margin", "clock", "voltage", SupplyAfter::PARAMETER, "mt", "st", "crc"],
         }
     }
 }
@@ -63,8 +76,12 @@ pub struct Station {
     pub description: Option<Arc<Description>>,
     /// The encoder's firmware, as it was identified.
     pub firmware: Option<Firmware>,
-    /// The frame as the encoder's data sheet tells it.
+    /// The frame as the encoder's data sheet tells it, or what stands for that.
     pub layout: Option<Layout>,
+    /// The frame as the user gives it, for an encoder that does not tell it.
+    pub given: Option<Layout>,
+    /// Who told the frame; `None` before the encoder was identified.
+    pub(super) source: Option<FrameSource>,
     /// What is read is to be kept: it has to come twice, on a line that seems good as well.
     pub(super) thorough: bool,
     /// Replies and frames came damaged.
@@ -137,6 +154,8 @@ impl Station {
             description: None,
             firmware: None,
             layout: None,
+            given: None,
+            source: None,
             thorough: false,
             noisy: false,
             bus: None,
@@ -178,6 +197,7 @@ impl Station {
         }
         let millivolt = query.read("voltage", "volts from 4.75 to 12.5", read_voltage)?;
         station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
+        station.given = read_frame(query)?;
         if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
             station.adapter.leave_supply(after);
         }
@@ -208,6 +228,11 @@ impl Station {
     /// Takes the number of frames with a wrong checksum since the last reading.
     pub fn take_crc_errors(&mut self) -> u32 {
         std::mem::take(&mut self.crc_errors)
+    }
+
+    /// How many bits of a position are turns is known.
+    pub(super) fn is_split_known(&self) -> bool {
+        self.source.is_none_or(FrameSource::is_told)
     }
 
     /// Once is not enough: a sum lets some pairs of flipped bits through.
@@ -241,6 +266,38 @@ impl fmt::Display for Station {
             Way::Adapter => write!(f, "BiSS at {} Hz", self.actual_clock_hz.unwrap_or(self.clock_hz)),
         }
     }
+}
+
+/// The frame as a link gives it: bits of turns and steps, and the checksum, which is the usual one where none is given.
+fn read_frame(query: &Query) -> Result<Option<Layout>, UrlError> {
+    let bits = |least: u8| move |text: &str| text.parse().ok().filter(|bits| (least..=32).contains(bits));
+    let multiturn: Option<u8> = query.read("mt", "bits from 0 to 32", bits(0))?;
+    let singleturn: Option<u8> = query.read("st", "bits from 1 to 32", bits(1))?;
+    let crc = query.read("crc", "a polynomial with all its terms such as 0x43, or none", read_crc)?;
+    let alone = |name: &str, what: &str| UrlError::Value {
+        name: name.to_owned(),
+        value: query.get(name).unwrap_or_default().to_owned(),
+        allowed: what.to_owned(),
+    };
+    let Some(singleturn) = singleturn else {
+        let other = ["mt", "crc"].into_iter().find(|name| query.get(name).is_some());
+        return other.map_or(Ok(None), |name| Err(alone(name, "only together with st")));
+    };
+    let crc = crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
+    // 32 and 32 bits leave no room for flags and checksum.
+    let layout = Layout::new(multiturn.unwrap_or(0), singleturn, true, true, crc);
+    layout
+        .map(Some)
+        .map_err(|_| alone("st", "bits that leave a frame of no more than 64 with turns, two flags and CRC"))
+}
+
+/// `Some(None)`: the frames have none.
+fn read_crc(text: &str) -> Option<Option<Crc>> {
+    if text == "none" {
+        return Some(None);
+    }
+    let polynomial = u64::from_str_radix(text.strip_prefix("0x")?, 16).ok()?;
+    Crc::new(polynomial, 0, true).ok().map(Some)
 }
 
 /// `Some(None)` is to be probed.
@@ -303,6 +360,16 @@ mod tests {
         assert_eq!(station.supply, Some(Supply { millivolt: 4_750, measured: None }));
     }
 
+    /// Issue 22.20: 12 bits of turns, 19 of steps, two flags, and CRC6 43h unless another is given.
+    #[test]
+    fn the_frame_of_an_encoder_that_does_not_tell_it_is_given() {
+        let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));
+        assert_eq!(given(""), None);
+        assert_eq!(given("mt=12&st=19"), Some((33, 6)));
+        assert_eq!(given("st=14&crc=0x13"), Some((16, 4)));
+        assert_eq!(given("mt=0&st=14&crc=none"), Some((16, 0)));
+    }
+
     #[test]
     fn a_value_that_cannot_be_used_names_what_can() {
         let cases = [
@@ -314,6 +381,13 @@ mod tests {
             ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
             ("clock=10000001", "clock=10000001: hertz from 80000 to 10000000"),
             ("clock=NaN", "clock=NaN: hertz from 80000 to 10000000"),
+            ("mt=33&st=8", "mt=33: bits from 0 to 32"),
+            ("st=0", "st=0: bits from 1 to 32"),
+            ("mt=12", "mt=12: only together with st"),
+            ("crc=0x43", "crc=0x43: only together with st"),
+            ("st=8&crc=43", "crc=43: a polynomial with all its terms such as 0x43, or none"),
+            ("mt=32&st=32", "st=32: bits that leave a frame of no more than 64 with turns, two flags and CRC"),
+            ("leave-supply=no", "leave-supply=no: as-found, on or off"),
             ("voltage=24", "voltage=24: volts from 4.75 to 12.5"),
             ("voltage=NaN", "voltage=NaN: volts from 4.75 to 12.5"),
         ];

@@ -88,10 +88,14 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
     let source = match identity.source {
         FrameSource::DataSheet => "biss_card.from_sheet",
         FrameSource::Description => "biss_card.from_description",
+        FrameSource::Given => "biss_card.given",
         FrameSource::Checksum => "biss_card.from_checksum",
         FrameSource::Assumed => "biss_card.assumed",
     };
     ui.label(skin.caption(skin.say(source)));
+    if !identity.source.is_told() {
+        paragraph(ui, skin.caption(skin.say("biss_card.give_frame")));
+    }
     if let Some(adapter) = &identity.adapter {
         let words = format!("{} {} · {}", adapter.name, adapter.firmware, adapter.serial);
         row(ui, skin, &skin.say("biss_card.adapter"), words);

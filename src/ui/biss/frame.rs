@@ -68,11 +68,18 @@ fn strip(skin: &Skin, layout: &Layout, reading: Option<&PositionReading>) -> (Ve
         ..StripField::default()
     };
     let turns = reading.map(|own| u64::from(own.turns));
-    if layout.multiturn_bits() > 0 {
+    let is_split_known = reading.is_none_or(|own| own.is_split_known);
+    if !is_split_known {
+        let position = reading.map(|own| own.position());
+        let value = number(position);
+        let bits = layout.multiturn_bits() + layout.singleturn_bits();
+        add(StripField { value, ..field("MT + ST", bits, 0) }, position);
+    }
+    if is_split_known && layout.multiturn_bits() > 0 {
         let value = format!("{} {}", skin.say("live.turns"), number(turns));
         add(StripField { value, ..field("MT", layout.multiturn_bits(), 0) }, turns);
     }
-    if layout.singleturn_bits() > 0 {
+    if is_split_known && layout.singleturn_bits() > 0 {
         let steps = reading.map(|own| u64::from(own.steps));
         let value = reading.map(|own| format!("{} °", skin.number(own.degrees(), 3))).unwrap_or_default();
         add(StripField { value, ..field("ST", layout.singleturn_bits(), 1) }, steps);

@@ -16,8 +16,8 @@ use crate::worker::{OpenError, Session};
 /// Whether an adapter is in between, where the kind of link does not tell.
 const BRIDGE: &str = "bridge";
 /// Link parameters that describe the line and nothing of the virtual device; `echo` and `order` describe both.
-const LINE_ONLY: [&str; 8] =
-    [BRIDGE, "baud", "parity", "timeout", "margin", "clock", "voltage", SupplyAfter::PARAMETER];
+const LINE_ONLY: [&str; 11] =
+    [BRIDGE, "baud", "parity", "timeout", "margin", "clock", "voltage", SupplyAfter::PARAMETER, "mt", "st", "crc"];
 
 /// Everything about a link to a BiSS encoder that can be told without opening it.
 ///

@@ -378,11 +378,11 @@ fn links_lead_to_the_way_that_they_name() {
         ("sim:?bridge=yes", "bridge=yes: on or off"),
         (
             "serial:/dev/null?clock=1",
-            "clock is not a parameter of serial: links; known are baud, parity, order, echo, timeout, margin",
+            "clock is not a parameter of serial: links; known are baud, parity, order, echo, timeout, margin, mt, st, crc",
         ),
         (
             "bridge:/dev/null?echo=on",
-            "echo is not a parameter of bridge: links; known are margin, clock, voltage, leave-supply",
+            "echo is not a parameter of bridge: links; known are margin, clock, voltage, leave-supply, mt, st, crc",
         ),
         ("bridge:/dev/null?clock=1", "clock=1: hertz from 80000 to 10000000"),
     ];

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use encoder_studio::device::biss::{self as device, Error, FrameSource};
+use encoder_studio::device::biss::{self as device, Error, FrameSource, Station};
 use encoder_studio::protocol::biss::{Crc, Descriptions, Layout, Reading};
 use encoder_studio::protocol::bridge::{BissStatus, Capabilities, ErrorCode, Hello, Message, Receiver, Reply, Request};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::{CharacterFormat, Moment};
 
-use super::support::{Rig, Way};
+use super::support::{Bus, Rig, Way};
+use crate::support::MARGIN;
 
 /// A single-turn encoder of 14 bits, and the adapter in front of it; it answers at once.
 struct Stranger {
@@ -106,6 +107,7 @@ fn the_frame_of_a_turning_shaft_is_found() {
     assert_eq!((identity.mismatch, identity.data_sheet), (None, None));
     let reading = rig.master().position().unwrap();
     assert_eq!((reading.turns, reading.steps), (0, rig.device().place));
+    assert_eq!((reading.is_split_known, reading.angle()), (false, None), "raw, until somebody says what a turn is");
     assert_eq!((reading.error, reading.warning), (Some(false), Some(false)));
 }
 
@@ -117,4 +119,21 @@ fn at_rest_no_frame_is_found_and_the_encoder_is_looked_at_all_the_same() {
     assert_eq!(survey.identity.kind.manufacturer, *b"Xy");
     let error = rig.master().position().unwrap_err();
     assert!(matches!(error, Error::WrongWidths { data_bits: 35, crc_bits: 6, .. }), "{error}");
+}
+
+/// Issue 22.20: turns and steps are the user's word, also at rest; 14 bits of steps are 16384 a turn.
+#[test]
+fn the_frame_that_is_given_makes_an_angle_of_the_position() {
+    let mut rig = Rig::with(Stranger::new(0), Way::Adapter);
+    rig.station = Station::from_query(&"mt=0&st=14".parse().unwrap(), Way::Adapter, MARGIN).unwrap();
+    let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();
+    assert_eq!((identity.source, identity.layout.bits()), (FrameSource::Given, 22));
+    assert_eq!((identity.multiturn_bits(), identity.singleturn_bits()), (Some(0), Some(14)));
+    let reading = rig.master().position().unwrap();
+    assert_eq!((reading.steps, reading.angle()), (100, Some(100.0 * 360.0 / 16384.0)));
+    // A kit encoder tells its frame itself.
+    let mut kit = Bus::new("");
+    kit.station.given = Layout::new(0, 14, true, true, None).ok();
+    let identity = device::identify(&mut kit.master(), &Descriptions::built_in()).unwrap();
+    assert_eq!((identity.source, identity.layout.bits()), (FrameSource::DataSheet, 41));
 }

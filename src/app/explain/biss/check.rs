@@ -38,6 +38,9 @@ fn finding(finding: &Finding) -> Text {
         Finding::NotTold => Text::new("check.not_told"),
         Finding::Mode(found) => Text::new("check.mode").with_text("mode", mode(*found)),
         Finding::Open => Text::new("check.open"),
+        Finding::Position(reading) if !reading.is_split_known => {
+            Text::new("check.place_raw").with("raw", reading.raw())
+        }
         Finding::Position(reading) => Text::new("check.place")
             .with("turns", reading.turns)
             .with("steps", reading.steps)

@@ -179,7 +179,8 @@ impl<'a> Master<'a> {
             Ok(reading) => {
                 self.station.good_frames = true;
                 let crc_errors = self.station.take_crc_errors();
-                Ok(PositionReading { crc_errors, ..PositionReading::in_frame(at, &reading, &layout) })
+                let is_split_known = self.station.is_split_known();
+                Ok(PositionReading { crc_errors, is_split_known, ..PositionReading::in_frame(at, &reading, &layout) })
             }
             Err(FrameError::StuckLow) => Err(Trouble::NoFrame(NoFrame::StuckLow)),
             Err(FrameError::StuckHigh) => Err(Trouble::NoFrame(NoFrame::StuckHigh)),

@@ -47,7 +47,9 @@ impl Master<'_> {
             {
                 let layout = Arc::new(self.station.frame());
                 let clock_hz = self.station.actual_clock_hz.unwrap_or(self.station.clock_hz);
-                return Ok(Some(FrameRun::new(&portion, frames(&layout, data), layout, clock_hz, period_us)));
+                let frames = frames(&layout, data);
+                let layout = (layout, self.station.is_split_known());
+                return Ok(Some(FrameRun::new(&portion, frames, layout, clock_hz, period_us)));
             }
         }
     }

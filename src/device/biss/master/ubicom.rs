@@ -78,7 +78,8 @@ impl Master<'_> {
             let (multiturn, singleturn) = (layout.multiturn_bits(), layout.singleturn_bits());
             return Err(Error::TooWide { word: word.word(), multiturn, singleturn });
         };
-        Ok(Ok(PositionReading::new(at, &reading, &layout)))
+        let is_split_known = self.station.is_split_known();
+        Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
     }
 
     /// The time that an exchange takes at most.

@@ -128,6 +128,7 @@ mod tests {
             crc_errors: 0,
             multiturn_bits,
             singleturn_bits: 17,
+            is_split_known: true,
             frame: None,
         }
     }

@@ -96,6 +96,7 @@ mod tests {
             crc_errors: 0,
             multiturn_bits: 16,
             singleturn_bits: 17,
+            is_split_known: true,
             frame: None,
         }
     }

@@ -72,6 +72,18 @@ pub(super) fn form_ui(
             });
             echo(ui, skin, &mut form.echo);
         }
+        entry(ui, skin, &skin.say("connect.biss_frame"), |ui| {
+            for (own, word, usual) in [
+                (&mut form.turns, "connect.biss_turns", "16"),
+                (&mut form.steps, "connect.biss_steps", "17"),
+                (&mut form.crc, "connect.biss_crc", "0x43"),
+            ] {
+                let word = skin.say(word);
+                text_entry(ui, own, 48.0, &word, usual);
+                ui.label(skin.label(word));
+            }
+        });
+        paragraph(ui, skin.caption(skin.say("connect.biss_frame_words")));
         margin(ui, skin, &mut form.margin);
     }
 }

@@ -5,17 +5,21 @@ use egui::{RichText, Ui};
 use super::LOW;
 use crate::app::biss::{Action as Biss, Encoder, Mark};
 use crate::app::{Action, Rgb, Text};
+use crate::device::biss::PositionReading;
 use crate::protocol::biss::{Register, Role};
 use crate::ui::controls::{icon_menu, paragraph, row};
 use crate::ui::{Skin, icons};
 
 pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let reading = encoder.record.last();
-    let main = reading.map_or_else(|| "–".to_owned(), |own| skin.number(own.degrees(), 3));
+    let raw = |own: &PositionReading| skin.word(own.raw());
+    let main = reading.map(|own| own.angle().map_or_else(|| raw(own), |angle| skin.number(angle, 3)));
+    let main = main.unwrap_or_else(|| "–".to_owned());
+    let is_angle = reading.is_none_or(|own| own.is_split_known);
     let palette = skin.palette;
     ui.horizontal(|ui| {
         ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
-        ui.label(skin.label("°"));
+        ui.label(skin.label(if is_angle { "°".to_owned() } else { skin.say("live.raw") }));
         if let Some(mark) = encoder.mark() {
             let (word, ink) = match mark {
                 Mark::Invalid => ("live.invalid", palette.bad),
@@ -25,7 +29,9 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         }
     });
     let Some(reading) = reading else { return };
-    if ui.available_height() < LOW {
+    if !is_angle {
+        row(ui, skin, &skin.say("unit.steps"), skin.mono(reading.position().to_string()));
+    } else if ui.available_height() < LOW {
         // In a low window the plot needs the room.
         let (turns, steps) = (skin.say("live.turns"), skin.say("live.step"));
         let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
