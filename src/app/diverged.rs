@@ -80,7 +80,8 @@ impl Diverged {
             true => Ok(found),
             false => Err(ReadError::Profile(found.body.is_not(kind))),
         };
-        let document = document.and_then(is_of_kind);
+        let is_known = |found: Box<Document>| found.known().map(Box::new).map_err(ReadError::Profile);
+        let document = document.and_then(is_of_kind).and_then(is_known);
         let base = saving.opened.as_ref().and_then(|opened| Document::parse(&opened.text).ok());
         let rows = match (&base, &document) {
             (Some(base), Ok(theirs)) => divergence(base, theirs, &saving.document),
