@@ -15,10 +15,10 @@ mod plan;
 mod restore;
 mod rewrite;
 mod ron_text;
-#[cfg(test)]
-mod schema_tests;
 mod source;
 pub mod ssi;
+#[cfg(test)]
+mod tests;
 mod unique_names;
 
 pub use difference::{Comparison, Difference};

@@ -82,7 +82,10 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         ask(&mut desk, Biss::Check);
         desk.until("it is checked", |studio| studio.biss().unwrap().check.is_some());
         let lines = encoder(&desk).check.as_ref().unwrap();
-        assert!(lines.len() == 8 && lines.iter().all(|line| line.verdict == Verdict::Good), "{lines:?}");
+        // Issue 22.19: no Wiegand test is saved, so that nothing is said of the sensor.
+        let verdict = |step: &str| if step == "check.wiegand" { Verdict::Skipped } else { Verdict::Good };
+        let as_expected = lines.iter().all(|line| line.verdict == verdict(line.step.id()));
+        assert!(lines.len() == 8 && as_expected, "{lines:?}");
     }
 }
 
