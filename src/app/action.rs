@@ -97,6 +97,8 @@ pub enum Action {
     },
     /// Ask where to save a picture.
     AskPicture(Picture),
+    /// A picture was wished of something that cannot be seen as a whole.
+    PictureCut,
     /// The review of a write, about one session.
     Review(SessionId, ReviewAction),
     /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
@@ -414,24 +416,4 @@ impl FileQuestion {
             | FileQuestion::Picture { suggested, .. } => Some(suggested),
         }
     }
-}
-
-/// A question that has to be answered before something is done.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Question {
-    /// What would be lost or interrupted.
-    pub text: Text,
-    /// The word for going on.
-    pub confirm: Text,
-    pub(super) then: Then,
-}
-
-/// What a confirmed question leads to.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Then {
-    CloseWindow,
-    CloseSession(SessionId),
-    Write(FileQuestion, PathBuf),
-    Forget(Desk),
-    Save(Box<Saving>),
 }

@@ -2,8 +2,9 @@
 
 use super::AnyDevice;
 use super::Text;
-use super::action::{Action, Done, Question, Then, Waited};
+use super::action::{Action, Done, Waited};
 use super::brakes::Brakes;
+use super::question::{Question, Then};
 use super::recorder;
 use super::services::JobEnd;
 use super::session::Source;
@@ -53,7 +54,7 @@ impl Studio {
             };
             let text = Text::new(text).with("name", device.name());
             let confirm = Text::new("question.close_session");
-            self.question = Some(Question { text, confirm, then: Then::CloseSession(id) });
+            self.question = Some(Question::before(text, confirm, Then::CloseSession(id)));
         } else {
             self.remove(id);
         }
@@ -82,7 +83,7 @@ impl Studio {
                 None => Text::new(if edits { "question.edits" } else { "question.recording" }),
             };
             let confirm = Text::new("question.close_window");
-            self.question = Some(Question { text, confirm, then: Then::CloseWindow });
+            self.question = Some(Question::before(text, confirm, Then::CloseWindow));
         } else {
             self.begin_to_close();
         }
@@ -117,6 +118,24 @@ impl Studio {
         }
     }
 
+    /// A question is declined; true where one was open.
+    pub(super) fn decline(&mut self) -> bool {
+        let Some(question) = self.question.take() else { return false };
+        match question.then {
+            Then::OpenLink(id) => {
+                let why = Text::new("session.maybe_drive");
+                self.with_device(id, |device, services| device.lose(why, services));
+            }
+            Then::Search(_) => {
+                if let Some(connect) = &mut self.connect {
+                    connect.problem = Some(Text::new("session.maybe_drive"));
+                }
+            }
+            Then::CloseWindow | Then::CloseSession(_) | Then::Write(..) | Then::Forget(_) | Then::Save(_) => {}
+        }
+        true
+    }
+
     pub(super) fn confirm(&mut self) {
         match self.question.take().map(|question| question.then) {
             Some(Then::CloseWindow) => {
@@ -126,6 +145,8 @@ impl Studio {
             Some(Then::CloseSession(id)) => self.remove(id),
             Some(Then::Write(question, path)) => self.chosen(question, path),
             Some(Then::Save(saving)) => self.services.tasks.run("save", move || saving.run()),
+            Some(Then::OpenLink(id)) => self.open_confirmed(id),
+            Some(Then::Search(options)) => self.search_confirmed(options),
             Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::Action::Clear),
             None => {}
         }

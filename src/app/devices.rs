@@ -29,7 +29,7 @@ use super::tab::Tab;
 use super::trace::TraceLog;
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document};
-use crate::store::{Backup, DeviceKey, Entry, FileError};
+use crate::store::{Backup, DeviceKey, Entry, FileError, StatusEntry};
 
 /// A device on the desk, or a profile of one.
 pub enum AnyDevice {
@@ -240,7 +240,10 @@ impl AnyDevice {
         match self {
             // A layout can be saved at any time.
             AnyDevice::Ssi(_) => true,
-            _ => each!(self, own => own.session.is_savable()),
+            _ => {
+                let was_read = each_with_memory!(self, own => own.saves_what_was_read(), false);
+                was_read || each!(self, own => own.session.is_savable())
+            }
         }
     }
 
@@ -277,6 +280,11 @@ impl AnyDevice {
     /// Writes of this device that the logbook knows, or why it does not tell; `None`: not asked for yet.
     pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         each!(self, own => own.session.writes.as_ref())
+    }
+
+    /// Status codes of this device that the logbook knows, the newest first.
+    pub fn statuses(&self) -> &[StatusEntry] {
+        each!(self, own => &own.session.statuses)
     }
 
     /// Its edits come back after it was closed.

@@ -1,8 +1,9 @@
 //! A profile that others have changed in its file since it was opened here: what differs, entry by entry, and what becomes
 //! of it.
 
-use super::action::{Question, ReadError, Then};
+use super::action::ReadError;
 use super::documents::read_error;
+use super::question::{Question, Then};
 use super::session::{Found, Guard, ProfileFile, Saving, Source};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, Wish};
@@ -192,7 +193,7 @@ impl Studio {
         let text =
             Text::new("question.comments").with("path", saving.path.display()).with("comments", lost.join(" · "));
         let confirm = Text::new("question.comments_go");
-        self.question = Some(Question { text, confirm, then: Then::Save(Box::new(saving)) });
+        self.question = Some(Question::before(text, confirm, Then::Save(Box::new(saving))));
     }
 
     pub(super) fn resolve(&mut self, resolve: Resolve) {

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Desk, Done, FileQuestion, Question, Then};
+use super::action::{Action, Desk, Done, FileQuestion};
 use super::closing::MUCH;
 use super::connect;
 use super::hiperdrive;
 use super::interbus;
+use super::question::{Question, Then};
 use super::recorder::{self, Exported, Recorder};
 use super::signals;
 use super::ssi;
@@ -110,7 +111,7 @@ impl Studio {
     pub(super) fn ask_forget(&mut self, desk: Desk) {
         if self.recorder(desk).is_some_and(|recorder| recorder.unsaved() >= MUCH) {
             let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
-            self.question = Some(Question { text, confirm, then: Then::Forget(desk) });
+            self.question = Some(Question::before(text, confirm, Then::Forget(desk)));
         } else {
             self.act_recorder(desk, recorder::Action::Clear);
         }
@@ -119,6 +120,11 @@ impl Studio {
     pub(super) fn ask_table(&mut self, desk: Desk, visible: bool) {
         let suggested = self.suggested(Some(desk), "csv");
         self.services.file_question = Some(FileQuestion::Table { desk, visible, suggested });
+    }
+
+    /// A picture was wished of something that cannot be seen as a whole.
+    pub(super) fn tell_picture_cut(&mut self) {
+        self.services.tell(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }
 
     pub(super) fn ask_picture(&mut self, picture: Picture) {

@@ -4,6 +4,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::leaving::{Leaver, same_wire};
+use super::question::{Question, Then};
 use super::services::{JobEnd, World};
 use super::session::{Kind, Opening, Phase, Source, without_codes};
 use super::studio::{SessionId, Studio};
@@ -13,7 +14,7 @@ use super::{AnyDevice, Severity, Text, explain, ssi};
 use crate::link::{LinkUrl, TraceEntry};
 use crate::worker::biss::Biss;
 use crate::worker::hiperdrive::Hiperdrive;
-use crate::worker::hiperface::Hiperface;
+use crate::worker::hiperface::{Hiperface, may_have_other_master};
 use crate::worker::interbus::Interbus;
 use crate::worker::ssi::Ssi;
 use crate::worker::{Ring, Session, Worker};
@@ -26,16 +27,31 @@ impl Studio {
     /// another kind lets go of the wire.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
         let url = self.with_whole_file(url);
+        if let Some(id) = self.session_at(tab, &url) {
+            self.open_for(id, url);
+        }
+    }
+
+    /// Opens a link to an encoder that a search has found: about other masters on its line it was asked before.
+    pub(super) fn open_found(&mut self, url: LinkUrl) {
+        if let Some(id) = self.session_at(Tab::Hiperface, &url) {
+            self.attempt_to_open(id, url);
+        }
+    }
+
+    /// The session for a link, which is shown from now on; `None` where there is to be none.
+    fn session_at(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
         let mut own = None;
         for device in &mut self.devices {
-            let holds = matches!(device.source(), Source::Link(other) if same_wire(other, &url));
+            let holds = matches!(device.source(), Source::Link(other) if same_wire(other, url));
             if !holds {
                 continue;
             }
             if device.is_writing() {
                 self.services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&device.name()));
                 let (tab, id) = (device.tab(), device.id());
-                return self.show(tab, id);
+                self.show(tab, id);
+                return None;
             }
             let held = device.is_connected();
             device.let_go(JobEnd::Cancelled, &mut self.services);
@@ -50,13 +66,13 @@ impl Studio {
             Some(id) => id,
             None => {
                 let id = self.new_id();
-                let Some(device) = AnyDevice::at_link(tab, id, url.clone(), &mut self.services) else { return };
+                let device = AnyDevice::at_link(tab, id, url.clone(), &mut self.services)?;
                 self.devices.push(device);
                 id
             }
         };
         self.show(tab, id);
-        self.open_for(id, url);
+        Some(id)
     }
 
     /// Lets the session on this wire go for something else, unless it writes; one whose link is still being opened is over
@@ -91,8 +107,26 @@ impl Studio {
         self.open_for(id, url);
     }
 
-    /// Another attempt to open a link for a session: from now on only its result counts.
+    /// Opens a link for a session. Where a drive may be on the line, that is asked before anything is opened: it may have
+    /// read the encoder at power-up and be silent since, so that listening proves nothing.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
+        let Some(device) = self.device_mut(id) else { return };
+        if device.tab() != Tab::Hiperface || !may_have_other_master(&url) {
+            return self.attempt_to_open(id, url);
+        }
+        *device.phase_mut() = Phase::Lost(Text::new("session.not_asked"));
+        self.question = Some(Question::other_master(&url, Then::OpenLink(id)));
+    }
+
+    /// The user says that no drive is on the line of this session.
+    pub(super) fn open_confirmed(&mut self, id: SessionId) {
+        if let Some(Source::Link(url)) = self.device(id).map(AnyDevice::source) {
+            self.attempt_to_open(id, url.clone());
+        }
+    }
+
+    /// Another attempt to open a link for a session: from now on only its result counts.
+    fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl) {
         let attempt = self.new_number();
         let Some(device) = self.device_mut(id) else { return };
         let (tab, earlier) = (device.tab(), device.opening_mut().take().map(|opening| opening.over));

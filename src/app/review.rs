@@ -17,6 +17,8 @@ pub struct Review<K: Reviewed> {
     pub force_wear: bool,
     /// What is wanted was made for another device.
     pub is_for_another: bool,
+    /// What is wanted was made for another type of device.
+    pub is_for_another_type: bool,
     pub(in crate::app) change: K::Change,
     /// What is in question beyond the usual, and whether it is allowed.
     permits: Vec<Toggle>,
@@ -38,15 +40,25 @@ pub enum ReviewState<K: Reviewed> {
         texts: Vec<Text>,
         /// Something was written before it ended.
         begun: bool,
+        /// The plan that was being carried out, and how many of its operations are known to be done.
+        cut_off: Option<(Box<K::Prepared>, usize)>,
     },
 }
 
 impl<K: Reviewed> Review<K> {
-    pub(in crate::app) fn new(mut change: K::Change, is_for_another: bool) -> Self {
+    pub(in crate::app) fn new(mut change: K::Change, is_for_another: bool, is_for_another_type: bool) -> Self {
         let own = |permit| K::permitted(&mut change, permit).map(|own| Toggle { permit, is_on: *own });
         let permits = Permit::ALL.into_iter().filter_map(own).collect();
         let what = K::change(&change);
-        Review { what, state: ReviewState::Planning, force_wear: false, is_for_another, change, permits }
+        Review {
+            what,
+            state: ReviewState::Planning,
+            force_wear: false,
+            is_for_another,
+            is_for_another_type,
+            change,
+            permits,
+        }
     }
 
     /// The plan as it was shown, from then to its end.
@@ -79,9 +91,10 @@ impl<K: Reviewed> Review<K> {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
-    /// It ended early.
-    pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool) {
-        self.state = ReviewState::Failed { texts, begun };
+    /// It ended early, after so many operations where they were being carried out.
+    pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
+        let cut_off = self.writing().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
+        self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
     /// What is wanted, with one of the toggles the other way round.
@@ -96,8 +109,11 @@ impl<K: Reviewed> Review<K> {
     fn toggles(&self) -> Vec<Toggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
+            Permit::OtherType => self.is_for_another_type,
             Permit::Mounting => self.prepared().is_some_and(K::leaves_mounting),
             Permit::Recreate => true,
+            // It stands among the questions.
+            Permit::Copy(_) => false,
         };
         self.permits.iter().copied().filter(|own| own.is_on || matters(own.permit)).collect()
     }
@@ -141,10 +157,14 @@ impl OpWords {
 pub enum Permit {
     /// To write what was made for another device.
     OtherDevice,
+    /// To write what was made for another type of device.
+    OtherType,
     /// To write what belongs to the mounting of another device.
     Mounting,
     /// To delete and create again.
     Recreate,
+    /// To copy the bytes of unknown meaning of this data field onto another device.
+    Copy(u8),
 }
 
 /// Something that the user may allow beyond the usual, and that makes another plan.
@@ -158,25 +178,43 @@ pub struct Toggle {
 
 impl Permit {
     /// In the order in which they stand.
-    const ALL: [Permit; 3] = [Permit::OtherDevice, Permit::Mounting, Permit::Recreate];
+    const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
 
     /// Its words, as a row of the texts.
     pub const fn word(self) -> &'static str {
         match self {
             Permit::OtherDevice => "review.allow_other",
+            Permit::OtherType => "review.allow_other_type",
             Permit::Mounting => "review.with_mounting",
             Permit::Recreate => "review.recreate",
+            Permit::Copy(_) => "review.copy_field",
         }
     }
 
     /// What it means, as a row of the texts.
     pub const fn hint(self) -> Option<&'static str> {
         match self {
-            Permit::OtherDevice => None,
+            Permit::OtherDevice | Permit::Copy(_) => None,
+            Permit::OtherType => Some("review.allow_other_type_hint"),
             Permit::Mounting => Some("review.with_mounting_hint"),
             Permit::Recreate => Some("review.recreate_hint"),
         }
     }
+}
+
+/// Something about a plan that has to be answered, and makes another plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Question {
+    /// What it is about.
+    pub what: Text,
+    /// The answer that allows nothing.
+    pub no: Text,
+    /// The answer that allows it.
+    pub yes: Text,
+    /// What is allowed where the answer is yes.
+    pub permit: Permit,
+    /// The answer.
+    pub is_on: bool,
 }
 
 /// How a plan is carried out, and what starts it.
@@ -223,12 +261,17 @@ pub struct Sheet {
     pub warnings: Vec<Text>,
     /// What the plan needs from the person in front of the device.
     pub needs: Vec<Text>,
+    /// What has to be set up anew afterwards, because it comes from another device: while it is planned, while it is
+    /// written, and at its end.
+    pub redo: Option<Text>,
     /// What it costs, beside what this computer has seen the device take.
     pub cost: Option<Text>,
     /// How it is carried out.
     pub manner: Manner,
     /// What may be allowed beyond the usual.
     pub toggles: Vec<Toggle>,
+    /// What has to be answered about it.
+    pub questions: Vec<Question>,
     /// The device counts as worn after it, or its wear is not known: whether it is to be written all the same.
     pub force_wear: Option<bool>,
     /// How many write cycles it has had is not known.
@@ -261,6 +304,8 @@ pub enum Stage {
         texts: Vec<Text>,
         /// Something was written before it ended.
         begun: bool,
+        /// Operations that are known to be done.
+        done: usize,
     },
 }
 
@@ -287,6 +332,14 @@ pub trait Reviewed {
     fn op(prepared: &Self::Prepared, op: &Self::Op) -> OpWords;
     /// Values of the mounting differ and are left alone.
     fn leaves_mounting(prepared: &Self::Prepared) -> bool;
+    /// What it writes that is right for another device alone, and has to be set up anew.
+    fn redo(prepared: &Self::Prepared) -> Vec<Text>;
+
+    /// What has to be answered about it.
+    fn questions(_prepared: &Self::Prepared) -> Vec<Question> {
+        Vec::new()
+    }
+
     /// What should make somebody stop and look.
     fn warnings(prepared: &Self::Prepared) -> Vec<Text>;
     /// What it needs from the person in front of the device.
@@ -332,10 +385,20 @@ pub(in crate::app) fn left_alone(id: &'static str, missing: &[String], mounting:
     texts
 }
 
+/// Says what has to be set up anew.
+pub fn redo(items: Vec<Text>) -> Option<Text> {
+    (!items.is_empty()).then(|| Text::new("review.redo").with_list("items", items))
+}
+
 impl<K: Reviewed> Review<K> {
     /// The review as a person sees it; `done` operations have been carried out.
     pub fn sheet(&self, done: usize) -> Sheet {
         let prepared = self.prepared();
+        let cut_off = match &self.state {
+            ReviewState::Failed { cut_off: Some((prepared, done)), .. } => Some((&**prepared, *done)),
+            _ => None,
+        };
+        let carried = prepared.or(cut_off.map(|(prepared, _)| prepared));
         let is_over = matches!(self.state, ReviewState::Done(..));
         let plan = prepared.map(K::plan).filter(|plan| !plan.is_empty()).map(Plan::id);
         let stage = match &self.state {
@@ -347,7 +410,9 @@ impl<K: Reviewed> Review<K> {
                 backup: own.backup.clone(),
                 logbook: own.logbook_warning.as_ref().map(explain::logbook),
             },
-            ReviewState::Failed { texts, begun } => Stage::Failed { texts: texts.clone(), begun: *begun },
+            ReviewState::Failed { texts, begun, .. } => {
+                Stage::Failed { texts: texts.clone(), begun: *begun, done: cut_off.map_or(0, |(_, done)| done) }
+            }
         };
         let shown = prepared.filter(|_| !is_over);
         let costs = shown.filter(|_| plan.is_some());
@@ -356,12 +421,14 @@ impl<K: Reviewed> Review<K> {
         Sheet {
             what: self.what.clone(),
             stage,
-            lines: prepared.map(lines).unwrap_or_default(),
+            lines: carried.map(lines).unwrap_or_default(),
             warnings: shown.map(K::warnings).unwrap_or_default(),
             needs: shown.map(|own| K::needs(&self.change, own)).unwrap_or_default(),
+            redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost),
             manner: prepared.map_or(Manner::Writes, K::manner),
             toggles: self.toggles(),
+            questions: shown.map(K::questions).unwrap_or_default(),
             force_wear: costs.filter(|own| uncounted(own) || K::is_worn(own)).map(|_| self.force_wear),
             is_uncounted: costs.is_some_and(uncounted),
         }

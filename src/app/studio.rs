@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::action::{Action, Done, FileQuestion, Question, Then, Waited};
+use super::action::{Action, Done, FileQuestion, Waited};
 use super::biss;
 use super::connect::{self, Connect};
 use super::devices::{AnyDevice, Shown};
@@ -10,6 +10,7 @@ use super::diverged::Diverged;
 use super::documents::{is_capture, read_document};
 use super::hiperface::{self, Encoder};
 use super::keep::Keeper;
+use super::question::{Question, Then};
 use super::services::{Services, World};
 use super::signals::{self, Signals};
 use super::tab::Tab;
@@ -141,6 +142,7 @@ impl Studio {
             Action::AskForget(desk) => self.ask_forget(desk),
             Action::AskTable { desk, visible } => self.ask_table(desk, visible),
             Action::AskPicture(picture) => self.ask_picture(picture),
+            Action::PictureCut => self.tell_picture_cut(),
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Hiperface(id, action) => self.act_hiperface(id, action),
             Action::Biss(id, action) => self.act_biss(id, action),
@@ -377,7 +379,7 @@ impl Studio {
             Done::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
                 let confirm = Text::new("question.replace_it");
-                self.question = Some(Question { text, confirm, then: Then::Write(question, path) });
+                self.question = Some(Question::before(text, confirm, Then::Write(question, path)));
             }
             Done::Looked { question, path, exists: false } => self.chosen(question, path),
             Done::TableWritten(desk, exported) => self.table_written(desk, exported),
@@ -418,7 +420,7 @@ impl Studio {
         if self.moves_by_hand() {
             return self.stop_motion();
         }
-        if self.question.take().is_some() || self.diverged.take().is_some() {
+        if self.decline() || self.diverged.take().is_some() {
             return;
         }
         // Watching is no work: whoever closes a dialog, or has drives in hand, goes on seeing them.

@@ -20,6 +20,39 @@ pub struct TraceLine {
     pub bytes: String,
     /// What it says.
     pub meaning: Vec<Text>,
+    /// How it ended, where that is not as it should.
+    pub fault: Option<TraceFault>,
+}
+
+/// What is wrong with a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraceFault {
+    /// The device reports an error or a warning.
+    Reported,
+    /// It is no frame, or no reply to the request before it.
+    Broken,
+}
+
+/// What a frame says.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Explained {
+    /// In words.
+    pub meaning: Vec<Text>,
+    /// What is wrong with it.
+    pub fault: Option<TraceFault>,
+}
+
+impl Explained {
+    /// A frame that is broken, and why.
+    pub fn broken(why: Text) -> Self {
+        Explained { meaning: vec![why], fault: Some(TraceFault::Broken) }
+    }
+}
+
+impl From<Vec<Text>> for Explained {
+    fn from(meaning: Vec<Text>) -> Self {
+        Explained { meaning, fault: None }
+    }
 }
 
 impl TraceLine {
@@ -41,17 +74,17 @@ impl TraceLog {
     const CAPACITY: usize = 5_000;
 
     /// Adds frames; `explain` says what each means. `dropped` came too fast to be shown.
-    pub(super) fn add(
+    pub(super) fn add<E: Into<Explained>>(
         &mut self,
         entries: Vec<TraceEntry>,
         dropped: u64,
-        mut explain: impl FnMut(&TraceEntry) -> Vec<Text>,
+        mut explain: impl FnMut(&TraceEntry) -> E,
     ) {
         self.dropped += dropped;
         for entry in entries {
-            let meaning = explain(&entry);
+            let Explained { meaning, fault } = explain(&entry).into();
             let bytes = entry.bytes.to_string();
-            self.lines.push_back(TraceLine { at: entry.at, direction: entry.direction, bytes, meaning });
+            self.lines.push_back(TraceLine { at: entry.at, direction: entry.direction, bytes, meaning, fault });
         }
         let surplus = self.lines.len().saturating_sub(Self::CAPACITY);
         self.lines.drain(..surplus);

@@ -8,9 +8,9 @@ use super::args::Analyse;
 use super::output::{Lines, Output};
 use super::runner::{Bar, failed};
 use super::{Done, Failure, Result};
-use crate::app::explain;
+use crate::app::{Text, explain};
 use crate::signal::analysis::Analysis;
-use crate::signal::capture::{Capture, Wishes};
+use crate::signal::capture::{Capture, Layout, Wishes};
 use crate::signal::diagnosis::{Diagnosis, Record, diagnose};
 use crate::signal::position_error::{Basis, Samples, harmonics};
 use crate::signal::quality::Family;
@@ -25,7 +25,8 @@ pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
     // Ctrl-C ends a command that only reads.
     let read = read_capture(path, &wishes, &AtomicBool::new(false), &mut progress);
     drop(bar);
-    let (_, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
+    let (layout, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
+    remarks(output, &layout, &capture);
     let samples = Samples { time_s: &capture.time_s, sine_v: &capture.sine_v, cosine_v: &capture.cosine_v };
     let references_v = capture.references_v();
     let record = Record { samples, references_v, periods: arguments.periods };
@@ -48,9 +49,21 @@ pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
         findings: &findings,
         revolution,
         periods: arguments.periods,
+        rows_left_out: capture.left_out,
     };
     output.show(&told.json(), &told.text())?;
     Ok(Done::Well)
+}
+
+/// What is to be known of how the table was read.
+fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
+    if let Some(clock) = layout.clock {
+        let text = Text::new("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
+        output.remark(&text.terminal());
+    }
+    if capture.left_out > 0 {
+        output.remark(&format!("{} rows without a value (empty, NaN or overload) are left out.", capture.left_out));
+    }
 }
 
 /// DNL and INL, where there are a reference and the number of periods; why there are none is a remark.
@@ -73,6 +86,7 @@ struct Told<'a> {
     findings: &'a [String],
     revolution: Option<Revolution>,
     periods: Option<u32>,
+    rows_left_out: u64,
 }
 
 impl Told<'_> {
@@ -88,6 +102,7 @@ impl Told<'_> {
         });
         let mut json = json!({
             "samples": self.analysis.samples,
+            "rows_left_out": self.rows_left_out,
             "left_out": self.analysis.outliers.as_ref().map_or(0, |outliers| outliers.count),
             "periods": coverage.periods,
             "frequency_hz": self.analysis.frequency_hz(),

@@ -60,6 +60,10 @@ pub(super) struct Common {
     #[arg(long = "code", global = true, value_name = "N=HEX")]
     // Taken as text: a message about a wrong argument repeats it, and this may be a code.
     pub(super) codes: Vec<String>,
+    /// hiperface on a serial line: no drive or controller is connected to it or powered. Without this it is asked on a
+    /// terminal; find needs it elsewhere.
+    #[arg(long, global = true)]
+    pub(super) only_master: bool,
     /// Record every frame into a file that replay: plays back; access codes are masked.
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
@@ -256,6 +260,15 @@ pub(super) struct Restore {
     /// The profile may be of another serial number.
     #[arg(long)]
     pub(super) allow_other_device: bool,
+    /// hiperface: the profile may be of another type of encoder.
+    #[arg(long)]
+    pub(super) allow_other_type: bool,
+    /// hiperface: copy the bytes of unknown meaning of this data field onto another serial number; repeatable.
+    #[arg(long, value_name = "field:N")]
+    pub(super) copy: Vec<String>,
+    /// hiperface: leave the bytes of unknown meaning of this data field as the encoder has them; repeatable.
+    #[arg(long, value_name = "field:N")]
+    pub(super) leave: Vec<String>,
     /// Also restore values of the mounting onto another serial number.
     #[arg(long)]
     pub(super) with_mounting: bool,

@@ -1,15 +1,21 @@
 //! `do DEVICE check`: the lines of a device check, printed.
 
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use super::output::{Lines, Output};
 use super::{Done, Failure, Result};
 use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
+use crate::device::LineQuality;
 use crate::device::check::Verdict;
 
 /// Prints the lines; one that is bad makes the command fail.
 pub(super) fn show(output: &Output, lines: &[CheckLine]) -> Result {
+    show_with(output, lines, None)
+}
+
+/// The same, with how good the line was, where that was counted.
+pub(super) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
     let mut list = Vec::new();
@@ -23,6 +29,24 @@ pub(super) fn show(output: &Output, lines: &[CheckLine]) -> Result {
         text.add(&step, words.trim_end());
         list.push(json!({"step": step, "verdict": verdict, "findings": findings(line)}));
     }
-    output.show(&json!({"done": "check", "ok": good, "steps": list}), &text.text())?;
+    let mut json = json!({"done": "check", "ok": good, "steps": list});
+    if let (Some(quality), Some(object)) = (quality, json.as_object_mut()) {
+        object.insert("line_quality".to_owned(), line_quality(quality));
+    }
+    output.show(&json, &text.text())?;
     if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found faults, named above.".to_owned()])) }
+}
+
+fn line_quality(quality: &LineQuality) -> Json {
+    let milliseconds = |percent| quality.answered_within(percent).map(|time| time.as_secs_f64() * 1e3);
+    json!({
+        "requests": quality.requests,
+        "replies": quality.replies,
+        "retries": quality.retries,
+        "damaged": quality.damaged,
+        "silent": quality.silent,
+        "late": quality.late,
+        "answer_ms_median": milliseconds(50),
+        "answer_ms_p99": milliseconds(99),
+    })
 }

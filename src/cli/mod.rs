@@ -103,6 +103,9 @@ pub fn no_window(why: &str) -> ExitCode {
 }
 
 fn window(common: Common, profile: Option<PathBuf>) -> Asked {
+    if common.only_master {
+        return Asked::Command(end(Err(usage("--only-master needs a command; the window asks"))));
+    }
     if common.json || common.trace.is_some() {
         return Asked::Command(end(Err(usage("--json and --trace need a command; encoder-studio help lists them"))));
     }

@@ -12,7 +12,7 @@ use super::output::{Lines, Output, say};
 use super::plan::{NOTHING, Shown, Spent};
 use super::runner::failed;
 use super::{Done, Failure, Result};
-use crate::app::explain;
+use crate::app::{explain, review};
 use crate::profile::{Body, Comparison, Document};
 use crate::store::{read_text, write_atomically};
 
@@ -119,6 +119,18 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 pub(super) struct Left {
     pub(super) unchanged: u64,
     pub(super) missing: Vec<String>,
+    /// What has to be set up anew, because it comes from another device.
+    pub(super) redo: Vec<String>,
+}
+
+impl Left {
+    /// Says what has to be set up anew.
+    pub(super) fn warn(&self, output: &Output) {
+        let items = self.redo.iter().map(explain::plain).collect();
+        if let Some(text) = review::redo(items) {
+            output.remark(&text.terminal());
+        }
+    }
 }
 
 /// Prints what a restore would do.
@@ -132,6 +144,7 @@ pub(super) fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result
         "write_cycles": plan.write_cycles,
         "backup": null,
         "missing": left.missing,
+        "redo": left.redo,
     });
     output.show(&json, &plan.text)?;
     Ok(Done::Well)
@@ -146,6 +159,7 @@ pub(super) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Resu
         "write_cycles": spent.write_cycles,
         "backup": spent.backup,
         "missing": left.missing,
+        "redo": left.redo,
     });
     let mut lines = Lines::default();
     lines
@@ -157,6 +171,8 @@ pub(super) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Resu
         lines.add("backup", backup.display());
     }
     output.show_written(&json, &lines.text())?;
+    // Said before the write as well: it is what is still to be done.
+    left.warn(output);
     Ok(Done::Well)
 }
 

@@ -11,6 +11,7 @@ use crossbeam_channel::RecvTimeoutError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::{Code, Common};
+use super::consent::{answer, can_ask};
 use super::output::say;
 use super::patience::{Pace, Patience};
 use super::{Failure, Result};
@@ -24,8 +25,15 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 pub(super) trait Runs: Device {
     /// What is kept of a session when its thread has it.
     type Kept;
+    /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
+    const HAS_ONE_MASTER: bool = false;
     /// It asks for access codes.
     const HAS_CODES: bool;
+
+    /// Whether another master may be on the line behind a link, so that this is asked before the first byte.
+    fn may_have_other_master(_url: &LinkUrl) -> bool {
+        false
+    }
 
     /// Opens a link.
     ///
@@ -113,6 +121,12 @@ impl<D: Runs> Runner<D> {
         let codes = codes(common)?;
         if !D::HAS_CODES && !common.codes.is_empty() {
             return Err(Failure::Usage("--code is for devices with access codes; this one has none".to_owned()));
+        }
+        if D::may_have_other_master(url) {
+            ask_for_other_master(common)?;
+        }
+        if common.only_master && !D::HAS_ONE_MASTER {
+            return Err(Failure::Usage("--only-master is for hiperface, whose lines have one master".to_owned()));
         }
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
@@ -254,6 +268,18 @@ pub(super) fn failed(text: &Text) -> Failure {
 /// A job gave a result of another kind: a defect of this program, told rather than hidden.
 pub(super) fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
+}
+
+/// Asks whether a drive is on the line, where somebody can be asked and has not said so already.
+fn ask_for_other_master(common: &Common) -> Result<()> {
+    if common.only_master || !can_ask() {
+        return Ok(());
+    }
+    let reply = answer("Is a drive or controller connected to this line, or powered? [yes/no/not sure] ");
+    if matches!(reply.as_str(), "n" | "N" | "no") {
+        return Ok(());
+    }
+    Err(failed(&Text::new("session.maybe_drive")))
 }
 
 /// Codes of the environment, then those of the command line.

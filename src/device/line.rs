@@ -2,6 +2,7 @@
 //! how often and how long one asks again. What the frames say is the business of each device's own folder; here no byte
 //! of them is looked at, but for an echo.
 
+use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::bits::MaskedBytes;
@@ -73,6 +74,55 @@ pub(super) fn read_margin(text: &str) -> Option<Duration> {
     text.parse().ok().filter(|ms| *ms <= 2000).map(Duration::from_millis)
 }
 
+/// How good a line is, counted since the session began.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LineQuality {
+    /// Requests that were sent, repeated ones included.
+    pub requests: u64,
+    /// Replies that could be understood.
+    pub replies: u64,
+    /// Requests that were sent again.
+    pub retries: u64,
+    /// Replies that were damaged, and requests that the device says were.
+    pub damaged: u64,
+    /// Requests to which nothing came back.
+    pub silent: u64,
+    /// Replies that came after their time.
+    pub late: u64,
+    /// How long the newest replies took, from the first byte of the request to that of the reply.
+    answers: VecDeque<Duration>,
+}
+
+impl LineQuality {
+    /// Answer times that are kept.
+    const ANSWERS: usize = 1000;
+
+    /// Something had to be asked again, or came too late.
+    pub fn is_troubled(&self) -> bool {
+        self.troubles() != [0; 4]
+    }
+
+    /// What changes when something goes wrong.
+    pub fn troubles(&self) -> [u64; 4] {
+        [self.retries, self.damaged, self.silent, self.late]
+    }
+
+    /// The time within which `percent` of the newest replies came; `None` where there were none.
+    pub fn answered_within(&self, percent: usize) -> Option<Duration> {
+        let mut times: Vec<Duration> = self.answers.iter().copied().collect();
+        times.sort_unstable();
+        let at = (times.len() * percent).div_ceil(100).saturating_sub(1);
+        times.get(at).copied()
+    }
+
+    fn answered_after(&mut self, time: Duration) {
+        if self.answers.len() == Self::ANSWERS {
+            self.answers.pop_front();
+        }
+        self.answers.push_back(time);
+    }
+}
+
 /// What is known about a line, from one job to the next.
 #[derive(Clone, Debug)]
 pub struct LineState {
@@ -82,6 +132,8 @@ pub struct LineState {
     pub echo: Echo,
     /// Exchanges that failed and had to be repeated or given up, since the session began.
     pub damaged: u64,
+    /// How good it is.
+    pub quality: LineQuality,
     /// No request before this moment.
     pub(super) quiet_until: Moment,
     /// Since when nothing sensible came back.
@@ -99,11 +151,17 @@ impl LineState {
             margin,
             echo: Echo::Unknown,
             damaged: 0,
+            quality: LineQuality::default(),
             quiet_until: Moment::START,
             troubled_since: None,
             outstanding_since: None,
             last_sent: Moment::START,
         }
+    }
+
+    /// The last exchange failed.
+    pub fn is_troubled(&self) -> bool {
+        self.troubled_since.is_some()
     }
 
     /// A job begins: it has its patience before it.
@@ -116,11 +174,18 @@ impl LineState {
     pub(super) fn sent(&mut self, at: Moment) {
         self.outstanding_since.get_or_insert(at);
         self.last_sent = at;
+        self.quality.requests += 1;
     }
 
     /// A reply that can be understood has come.
     pub(super) fn answered(&mut self) {
         self.outstanding_since = None;
+        self.quality.replies += 1;
+    }
+
+    /// When that reply began.
+    pub(super) fn answer_began(&mut self, at: Moment) {
+        self.quality.answered_after(at.since(self.last_sent));
     }
 
     /// What came makes sense: patience begins anew.
@@ -284,10 +349,12 @@ impl<'a> Line<'a> {
         // The first try counts as well: at 600 bit/s it alone may take three seconds.
         let since = *state.troubled_since.get_or_insert(now - longest);
         let next_end = (now + longest).since(since);
-        match self.patience {
+        let again = match self.patience {
             None => tries < TRIES && next_end < PATIENCE,
             Some(patience) => next_end < patience,
-        }
+        };
+        state.quality.retries += u64::from(again);
+        again
     }
 
     /// Listens on after a silence, longer each time: what comes now is the reply to a request before, on a wire that is

@@ -11,6 +11,6 @@ mod replies;
 pub mod ssi;
 mod written;
 
-pub use line::{Echo, LineState};
+pub use line::{Echo, LineQuality, LineState};
 pub use replies::Replies;
 pub use written::Written;

@@ -26,7 +26,7 @@ pub use file_lock::update_text;
 pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, write_in_folder, write_text_over};
 pub use folders::Folders;
 pub use log_file::LogFile;
-pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome};
+pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome, StatusEntry};
 
 use crate::protocol::biss::{DescriptionError, Descriptions};
 use crate::protocol::hiperface::{EncoderTypes, TypeTableError};

@@ -1,6 +1,7 @@
 //! Profiles, backups, and what was written into a device, whatever its kind.
 
 use egui::{RichText, Ui};
+use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
 use super::controls::{button, card, empty, enabled_button, paragraph};
@@ -19,6 +20,10 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mu
     backups(ui, skin, device, actions);
     ui.add_space(skin.space.groups);
     writes(ui, skin, device);
+    if !device.statuses().is_empty() {
+        ui.add_space(skin.space.groups);
+        statuses(ui, skin, device);
+    }
 }
 
 fn profile(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
@@ -54,8 +59,7 @@ fn backups(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
             paragraph(ui, skin.label(skin.say("backups_card.words")));
             for backup in backups {
                 ui.horizontal(|ui| {
-                    let taken = backup.taken.to_zoned(TimeZone::system());
-                    ui.label(skin.mono(taken.strftime("%Y-%m-%d  %H:%M:%S").to_string()));
+                    ui.label(skin.mono(time(backup.taken)));
                     let restore = enabled_button(
                         ui,
                         device.is_ready(),
@@ -95,6 +99,23 @@ fn writes(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
     });
 }
 
+/// Status codes that were read: the device does not tell them again.
+fn statuses(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
+    card(ui, skin, "statuses_card.title", |ui| {
+        for status in device.statuses() {
+            ui.horizontal(|ui| {
+                ui.label(skin.mono(time(status.at)));
+                ui.add(egui::Label::new(&status.codes).truncate()).on_hover_text(&status.codes);
+            });
+        }
+    });
+}
+
+/// A time of the logbook, where this computer is.
+fn time(at: Timestamp) -> String {
+    at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string()
+}
+
 fn write_ui(ui: &mut Ui, skin: &Skin, write: &Entry) {
     let palette = skin.palette;
     let (icon, colour, words) = match write.conclusion.as_ref().map(|end| &end.outcome) {
@@ -104,8 +125,7 @@ fn write_ui(ui: &mut Ui, skin: &Skin, write: &Entry) {
         None => (icons::QUESTION, palette.warn, skin.say("writes_card.open")),
     };
     ui.horizontal(|ui| {
-        let at = write.at.to_zoned(TimeZone::system());
-        ui.label(skin.mono(at.strftime("%Y-%m-%d  %H:%M:%S").to_string()));
+        ui.label(skin.mono(time(write.at)));
         ui.label(RichText::new(icon).color(colour)).on_hover_text(&words);
         let cycles = write.conclusion.as_ref().map_or(write.planned_cycles, |end| end.cycles_spent);
         let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", cycles);

@@ -9,7 +9,7 @@ use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
 use super::page::apart;
 use super::{Skin, icons};
-use crate::app::review::{ChangeWords, Manner, OpWords, Sheet, Stage, Toggle};
+use crate::app::review::{ChangeWords, Manner, OpWords, Question, Sheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 /// Draws the dialog, where a write is on its way.
@@ -61,6 +61,7 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
             operations(ui, skin, (&sheet.lines, room), Some(*done));
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
+            redo(ui, skin, sheet);
             let stopping = device.running().is_some_and(|running| running.stopping);
             at_the_right(ui, |ui| {
                 let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
@@ -78,6 +79,7 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
                 ui.label(RichText::new(icons::CHECK_CIRCLE).size(skin.sizes.section).color(skin.palette.good));
                 ui.label(skin.words(verified));
             });
+            redo(ui, skin, sheet);
             if let Some(backup) = backup {
                 row(ui, skin, &skin.say("review.backup"), skin.mono(backup.display().to_string()));
             }
@@ -86,7 +88,10 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
             }
             buttons(ui, skin, device, actions, "review.close", |_, _| {});
         }
-        Stage::Failed { texts, begun } => {
+        Stage::Failed { texts, begun, done } => {
+            if !sheet.lines.is_empty() {
+                operations(ui, skin, (&sheet.lines, room), Some(*done));
+            }
             let (icon, colour) =
                 if *begun { (icons::WARNING, skin.palette.warn) } else { (icons::X_CIRCLE, skin.palette.bad) };
             let mut indent = 0.0;
@@ -100,6 +105,7 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
                     ui.add(egui::Label::new(skin.words(text)).wrap().selectable(true));
                 });
             }
+            redo(ui, skin, sheet);
             options(ui, skin, device, sheet, actions);
             buttons(ui, skin, device, actions, "review.close", |_, _| {});
         }
@@ -217,6 +223,7 @@ const HEADS: f32 = 56.0;
 
 fn remarks(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
     let palette = skin.palette;
+    redo(ui, skin, sheet);
     for text in &sheet.warnings {
         remark(ui, icons::WARNING, palette.warn, &skin.words(text));
     }
@@ -228,6 +235,16 @@ fn remarks(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
     }
 }
 
+/// What has to be set up anew: in red, wherever the operations stand.
+fn redo(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
+    let Some(text) = &sheet.redo else { return };
+    let colour = skin.palette.bad;
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icons::WARNING).color(colour));
+        paragraph(ui, RichText::new(skin.words(text)).color(colour));
+    });
+}
+
 fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
@@ -235,10 +252,26 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
     });
 }
 
+/// A question with its two answers; what it is about stands in front of them.
+fn question_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
+    remark(ui, icons::WARNING, skin.palette.warn, &skin.words(&question.what));
+    ui.horizontal(|ui| {
+        ui.add_space(ICON);
+        for (is_on, word) in [(false, &question.no), (true, &question.yes)] {
+            if ui.radio(question.is_on == is_on, skin.words(word)).clicked() && question.is_on != is_on {
+                actions.push(Action::Review(device.id(), ReviewAction::Toggle(question.permit)));
+            }
+        }
+    });
+}
+
 /// What may be allowed beyond the usual, and writing although the device counts as worn.
 fn options(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions: &mut Vec<Action>) {
     if !sheet.toggles.is_empty() {
         ui.add_space(skin.space.inside);
+    }
+    for question in &sheet.questions {
+        question_ui(ui, skin, device, question, actions);
     }
     for Toggle { permit, mut is_on } in sheet.toggles.iter().copied() {
         let mut response = ui.checkbox(&mut is_on, skin.say(permit.word()));

@@ -244,6 +244,10 @@ mod tests {
             None
         }
 
+        fn done(&self) -> usize {
+            0
+        }
+
         fn write_cycles(&self) -> u64 {
             self.cycles
         }

@@ -4,27 +4,30 @@ mod commit;
 mod job;
 mod open;
 mod prepare;
+mod status;
 
 use std::fmt;
 use std::sync::Arc;
 
 pub use commit::device_key;
 pub use job::{
-    Change, ChangeKind, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, Prepared, Remark,
+    Change, ChangeKind, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, OtherType, Prepared, Remark,
     SavedProfile, Value, WEAR_LIMIT,
 };
-pub use open::{check, open};
+pub use open::{check, may_have_other_master, open};
+
+use status::StatusKeeper;
 
 use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::hiperface::find::News;
 use crate::device::hiperface::{
-    self as device, Codes, Error, Master, Sample, Station, Watch, check, find, identify, read_analogue, read_counter,
-    read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched,
+    self as device, Codes, Error, Identity, Master, Sample, Station, Watch, check, find, identify, read_analogue,
+    read_counter, read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::profile::hiperface::{FieldRange, Item, PlanError};
 use crate::protocol::hiperface::{EncoderTypes, Geometry, StatusCode};
-use crate::store::Store;
+use crate::store::{DeviceKey, Store};
 
 /// A HIPERFACE encoder at the end of its wire.
 pub struct Hiperface {
@@ -33,6 +36,11 @@ pub struct Hiperface {
     types: Arc<EncoderTypes>,
     /// As the encoder was last identified in this session: samples are seen with it.
     geometry: Option<Geometry>,
+    /// Who answered last, as the logbook knows it.
+    identified: Option<DeviceKey>,
+    status: StatusKeeper,
+    /// What was told of the line's troubles.
+    told_troubles: [u64; 4],
 }
 
 impl fmt::Debug for Hiperface {
@@ -45,6 +53,36 @@ impl Hiperface {
     /// The host's side of the line.
     fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    }
+
+    /// Notes who has answered.
+    fn identified(&mut self, desk: &Desk, identity: &Identity) {
+        self.geometry = identity.geometry;
+        self.identified = Some(device_key(identity, desk.is_virtual));
+    }
+
+    /// Keeps the status codes that were read, before they are shown. An encoder that is not known yet is asked who it is:
+    /// its logbook is to have them.
+    fn keep_codes(&mut self, desk: &mut Desk, codes: &[StatusCode]) {
+        if codes.is_empty() {
+            return;
+        }
+        if self.identified.is_none() {
+            let types = self.types.clone();
+            if let Ok(identity) = identify(&mut self.master(desk), &types) {
+                self.identified(desk, &identity);
+            }
+        }
+        let device = self.identified.clone().unwrap_or_else(|| status::unknown_device(desk.is_virtual));
+        status::keep(&desk.store, &device, codes);
+    }
+
+    /// The same for what is sampled, where a code that stays comes with each sample.
+    fn keep_sampled_codes(&mut self, desk: &mut Desk) {
+        let codes = self.station.take_codes_read();
+        if !codes.is_empty() && self.status.is_news(&codes, desk.clock.now()) {
+            self.keep_codes(desk, &codes);
+        }
     }
 }
 
@@ -59,7 +97,9 @@ impl Session<Hiperface> {
         is_virtual: bool,
     ) -> Self {
         let geometry = station.geometry;
-        Session::with(Hiperface { wire, station, types: Arc::new(types), geometry }, clock, store, is_virtual)
+        let (types, status) = (Arc::new(types), StatusKeeper::default());
+        let device = Hiperface { wire, station, types, geometry, identified: None, status, told_troubles: [0; 4] };
+        Session::with(device, clock, store, is_virtual)
     }
 
     /// The access codes that the user knows.
@@ -88,17 +128,79 @@ impl Device for Hiperface {
         job: HiperfaceJob,
         tell: &mut dyn FnMut(Tell<Remark, Doing>),
     ) -> Result<HiperfaceOutput, JobError> {
+        let result = self.carry_out(desk, job, tell);
+        let codes = self.station.take_codes_read();
+        self.keep_codes(desk, &codes);
+        result
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+        let geometry = self.geometry;
+        let met_before = self.station.codes_met.len();
+        let sample = read_sample(&mut self.master(desk), geometry);
+        self.keep_sampled_codes(desk);
+        let sample = sample?;
+        // The codes met are in it.
+        self.station.codes_met.truncate(met_before);
+        Ok(sample)
+    }
+
+    fn watch(&mut self, desk: &mut Desk, what: &Watch) -> Result<Watched<Sample>, JobError> {
+        let met_before = self.station.codes_met.len();
+        let reading = read_watched(&mut self.master(desk), *what);
+        self.keep_sampled_codes(desk);
+        let reading = reading?;
+        // The codes met are in it.
+        self.station.codes_met.truncate(met_before);
+        let refused = reading.is_refused();
+        let sample = Sample::Watched(reading);
+        Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        error.device() == Some(&Error::Cancelled)
+    }
+
+    fn take_remark(&mut self) -> Option<Remark> {
+        Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes)
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+
+    /// What went wrong on the line since it was told last.
+    fn idle(&mut self, _desk: &mut Desk) -> Option<Remark> {
+        let line = &self.station.line;
+        // What ends in a failure is told by that.
+        if line.is_troubled() || line.quality.troubles() == self.told_troubles {
+            return None;
+        }
+        self.told_troubles = line.quality.troubles();
+        Some(Remark::Line(line.quality.clone()))
+    }
+}
+
+impl Hiperface {
+    fn carry_out(
+        &mut self,
+        desk: &mut Desk,
+        job: HiperfaceJob,
+        tell: &mut dyn FnMut(Tell<Remark, Doing>),
+    ) -> Result<HiperfaceOutput, JobError> {
         let types = self.types.clone();
         let steps = &mut |progress| tell(Tell::Progress(progress));
         Ok(match job {
             HiperfaceJob::Prepare(change) => {
-                HiperfaceOutput::Prepared(Box::new(prepare::prepare(self, desk, change, steps)?))
+                let prepared = prepare::prepare(self, desk, change, steps)?;
+                self.identified = Some(device_key(&prepared.identity, desk.is_virtual));
+                HiperfaceOutput::Prepared(Box::new(prepared))
             }
             HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, steps)?),
             HiperfaceJob::Survey => {
                 let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });
                 let survey = device::survey(&mut self.master(desk), &types, progress)?;
-                self.geometry = survey.identity.geometry;
+                self.identified(desk, &survey.identity);
                 HiperfaceOutput::Surveyed(Box::new(survey))
             }
             HiperfaceJob::UseCode { number, code } => {
@@ -107,7 +209,7 @@ impl Device for Hiperface {
             }
             HiperfaceJob::Identify => {
                 let identity = identify(&mut self.master(desk), &types)?;
-                self.geometry = identity.geometry;
+                self.identified(desk, &identity);
                 HiperfaceOutput::Identity(identity)
             }
             HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.master(desk))?),
@@ -139,37 +241,6 @@ impl Device for Hiperface {
                 HiperfaceOutput::Configured
             }
         })
-    }
-
-    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
-        let geometry = self.geometry;
-        let met_before = self.station.codes_met.len();
-        let sample = read_sample(&mut self.master(desk), geometry)?;
-        // The codes met are in it.
-        self.station.codes_met.truncate(met_before);
-        Ok(sample)
-    }
-
-    fn watch(&mut self, desk: &mut Desk, what: &Watch) -> Result<Watched<Sample>, JobError> {
-        let met_before = self.station.codes_met.len();
-        let reading = read_watched(&mut self.master(desk), *what)?;
-        // The codes met are in it.
-        self.station.codes_met.truncate(met_before);
-        let refused = reading.is_refused();
-        let sample = Sample::Watched(reading);
-        Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
-    }
-
-    fn is_cancelled(error: &JobError) -> bool {
-        error.device() == Some(&Error::Cancelled)
-    }
-
-    fn take_remark(&mut self) -> Option<Remark> {
-        Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes)
-    }
-
-    fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check()
     }
 }
 

@@ -15,6 +15,9 @@ pub trait Interruption {
     /// For the logbook: why it ended; `None` where it was the user's wish.
     fn why(&self) -> Option<String>;
 
+    /// Operations that were carried out.
+    fn done(&self) -> usize;
+
     /// Write cycles spent, or that may have been.
     fn write_cycles(&self) -> u64;
 }
@@ -53,6 +56,14 @@ impl<E, P, I: Interruption<Error = E>, K> JobError<E, P, I, K> {
             JobError::Device(error) => Some(error),
             JobError::Interrupted { interrupted, .. } => interrupted.error(),
             JobError::Plan(_) | JobError::NotBegun(_) => None,
+        }
+    }
+
+    /// Operations that were carried out; `None` where nothing was begun.
+    pub fn done(&self) -> Option<usize> {
+        match self {
+            JobError::Interrupted { interrupted, .. } => Some(interrupted.done()),
+            JobError::Device(_) | JobError::Plan(_) | JobError::NotBegun(_) => None,
         }
     }
 }

@@ -93,9 +93,45 @@ fn a_profile_of_another_encoder_is_refused_before_anything_is_written() {
     }
     assert_eq!(encoder.writes(), [""; 0]);
     let arguments = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
+    // What its bytes mean is not known (issue 22.8).
+    let arguments = [&arguments[..], &["--copy", "field:0"]].concat();
     let told = bench.run(&arguments).json();
     assert_eq!(told["verified"], told["written"]);
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
+}
+
+/// Issue 22.30: a silent line is no proof that no drive is on it, so that a search on a serial line needs somebody who says
+/// that there is none. Other commands go on, as scripts know them.
+#[test]
+fn a_search_without_a_terminal_needs_the_word_that_no_drive_is_there() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&[]) else { return };
+    bench
+        .run(&["find", "hiperface", "--link", &encoder.url, "--json"])
+        .fails(2, &["--only-master", "nothing was sent"]);
+    bench.run(&["find", "hiperface", "--link", "tcp:127.0.0.1:9"]).fails(2, &["--only-master", "nothing was sent"]);
+    assert_eq!(encoder.requests(), [""; 0]);
+    assert_eq!(bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json()["device"], "hiperface");
+    bench.run(&["identify", "biss", "--only-master", "--link", "sim:"]).fails(2, &["--only-master"]);
+}
+
+/// Issue 22.9: another type is named, and refused without a permit of its own.
+#[test]
+fn a_profile_of_another_type_needs_a_permit_of_its_own() {
+    let bench = Bench::new();
+    let file = profile(&bench);
+    let Some(encoder) = bench.encoder(&["--serial", "XX9999999", "--type", "0x32"]) else { return };
+    let restore = ["restore", &file, "--allow-other-device", "--copy", "field:0", "--link", &encoder.url, "--json"];
+    for consent in ["--yes", "--dry-run"] {
+        let ran = bench.run(&[&restore[..], &[consent]].concat());
+        ran.fails(1, &["37h", "32h", "--allow-other-type"]);
+    }
+    let allowed = [&restore[..], &["--allow-other-type"]].concat();
+    let dry = bench.run(&[&allowed[..], &["--dry-run"]].concat());
+    assert!(dry.err.contains("37h") && dry.err.contains("32h"), "{dry:?}");
+    assert_eq!(encoder.writes(), [""; 0]);
+    let told = bench.run(&[&allowed[..], &["--yes"]].concat()).json();
+    assert_eq!((&told["verified"], &told["redo"]), (&told["written"], &json!(["commutation"])));
 }
 
 #[test]

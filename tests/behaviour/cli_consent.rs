@@ -11,7 +11,8 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     if python("master.py").is_none() {
         return;
     }
-    let arguments = ["write", "hiperface", "field:0@1", "16", "--link", &encoder.url];
+    // On a terminal it is asked for a drive as well (issue 22.30), unless that was said.
+    let arguments = ["write", "hiperface", "field:0@1", "16", "--only-master", "--link", &encoder.url];
     for no in ["n\n", "\n", "what?\n"] {
         let ran = asked(&bench, &arguments, no);
         assert_eq!(ran.status, Some(1), "{ran:?}");
@@ -23,6 +24,28 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     let ran = asked(&bench, &arguments, "y\n");
     assert_eq!(ran.status, Some(0), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4B 00 01 01 55 16")]);
+}
+
+/// Issue 22.30: on a terminal it is asked whether a drive is on the line, before the first byte; only a no goes on.
+#[test]
+fn on_a_terminal_a_drive_on_the_line_is_asked_for() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&[]) else { return };
+    if python("master.py").is_none() {
+        return;
+    }
+    let arguments = ["identify", "hiperface", "--link", &encoder.url];
+    for reply in ["yes\n", "y\n", "not sure\n", "\n"] {
+        let ran = asked(&bench, &arguments, reply);
+        assert_eq!(ran.status, Some(1), "{ran:?}");
+        assert!(
+            ran.out.contains("Is a drive or controller connected") && ran.out.contains("Nothing was sent"),
+            "{ran:?}"
+        );
+        assert_eq!(encoder.requests(), [""; 0], "{reply:?}");
+    }
+    let ran = asked(&bench, &arguments, "no\n");
+    assert!(ran.status == Some(0) && ran.out.contains("serial number"), "{ran:?}");
 }
 
 #[test]
@@ -37,12 +60,26 @@ fn values_of_the_mounting_stay_off_another_encoder_unless_told_otherwise() {
     assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
     assert!(bench.read("p.ron").contains("field:0@0+16"));
 
+    // Issue 22.8: two bytes have no known meaning, so that the restore asks for them.
     let restore = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
+    bench.run(&restore).fails(1, &["Data field 0", "--copy", "--leave"]);
+    let dry = bench.run(&[&restore[..], &["--dry-run"]].concat());
+    assert_eq!(dry.json()["operations"], json!([]), "{dry:?}");
+    assert!(dry.err.contains("2 bytes of unknown meaning"), "{dry:?}");
+    let left = bench.run(&[&restore[..], &["--leave", "field:0"]].concat()).json();
+    assert_eq!((&left["written"], &left["redo"]), (&json!(0), &json!([])));
+    bench.run(&[&restore[..], &["--leave", "field:0", "--copy", "field:0"]].concat()).fails(2, &["field:0"]);
+    assert_eq!(encoder.writes(), [""; 0]);
+    let restore = [&restore[..], &["--copy", "field:0"]].concat();
     let ran = bench.run(&restore);
-    assert_eq!(ran.json()["written"], json!(2));
+    assert_eq!((&ran.json()["written"], &ran.json()["redo"]), (&json!(2), &json!(["commutation"])));
     assert!(ran.err.contains("field:0@0+16") && ran.err.contains("--with-mounting"), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4B 00 10 02 55 08 15")]);
-    assert_eq!(bench.run(&[&restore[..], &["--with-mounting"]].concat()).json()["written"], json!(16));
+    // Issue 22.7: with both permits given, what has to be set up anew is said all the more.
+    let ran = bench.run(&[&restore[..], &["--with-mounting"]].concat());
+    assert_eq!(ran.json()["written"], json!(16));
+    assert_eq!(ran.json()["redo"], json!(["commutation", "field:0@0+16"]));
+    assert!(ran.err.contains("Set up again") && ran.err.contains("field:0@0+16"), "{ran:?}");
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
     // Onto its own encoder nothing is held back.
     source.host(&["40 4B 00 00 01 55 00"]);

@@ -142,7 +142,7 @@ fn a_search_is_interrupted() {
     let bench = Bench::new();
     for (query, found) in [("settings=0xE5&address=0x43", false), ("address=0x40", true)] {
         let link = format!("sim:?{query}");
-        let child = bench.program(&["find", "hiperface", "--link", &link]).spawn().unwrap();
+        let child = bench.program(&["find", "hiperface", "--only-master", "--link", &link]).spawn().unwrap();
         sleep(Duration::from_millis(2000));
         signal(&child, "INT");
         let ran = ended(child, Instant::now());

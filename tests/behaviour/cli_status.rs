@@ -15,6 +15,22 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
     Some((ran, line))
 }
 
+/// Issue 22.10: the codes that `status` has taken out of the encoder are in the logbook.
+#[test]
+fn status_codes_are_kept_in_the_logbook() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--status", "1E"]) else { return };
+    assert_eq!(bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).status, Some(0));
+    // Beside the database its journal may hold what is not in it yet.
+    let folders = [bench.path("data"), bench.path("data/encoder-studio")];
+    let files =
+        folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().map(|file| file.unwrap().path());
+    let logbooks = files.filter(|path| path.to_string_lossy().contains("logbook.sqlite"));
+    let text: String =
+        logbooks.map(|path| String::from_utf8_lossy(&std::fs::read(path).unwrap()).into_owned()).collect();
+    assert!(text.contains("1Eh critical encoder temperature"));
+}
+
 #[test]
 fn status_reads_the_whole_queue_and_ends_well_whatever_it_reports() {
     let bench = Bench::new();
@@ -83,6 +99,16 @@ fn the_check_gives_a_verdict_a_line() {
         {"step": "data fields", "verdict": "good", "findings": ["0: 32 bytes, writable, code 0, code required"]},
     ]);
     assert_eq!((&good["ok"], &good["steps"]), (&json!(true), &steps));
+    // Issue 22.11: how good the line was.
+    let quality = &good["line_quality"];
+    assert!(quality["requests"].as_u64().is_some_and(|count| count > 5), "{quality}");
+    assert_eq!(quality["requests"], quality["replies"]);
+    for key in ["retries", "damaged", "silent", "late"] {
+        assert_eq!(quality[key], json!(0), "{key}");
+    }
+    let milliseconds = |key: &str| quality[key].as_f64().unwrap();
+    assert!(milliseconds("answer_ms_median") > 0.0);
+    assert!(milliseconds("answer_ms_median") <= milliseconds("answer_ms_p99"));
     let locked = bench.run(&[&check[..], &["sim:?type=0x11&codes=0:11"]].concat());
     let lines: Vec<&str> = locked.out.lines().collect();
     assert_eq!(

@@ -39,6 +39,10 @@ pub(crate) struct Tap {
     pub(crate) swallow_request: Option<usize>,
     /// The reply to this frame does not come back.
     pub(crate) swallow_reply: Option<usize>,
+    /// Every reply to a request that begins like this is damaged.
+    pub(crate) broken_to: Option<Vec<u8>>,
+    /// No reply to a request that begins like this comes back.
+    pub(crate) mute_to: Option<Vec<u8>>,
     /// Bytes that somebody else sends.
     pub(crate) foreign: VecDeque<u8>,
     /// The link has no speed of its own: a device server.
@@ -56,7 +60,13 @@ impl Tap {
 
     fn hears_nothing(&self) -> bool {
         let Some(last) = self.sent.len().checked_sub(1) else { return false };
-        self.mute_from.is_some_and(|from| last >= from) || self.swallow_reply == Some(last)
+        self.mute_from.is_some_and(|from| last >= from)
+            || self.swallow_reply == Some(last)
+            || self.mute_to.as_ref().is_some_and(|own| self.last_begins(own))
+    }
+
+    fn last_begins(&self, request: &[u8]) -> bool {
+        self.sent.last().is_some_and(|last| last.starts_with(request))
     }
 
     /// How often a command was sent.
@@ -109,10 +119,17 @@ impl ByteLink for TestLink {
             }
             let mut heard = Vec::new();
             self.line.receive(until, &mut heard)?;
-            if heard.is_empty() || !self.tap.lock().unwrap().hears_nothing() {
+            let tap = self.tap.lock().unwrap();
+            if tap.broken_to.as_ref().is_some_and(|own| tap.last_begins(own))
+                && let Some(byte) = heard.last_mut()
+            {
+                *byte ^= 0x10;
+            }
+            if heard.is_empty() || !tap.hears_nothing() {
                 into.append(&mut heard);
                 return Ok(());
             }
+            drop(tap);
             if self.clock.now() >= until {
                 return Ok(());
             }

@@ -1,8 +1,11 @@
 //! Everything there is to see of an encoder, in one job; and access codes that the user names later.
 
-use encoder_studio::device::hiperface::{Sample, Survey};
-use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, StatusCode};
-use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput};
+use encoder_studio::device::check::Verdict;
+use encoder_studio::device::hiperface::check::{Finding, Line, Step};
+use encoder_studio::device::hiperface::{Error, Sample, Survey};
+use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DataFieldStatus, StatusCode};
+use encoder_studio::store::{DeviceKey, Logbook, Store};
+use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
 use crate::support::Desk;
 
@@ -54,4 +57,113 @@ fn a_code_is_noted_without_a_byte_on_the_line_or_in_words() {
     assert_eq!(desk.tap().sent.len(), sent, "nothing is sent");
     let open = survey(&mut desk);
     assert!(open.fields.iter().all(|field| field.bytes.is_some()), "{:?}", open.fields);
+}
+
+/// A second data field beside the name plate.
+fn two_fields() -> Desk {
+    let mut desk = Desk::new("");
+    desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xC8) }).unwrap();
+    desk
+}
+
+fn check(desk: &mut Desk) -> Vec<Line> {
+    match desk.run(HiperfaceJob::Check { restart: false }).unwrap() {
+        HiperfaceOutput::Check(lines) => lines,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Issue 22.11: one field that cannot be read takes nothing else along; the line's troubles are counted.
+#[test]
+fn one_unreadable_field_leaves_the_rest_usable() {
+    // 4Ah on data field 0: damaged each time, or without a reply; and 4Ch, so that not even its status is known.
+    let troubles: [(&str, bool, &[u8]); 3] =
+        [("damaged", true, &[0x40, 0x4A, 0]), ("silent", false, &[0x40, 0x4A, 0]), ("status", false, &[0x40, 0x4C, 0])];
+    for (label, is_broken, request) in troubles {
+        let mut desk = two_fields();
+        let before = desk.session.station().line.quality.clone();
+        assert!(!before.is_troubled() && before.requests > 0 && before.requests == before.replies, "{before:?}");
+        let place = Some(request.to_vec());
+        if is_broken {
+            desk.tap().broken_to = place
+        } else {
+            desk.tap().mute_to = place
+        }
+        let seen = survey(&mut desk);
+        let [unreadable] = &seen.unreadable[..] else { panic!("{label}: {:?}", seen.unreadable) };
+        assert_eq!(unreadable.number, 0, "{label}");
+        assert_eq!(matches!(unreadable.why, Error::Damaged { .. }), is_broken, "{label}");
+        assert_eq!(seen.fields.last().unwrap().bytes, Some(vec![0xFF; 16]), "{label}: the other field is read");
+        assert_eq!(seen.identity.serial.serial_number, "GB0450179");
+        assert!(seen.position.is_some() && seen.counter == Some(0), "{label}");
+        let quality = &seen.line;
+        assert!(quality.is_troubled() && quality.retries > 0, "{label}: {quality:?}");
+        assert_eq!((quality.damaged > 0, quality.silent > 0), (is_broken, !is_broken), "{label}: {quality:?}");
+        // The device check goes to its end, and names the field and the line.
+        let lines = check(&mut desk);
+        let of = |step| lines.iter().find(|line| line.step == step).unwrap();
+        assert_eq!(of(Step::DataFields).verdict, Verdict::Bad, "{label}");
+        let names = |own: &Finding| matches!(own, Finding::FieldUnreadable { number: 0, .. });
+        assert!(of(Step::DataFields).findings.iter().any(names), "{label}");
+        assert_eq!(of(Step::Line).verdict, Verdict::Attention, "{label}");
+        // What is kept for years is whole or not at all.
+        assert!(desk.save().is_err(), "{label}");
+    }
+}
+
+/// An encoder that does not answer any more is no encoder with an unreadable field.
+#[test]
+fn an_encoder_that_falls_silent_ends_the_survey() {
+    let mut desk = two_fields();
+    let sent = desk.tap().sent.len();
+    survey(&mut desk);
+    let read_data = desk.tap().sent.iter().skip(sent).position(|frame| frame[1] == 0x4A).unwrap();
+    let sent = desk.tap().sent.len();
+    desk.tap().mute_from = Some(sent + read_data);
+    assert!(desk.run(HiperfaceJob::Survey).is_err());
+}
+
+/// Codes that the logbook has of the virtual encoder, the newest reading first.
+fn noted(desk: &Desk) -> Vec<String> {
+    let path = Store::at(desk.folder.path()).logbook_path();
+    let key = DeviceKey {
+        kind: "hiperface".to_owned(),
+        device_type: "37h".to_owned(),
+        serial_number: "GB0450179".to_owned(),
+        is_virtual: true,
+    };
+    match path.exists() {
+        true => Logbook::open(&path).unwrap().statuses(&key, 9).unwrap().into_iter().map(|own| own.codes).collect(),
+        false => Vec::new(),
+    }
+}
+
+/// Issue 22.10: 50h takes a code out of the encoder, so that it is in the logbook before anything shows it: however it was
+/// read, and also where the job that read it fails.
+#[test]
+fn a_status_code_that_was_read_is_in_the_logbook() {
+    let mut desk = Desk::new("");
+    let report = |desk: &Desk, codes: &[StatusCode]| {
+        codes.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().report(*code))
+    };
+    report(&desk, &[StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW]);
+    assert!(matches!(desk.run(HiperfaceJob::Status), Ok(HiperfaceOutput::Status(codes)) if codes.len() == 2));
+    let both = "1Eh critical encoder temperature, 08h counter overflow";
+    assert_eq!(noted(&desk), [both], "who it is was asked for it");
+    desk.run(HiperfaceJob::Status).unwrap();
+    assert_eq!(noted(&desk).len(), 1, "nothing was read");
+    // A survey that fails after the queue was read.
+    report(&desk, &[StatusCode::new(0x20)]);
+    let sent = desk.tap().sent.len();
+    desk.tap().mute_from = Some(sent + 1);
+    assert!(desk.run(HiperfaceJob::Survey).is_err());
+    assert_eq!(noted(&desk)[0], "20h singleturn position unreliable");
+    assert_eq!(desk.session.station().codes_met, [StatusCode::new(0x20)], "it is told as well");
+    // With a sample; a code that stays is kept once a minute, not with each sample.
+    desk.tap().mute_from = None;
+    for _ in 0..5 {
+        report(&desk, &[StatusCode::TEMPERATURE]);
+        desk.session.sample().unwrap();
+    }
+    assert_eq!(noted(&desk)[..2], ["1Eh critical encoder temperature", "20h singleturn position unreliable"]);
 }

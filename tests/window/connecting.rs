@@ -1,6 +1,7 @@
 //! The connection dialog: a form that refuses what cannot be, and the search for an encoder whose settings nobody knows.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use encoder_studio::app::connect::{
     Action as Connect, BissForm, BissWay, Connect as Dialog, LinkForm, LinkKind, Search, is_missing,
@@ -11,7 +12,8 @@ use encoder_studio::app::{Action, FileQuestion, Language, Tab};
 use encoder_studio::device::hiperface::find::FindOptions;
 use encoder_studio::units::{Baud, Parity};
 
-use crate::support::{Desk, PORT};
+use crate::support::{Desk, PORT, SERVERS, asks_for_drive};
+use crate::texts;
 
 fn dialog(desk: &Desk) -> &Dialog {
     desk.studio.connect.as_ref().expect("the dialog is open")
@@ -25,6 +27,63 @@ fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
     let mut form = LinkForm::default();
     change(&mut form);
     desk.connect(Connect::Edit(Box::new(form)));
+}
+
+/// Issue 22.30: before the first byte on a serial line it is asked whether a drive is on it, which may be silent since it
+/// read the encoder at power-up. Yes or not sure: nothing is opened, searched or polled.
+#[test]
+fn a_drive_on_the_line_is_asked_for_before_the_first_byte() {
+    let links = [format!("serial:{PORT}"), format!("tcp:{}", SERVERS[0].0)];
+    for link in links {
+        let mut desk = Desk::fresh("");
+        desk.studio.begin(Some(link.parse().unwrap()), None);
+        assert!(asks_for_drive(&desk.studio), "{link}");
+        texts::check_all(&desk.studio);
+        desk.settle();
+        assert_eq!(desk.wire().sent(), 0, "nothing is sent while it is asked");
+        desk.studio.act(Action::Escape);
+        desk.settle();
+        let Phase::Lost(why) = desk.phase() else { panic!("{:?}", desk.phase()) };
+        assert_eq!(why.id(), "session.maybe_drive");
+        desk.ask(Hiperface::Poll(Some(Duration::ZERO)));
+        desk.ask(Hiperface::Read);
+        desk.settle();
+        assert_eq!(desk.wire().sent(), 0, "{link}");
+        // Another connection is another question.
+        let id = desk.encoder().session.id;
+        desk.studio.act(Action::Hiperface(id, Hiperface::Reconnect));
+        assert!(asks_for_drive(&desk.studio));
+        desk.studio.act(Action::Confirm);
+        desk.until_read();
+        assert!(desk.wire().sent() > 0 && desk.studio.question.is_none());
+    }
+    // A virtual encoder has no drive beside it.
+    let mut desk = Desk::fresh("");
+    desk.studio.begin(None, None);
+    assert!(desk.studio.question.is_none());
+    desk.until_read();
+}
+
+/// Issue 22.30: a search is one more way to the first byte. What it finds is opened without another question.
+#[test]
+fn a_search_asks_for_a_drive_before_its_first_byte() {
+    let mut desk = Desk::fresh("");
+    desk.connect(Connect::Open);
+    edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
+    desk.studio.act(Action::Connect(Connect::Search(FindOptions::default())));
+    assert!(asks_for_drive(&desk.studio) && dialog(&desk).search.is_none());
+    desk.studio.act(Action::Escape);
+    desk.settle();
+    assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("session.maybe_drive"));
+    assert_eq!((desk.wire().sent(), dialog(&desk).search.is_none()), (0, true));
+    desk.studio.act(Action::Connect(Connect::Search(FindOptions::default())));
+    desk.studio.act(Action::Confirm);
+    desk.until("it has found one", |studio| {
+        studio.connect.as_ref().and_then(|own| own.search.as_ref()).is_some_and(|own| !own.found.is_empty())
+    });
+    desk.studio.act(Action::Connect(Connect::Choose(0)));
+    assert!(desk.studio.question.is_none());
+    desk.until_read();
 }
 
 /// An entry that cannot be used.

@@ -4,6 +4,7 @@ use std::fs;
 use std::time::Duration;
 
 use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
+use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Desk as Of, JobEnd, Language, Severity, Studio, Text, recorder};
 use encoder_studio::protocol::hiperface::CodeNumber;
@@ -54,10 +55,14 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     assert!(desk.encoder().session.line().unwrap().running().unwrap().stopping);
     desk.wire().release();
     desk.until("it has ended", failed);
-    let ReviewState::Failed { texts, begun: true } = &desk.review().state else { panic!() };
+    let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
     // The exchange that was on its way is completed; nothing after it is begun.
     assert_eq!(texts[0], Text::new("write.cancelled").with("done", 2).with("planned", 4));
     assert_eq!(texts[1].id(), "write.backup");
+    // Issue 22.14: the list of operations stays, with those that are done.
+    let sheet = desk.studio.shown().unwrap().sheet().unwrap();
+    assert!(matches!(sheet.stage, Stage::Failed { begun: true, done: 2, .. }), "{:?}", sheet.stage);
+    assert_eq!(sheet.lines.len(), 4);
     let backups = fs::read_dir(desk.outside.path("data/backups/hiperface/GB0450179")).unwrap();
     let backup = backups.map(|entry| entry.unwrap().path()).next().unwrap();
     assert!(texts[1].words(Language::German).contains(&backup.display().to_string()));
@@ -95,7 +100,7 @@ fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
     desk.wire().unplug();
     desk.wire().release();
     desk.until("it has ended", failed);
-    let ReviewState::Failed { texts, begun: true } = &desk.review().state else { panic!() };
+    let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
     let words = texts[0].words(Language::English);
     assert!(texts[0].id() == "write.interrupted" && words.contains('1') && words.contains('3'), "{words}");
     assert!(lost(&desk.studio));

@@ -3,13 +3,14 @@
 use std::fs;
 
 use encoder_studio::app::diverged::Resolve;
-use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
+use encoder_studio::app::review::{Permit, Sheet, Stage};
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, FileQuestion, Severity};
+use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
 use encoder_studio::profile::Document;
 use encoder_studio::store::read_text;
 
-use crate::support::{Desk, OTHER_PORT};
+use crate::support::{Desk, OTHER_PORT, is_review};
 
 fn saved() -> (Desk, std::path::PathBuf) {
     let mut desk = Desk::begun("");
@@ -189,13 +190,149 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
     assert_eq!(desk.encoder().session.id, other);
     desk.until_ready();
     let mut options = desk.review().options().unwrap();
-    options.allow_other_device = true;
+    (options.allow_other_device, options.allow_other_type) = (true, true);
+    options.copy.insert(0, true);
     desk.ask(Hiperface::PlanAgain(options));
     desk.until_planned();
     desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.outside.wire(OTHER_PORT).field(0)[0], b'X', "the edit of the profile is in it");
     assert_eq!(desk.wire().wear(), 0);
+}
+
+/// The sheet of the review that is shown.
+fn sheet(desk: &Desk) -> Sheet {
+    desk.studio.shown().unwrap().sheet().unwrap()
+}
+
+/// A profile with a commutation offset beside the review for another encoder, where every permit is given.
+fn onto_another(desk: &mut Desk, path: &std::path::Path) {
+    desk.open(&format!("serial:{OTHER_PORT}"));
+    desk.until_read();
+    let other = desk.encoder().session.id;
+    open(desk, path);
+    desk.put(0, 0, b"CO1");
+    desk.put(0, 20, b"?");
+    desk.ask(Hiperface::WriteInto(other));
+    desk.until("it is refused", |studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. })));
+    desk.until_ready();
+    allow_another(desk);
+    desk.until_planned();
+}
+
+/// Allows another serial number, then another type: it is an SKS36.
+fn allow_another(desk: &mut Desk) {
+    desk.toggle(Permit::OtherDevice);
+    desk.until("it is refused", |studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. })));
+    desk.until_ready();
+    desk.toggle(Permit::OtherType);
+}
+
+/// Issue 22.7: with both permits given, what has to be set up anew stands in the review, at its end, and where it was cut
+/// off.
+#[test]
+fn what_comes_from_another_mounting_is_named_until_the_end() {
+    let (mut desk, path) = saved();
+    onto_another(&mut desk, &path);
+    let before = sheet(&desk);
+    assert!(before.redo.is_none() && before.lines.is_empty(), "nothing of it is written yet");
+    desk.toggle(Permit::Mounting);
+    desk.until_planned();
+    let with = sheet(&desk);
+    let words = with.redo.clone().unwrap().words(Language::English);
+    assert!(words.contains("commutation") && words.contains("field:0@0+3"), "{words}");
+    assert!(matches!(with.stage, Stage::Ready(_)));
+    desk.outside.wire(OTHER_PORT).hold_at(0x4B, 1);
+    desk.write_as_shown();
+    desk.outside.wire(OTHER_PORT).wait_until_held();
+    assert_eq!(sheet(&desk).redo, with.redo);
+    desk.outside.wire(OTHER_PORT).unplug();
+    desk.outside.wire(OTHER_PORT).release();
+    desk.until("it is cut off", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Failed { begun: true, .. }))
+    });
+    let cut = sheet(&desk);
+    assert_eq!((cut.redo, cut.lines.len()), (with.redo, with.lines.len()));
+    // Written to its end.
+    let (mut desk, path) = saved();
+    onto_another(&mut desk, &path);
+    desk.toggle(Permit::Mounting);
+    desk.until_planned();
+    desk.write_as_shown();
+    desk.until_written();
+    assert!(matches!(sheet(&desk).stage, Stage::Done { .. }) && sheet(&desk).redo.is_some());
+}
+
+/// Issue 22.8: a field with bytes of unknown meaning is a question, and left unless it is answered otherwise.
+#[test]
+fn bytes_of_unknown_meaning_are_a_question_of_the_review() {
+    let (mut desk, path) = saved();
+    onto_another(&mut desk, &path);
+    let [question] = &sheet(&desk).questions[..] else { panic!() };
+    assert_eq!((question.permit, question.is_on), (Permit::Copy(0), false));
+    for text in [&question.what, &question.yes, &question.no] {
+        crate::texts::check(text);
+    }
+    desk.toggle(Permit::Copy(0));
+    desk.until_planned();
+    let copied = sheet(&desk);
+    assert!(copied.questions[0].is_on && !copied.lines.is_empty());
+    let words = copied.redo.unwrap().words(Language::English);
+    assert!(words.contains("commutation"), "{words}");
+    desk.toggle(Permit::Copy(0));
+    desk.until_planned();
+    assert!(sheet(&desk).lines.is_empty() && sheet(&desk).redo.is_none());
+}
+
+/// Issue 22.9: another type of encoder is named, and needs a permit of its own.
+#[test]
+fn another_type_of_encoder_needs_a_permit_of_its_own() {
+    let (mut desk, path) = saved();
+    desk.open(&format!("serial:{OTHER_PORT}"));
+    desk.until_read();
+    let other = desk.encoder().session.id;
+    open(&mut desk, &path);
+    desk.put(0, 0, b"X");
+    desk.ask(Hiperface::WriteInto(other));
+    let refused = |studio: &Studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. }));
+    desk.until("it is refused", refused);
+    desk.until_ready();
+    desk.toggle(Permit::OtherDevice);
+    desk.until("it is refused all the same", refused);
+    desk.until_ready();
+    let ReviewState::Failed { texts, .. } = &desk.review().state else { panic!() };
+    assert_eq!(texts[0].id(), "plan.other_type");
+    desk.toggle(Permit::OtherType);
+    desk.until_planned();
+    assert!(sheet(&desk).warnings.iter().any(|text| text.id() == "review.other_type"));
+}
+
+/// Issue 22.14: what was read can be saved although the line is lost; the file says that it is not of now.
+#[test]
+fn what_was_read_is_saved_when_the_line_is_lost() {
+    let mut desk = Desk::at_port("");
+    let fields = desk.encoder().staged.device().to_vec();
+    desk.put(0, 0, b"X");
+    desk.wire().unplug();
+    desk.until("it is lost", crate::losing::lost);
+    assert!(desk.studio.shown().unwrap().is_savable());
+    let path = desk.outside.path("lost.ron");
+    desk.ask(Hiperface::AskSave);
+    assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
+    desk.ask(Hiperface::Save(path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    let document = Document::parse(&read_text(&path).unwrap()).unwrap();
+    assert!(document.note.as_ref().is_some_and(|note| note.contains("did not answer")), "{:?}", document.note);
+    let profile = document.body.into_hiperface().unwrap();
+    assert_eq!((profile.fields, &profile.identity.serial_number[..]), (fields, "GB0450179"), "without the edit");
+    let told = |studio: &Studio| studio.services.log.notices().last().map(|own| own.texts.clone()).unwrap_or_default();
+    desk.until("it is told", |studio| told(studio).iter().any(|text| text.id() == "session.saved_as_read"));
+    assert!(told(&desk.studio).iter().any(|text| text.id() == "session.saved_without"));
+    // Where nothing was read, there is nothing to save.
+    let mut desk = Desk::fresh("");
+    desk.open("serial:/dev/nothing");
+    desk.until("it cannot be opened", crate::losing::lost);
+    assert!(!desk.studio.shown().unwrap().is_savable());
 }
 
 /// A typed path replaces nothing without a question.

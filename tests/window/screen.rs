@@ -11,7 +11,7 @@ use encoder_studio::app::{Action, Language, Look, Studio, Tab, Text};
 use encoder_studio::link::LinkUrl;
 use encoder_studio::ui::{Window, install_fonts};
 
-use crate::support::{LONG, Outside, log};
+use crate::support::{LONG, Outside, asks_for_drive, log, only_master};
 use crate::texts;
 
 /// The window as the program shows it.
@@ -33,6 +33,7 @@ impl Screen {
     pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
         let mut studio = outside.studio();
         studio.begin(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
+        only_master(&mut studio);
         Self::of(outside, studio, size)
     }
 
@@ -101,6 +102,7 @@ impl Screen {
     pub(crate) fn act(&mut self, action: Action) {
         self.studio().mailbox().send(action);
         self.steps();
+        self.only_master();
     }
 
     /// Asks something of the encoder that is shown.
@@ -162,6 +164,15 @@ impl Screen {
         assert!(self.is_enabled(id), "{id} is disabled");
         self.button(id).click();
         self.steps();
+        self.only_master();
+    }
+
+    /// Answers the question about a drive on the line, where it is asked: there is none in these tests.
+    fn only_master(&mut self) {
+        if asks_for_drive(self.studio()) {
+            self.studio().mailbox().send(Action::Confirm);
+            self.steps();
+        }
     }
 
     pub(crate) fn key(&mut self, key: Key) {

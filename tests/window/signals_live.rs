@@ -1,6 +1,6 @@
 //! The virtual encoder without drawing: held, stopped, set anew and started while something else is under way.
 
-use encoder_studio::app::signals::{Action as Signals, Origin, SourceAction};
+use encoder_studio::app::signals::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::app::{Action, Desk as Of, Studio};
 use encoder_studio::signal::history::Flags;
 use encoder_studio::signal::quality::Family;
@@ -33,6 +33,27 @@ fn what_passed_while_it_was_held_is_a_gap_in_the_scope() {
     assert!(after.contains(&count) && !breaks.contains(&count), "{count}: {after:?}");
 }
 
+/// Issue 22.13: how many periods a turn has is asked, not assumed: until then there is no speed and no second of arc. The
+/// periods of the virtual encoder say nothing about a capture.
+#[test]
+fn periods_are_not_assumed() {
+    let mut desk = Desk::fresh("");
+    desk.signals(Signals::Example(Example::Healthy));
+    desk.until("it is measured", |studio| studio.signals.reading().is_none() && studio.signals.measurement().is_some());
+    let judged = |studio: &Studio| studio.signals.measurement().and_then(|own| own.judge.periods);
+    assert_eq!((desk.studio.signals.periods(), judged(&desk.studio)), (None, None));
+    desk.signals(Signals::SetPeriods(512));
+    desk.signals(Signals::Example(Example::WithErrors));
+    desk.until("it is measured", |studio| studio.signals.reading().is_none() && studio.signals.measurement().is_some());
+    assert_eq!(desk.studio.signals.periods(), Some(512), "what was typed stays");
+    desk.signals(Signals::Source(SourceAction::Start));
+    assert!(desk.studio.signals.periods().is_some());
+    desk.signals(Signals::Source(SourceAction::Stop));
+    desk.signals(Signals::Example(Example::Healthy));
+    desk.until("it is measured", |studio| studio.signals.reading().is_none() && studio.signals.measurement().is_some());
+    assert_eq!(desk.studio.signals.periods(), None);
+}
+
 #[test]
 fn periods_of_the_source_count_for_what_is_shown_also_while_it_stands() {
     let mut desk = Desk::fresh("");
@@ -45,10 +66,10 @@ fn periods_of_the_source_count_for_what_is_shown_also_while_it_stands() {
     desk.signals(Signals::SetPeriods(16));
     desk.until("it is judged again", |studio| judged(studio) == Some(16));
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, -1.0)));
-    assert_eq!(desk.studio.signals.periods(), 16, "what is refused changes nothing");
+    assert_eq!(desk.studio.signals.periods(), Some(16), "what is refused changes nothing");
     desk.signals(Signals::Source(SourceAction::Reset));
     assert_eq!(desk.studio.signals.source().settings().periods, 1024.0);
-    assert_eq!(desk.studio.signals.periods(), 1024);
+    assert_eq!(desk.studio.signals.periods(), Some(1024));
     desk.until("it is judged again", |studio| judged(studio) == Some(1024));
 }
 

@@ -100,6 +100,21 @@ fn the_figure_tells_its_value_and_is_shown_corrected() {
     assert!(value(&screen).contains("0,415 … 0,558 V"), "{}", value(&screen));
 }
 
+/// Issue 22.14: that a capture could not be read stands on every page of the tab.
+#[test]
+fn a_failed_capture_is_said_on_every_page() {
+    let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
+    screen.act(Action::ShowTab(Tab::Signals));
+    let path = screen.outside.path("broken.csv");
+    std::fs::write(&path, "t,sin,cos\n0,1,2\n1,oops,3\n").unwrap();
+    screen.act(Action::Open(path));
+    screen.until("it is refused", |studio| studio.signals.problem().is_some());
+    for page in ["page.scope", "page.quality", "page.error", "page.synchronise", "page.input_circuit"] {
+        screen.click(page);
+        assert!(screen.shows("row 3, column 2"), "{page}");
+    }
+}
+
 #[test]
 fn periods_are_typed_and_refused_in_words() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
@@ -120,12 +135,12 @@ fn periods_are_typed_and_refused_in_words() {
         screen.key(Key::Enter);
     };
     type_in(&mut screen, "512");
-    assert_eq!(screen.studio().signals.periods(), 512);
+    assert_eq!(screen.studio().signals.periods(), Some(512));
     type_in(&mut screen, "0");
-    assert_eq!(screen.studio().signals.periods(), 512);
+    assert_eq!(screen.studio().signals.periods(), Some(512));
     assert!(screen.shows("\"0\" is no whole number from 1 to 65536."));
     type_in(&mut screen, "64");
-    assert_eq!(screen.studio().signals.periods(), 64);
+    assert_eq!(screen.studio().signals.periods(), Some(64));
     assert!(!screen.shows("is no whole number"));
 }
 

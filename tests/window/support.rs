@@ -7,8 +7,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Review, ReviewState};
+use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Patience, Severity, Studio, World, connect};
+use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, World, connect};
 use encoder_studio::device::biss::Way;
 use encoder_studio::device::hiperdrive::Found;
 use encoder_studio::device::hiperface::Station;
@@ -214,11 +215,13 @@ impl Desk {
 
     pub(crate) fn open(&mut self, link: &str) {
         self.studio.begin(Some(link.parse::<LinkUrl>().unwrap()), None);
+        only_master(&mut self.studio);
     }
 
     pub(crate) fn act(&mut self, action: Action) {
         let began = Instant::now();
         self.studio.act(action);
+        only_master(&mut self.studio);
         assert!(began.elapsed() < LONG, "an action made the window wait");
     }
 
@@ -334,6 +337,12 @@ impl Desk {
         self.ask(Hiperface::Write(id));
     }
 
+    /// Gives a permit in the review, or takes it back.
+    pub(crate) fn toggle(&mut self, permit: Permit) {
+        let session = self.encoder().session.id;
+        self.act(Action::Review(session, ReviewAction::Toggle(permit)));
+    }
+
     /// Reviews and writes what is edited.
     #[track_caller]
     pub(crate) fn write(&mut self) {
@@ -353,6 +362,19 @@ impl Desk {
     pub(crate) fn times_told(&self, id: &str) -> usize {
         self.told(Severity::Note).iter().filter(|own| **own == id).count()
     }
+}
+
+/// Answers the question about a drive on the line, where it is asked: there is none in these tests. What the question does
+/// is the subject of `connecting`.
+pub(crate) fn only_master(studio: &mut Studio) {
+    if asks_for_drive(studio) {
+        studio.act(Action::Confirm);
+    }
+}
+
+/// It is asked whether a drive is on the line.
+pub(crate) fn asks_for_drive(studio: &Studio) -> bool {
+    studio.question.as_ref().is_some_and(|question| question.text.id() == "question.drive")
 }
 
 pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) -> bool {

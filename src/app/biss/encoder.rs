@@ -256,6 +256,7 @@ impl Encoder {
         self.record.forget();
         self.session.backups = None;
         self.session.writes = None;
+        self.session.statuses.clear();
         self.seen.clear();
         self.read_after.clear();
         self.review = None;

@@ -63,8 +63,8 @@ impl Kind for Biss {
         explain::biss::loss(error)
     }
 
-    fn has_begun(error: &JobError) -> bool {
-        matches!(error, JobError::Interrupted { .. })
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
     }
 }
 

@@ -33,7 +33,7 @@ impl Reviewed for Biss {
         match permit {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
             Permit::Mounting => Some(&mut options.with_mounting),
-            Permit::Recreate => None,
+            Permit::OtherType | Permit::Recreate | Permit::Copy(_) => None,
         }
     }
 
@@ -47,6 +47,10 @@ impl Reviewed for Biss {
 
     fn leaves_mounting(prepared: &Prepared) -> bool {
         !prepared.mounting_left.is_empty()
+    }
+
+    fn redo(prepared: &Prepared) -> Vec<Text> {
+        prepared.mounting_written.iter().map(explain::plain).collect()
     }
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {

@@ -5,11 +5,12 @@ use crossbeam_channel::Receiver;
 use super::{Action, Connect, Search, list_ports};
 use crate::app::action::{Done, FileQuestion};
 use crate::app::leaving::Leaver;
+use crate::app::question::{Question, Then};
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
 use crate::app::{AnyDevice, Text};
 use crate::device::hiperface::find::FindOptions;
-use crate::worker::hiperface::Hiperface;
+use crate::worker::hiperface::{Hiperface, may_have_other_master};
 
 impl Studio {
     pub(in crate::app) fn act_connect(&mut self, action: Action) {
@@ -94,7 +95,19 @@ impl Studio {
         }
     }
 
+    /// Searches the line of the form; where a drive may be on it, that is asked before.
     fn search_for(&mut self, options: FindOptions) {
+        match self.connect.as_ref().map(Connect::url) {
+            Some(Ok(url)) if may_have_other_master(&url) => {
+                self.question = Some(Question::other_master(&url, Then::Search(options)));
+            }
+            Some(_) => self.search_confirmed(options),
+            None => {}
+        }
+    }
+
+    /// The user says that no drive is on the line of the form.
+    pub(in crate::app) fn search_confirmed(&mut self, options: FindOptions) {
         let Some(connect) = &mut self.connect else { return };
         let url = match connect.url() {
             Ok(url) => url,
@@ -137,6 +150,6 @@ impl Studio {
         let Some(search) = self.connect.as_ref().and_then(|connect| connect.search.as_ref()) else { return };
         let Some(url) = search.found.get(at).map(|found| search.link_to(found)) else { return };
         self.close_dialog();
-        self.open_link(Tab::Hiperface, url);
+        self.open_found(url);
     }
 }

@@ -240,7 +240,10 @@ impl Search {
                     self.end = explain::hiperface::job(&error).into_iter().next();
                 }
                 Event::Lost(error) => self.end = Some(explain::link(&error)),
-                Event::Started(_) | Event::Progress(..) | Event::Remark(Remark::Codes(_)) | Event::PollFailed(_) => {}
+                Event::Started(_)
+                | Event::Progress(..)
+                | Event::Remark(Remark::Codes(_) | Remark::Line(_))
+                | Event::PollFailed(_) => {}
             }
         }
         if dead && self.end.is_none() {

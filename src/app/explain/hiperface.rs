@@ -13,7 +13,7 @@ mod words;
 use std::path::Path;
 
 pub use change::{change, staged};
-pub use check::check;
+pub use check::{check, line_quality};
 pub use command::command;
 pub use damage::damage;
 pub use doing::doing;
@@ -29,9 +29,9 @@ use super::{link, not_begun, phrase};
 use crate::app::Text;
 use crate::device::hiperface::Error;
 use crate::device::hiperface::write::{Interrupted, Written};
-use crate::profile::hiperface::PlanError;
+use crate::profile::hiperface::{PlanError, Redo, UnknownField};
 use crate::protocol::hiperface::StatusCode;
-use crate::worker::hiperface::{ChangeKind, JobError};
+use crate::worker::hiperface::{ChangeKind, JobError, OtherType};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
@@ -141,6 +141,32 @@ pub fn encoder(error: &Error) -> Text {
             .with_text("got", phrase(got)),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
+}
+
+/// What has to be set up anew.
+pub fn redo(redo: &Redo) -> Text {
+    match redo {
+        Redo::Commutation => Text::new("redo.commutation"),
+        Redo::Value(range) => phrase(&range.to_string()),
+    }
+}
+
+/// A data field with bytes of unknown meaning that would go onto another encoder.
+pub fn unknown_field(field: &UnknownField) -> Text {
+    let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
+    Text::new(id).with("field", field.field).with("bytes", field.bytes)
+}
+
+/// Fields that a write created and that are not deleted where it is undone; `None` where there are none.
+pub fn created_left(fields: &[u8]) -> Option<Text> {
+    let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
+    (!fields.is_empty()).then(|| Text::new("review.created_left").with("fields", numbers.join(", ")))
+}
+
+/// A profile that goes onto another type of encoder.
+pub fn other_type(types: OtherType) -> Text {
+    let name = |byte: u8| format!("{byte:02X}h");
+    Text::new("review.other_type").with("profile", name(types.profile)).with("device", name(types.device))
 }
 
 /// A plan that cannot be made.

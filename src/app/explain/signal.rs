@@ -45,6 +45,10 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
         CaptureError::NotFinite { row, column, text: found } => {
             text("signal.not_finite").with("row", row).with("column", column).with("text", found)
         }
+        CaptureError::NoValues { left_out, rows, row } => {
+            text("signal.no_values").with("left_out", left_out).with("rows", rows).with("row", row)
+        }
+        CaptureError::NoSampleClock { row } => text("signal.no_sample_clock").with("row", row),
     }
 }
 

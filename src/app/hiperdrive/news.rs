@@ -85,8 +85,8 @@ impl Kind for Hiperdrive {
         explain::hiperdrive::loss(error)
     }
 
-    fn has_begun(error: &JobError) -> bool {
-        matches!(error, JobError::Interrupted { .. })
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
     }
 }
 

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use super::action::Action;
 use super::encoder::Encoder;
-use super::rules;
 use super::write::with_options;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
@@ -118,7 +117,7 @@ impl Encoder {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
             // A profile is a text: what it says about protection does not protect it.
             (Phase::Offline, _) | (_, None) => Ok(()),
-            (_, Some(image)) => rules::edit(image),
+            (_, Some(image)) => self.why_not_edited(image).map_or(Ok(()), Err),
         };
         let allowed = allowed.and_then(|()| {
             let put = self.staged.put(field, address, bytes);

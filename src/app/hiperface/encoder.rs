@@ -8,12 +8,13 @@ use super::meaning::Meaning;
 use super::record::Record;
 use super::rest::RestAsked;
 use super::review::Review;
+use super::rules;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::device::hiperface::check;
-use crate::device::hiperface::{Identity, Sample, Survey};
+use crate::device::hiperface::{Identity, LineQuality, Sample, Survey, UnreadableField};
 use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Item};
@@ -30,6 +31,10 @@ pub struct Encoder {
     pub staged: Staged,
     /// The error queue as it was last read, with what the encoder announced since; `None`: never read.
     pub codes: Option<Vec<StatusCode>>,
+    /// Data fields that could not be read, for another reason than their access code: why.
+    pub unreadable: BTreeMap<u8, Text>,
+    /// How good the line is.
+    pub line_quality: LineQuality,
     /// The last device check.
     pub check: Option<Vec<check::Line>>,
     /// The counter as last read.
@@ -70,6 +75,8 @@ impl Encoder {
             identity: None,
             staged: Staged::default(),
             codes: None,
+            unreadable: BTreeMap::new(),
+            line_quality: LineQuality::default(),
             check: None,
             counter: None,
             position_set: None,
@@ -159,12 +166,14 @@ impl Encoder {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.hiperface()?.clone();
         profile.fields = self.staged.wanted();
+        // What was typed may be a commutation offset as well.
+        profile.mark_mounting();
         Some(profile)
     }
 
     /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
-        let Survey { identity, codes, fields, counter, position } = survey;
+        let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, it may be any of its type; the same memory makes it as good as the same.
         let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
@@ -182,6 +191,8 @@ impl Encoder {
         self.staged.refresh(fields);
         self.counter = counter;
         self.codes = Some(codes);
+        self.line_quality = line;
+        self.take_unreadable(&unreadable, services);
         if let Some(position) = position {
             self.add_samples(vec![position], 0);
         }
@@ -193,6 +204,25 @@ impl Encoder {
         }
         self.tell_of_code(services);
         self.list_backups(services);
+    }
+
+    /// Says which data fields could not be read, and why.
+    fn take_unreadable(&mut self, fields: &[UnreadableField], services: &mut Services) {
+        let why = |own: &UnreadableField| {
+            let text = Text::new("session.field_unreadable").with("field", own.number);
+            text.with_text("why", explain::hiperface::encoder(&own.why))
+        };
+        let before = std::mem::take(&mut self.unreadable);
+        self.unreadable = fields.iter().map(|own| (own.number, why(own))).collect();
+        if !self.unreadable.is_empty() && self.unreadable != before {
+            let texts = self.unreadable.values().cloned().collect();
+            services.tell(Severity::Warning, texts, Some(&self.session.name()));
+        }
+    }
+
+    /// Why the bytes of a field cannot be edited; `None`: they can.
+    pub fn why_not_edited(&self, field: &FieldImage) -> Option<Text> {
+        self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
 
     /// Records what was sampled, or read on its own.
@@ -231,11 +261,13 @@ impl Encoder {
         self.session.title = None;
         self.staged.clear();
         self.check = None;
+        self.unreadable.clear();
         self.position_set = None;
         self.analogue.clear();
         self.record.forget();
         self.session.backups = None;
         self.session.writes = None;
+        self.session.statuses.clear();
         self.access_codes.clear();
         self.tried_code = None;
         self.commutation = Commutation::default();

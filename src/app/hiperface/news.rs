@@ -65,8 +65,8 @@ impl Kind for Hiperface {
         explain::hiperface::loss(error)
     }
 
-    fn has_begun(error: &JobError) -> bool {
-        matches!(error, JobError::Interrupted { .. })
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
     }
 }
 
@@ -195,6 +195,7 @@ impl OnLine for Encoder {
     fn remarked(&mut self, remark: Remark, services: &mut Services) {
         match remark {
             Remark::Codes(codes) => self.announced(codes, services),
+            Remark::Line(quality) => self.line_quality = quality,
             Remark::Found(_) => {}
         }
     }

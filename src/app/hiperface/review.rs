@@ -1,10 +1,10 @@
 //! The review of a write into a HIPERFACE encoder: what its plan needs, warns of and costs.
 
-use crate::app::review::{self, OpWords, Permit, Reviewed};
+use crate::app::review::{self, OpWords, Permit, Question, Reviewed};
 use crate::app::{Text, explain};
 use crate::device::hiperface::write::Written;
 use crate::profile::Plan;
-use crate::profile::hiperface::{Base, Op, RestoreOptions};
+use crate::profile::hiperface::{Base, Op, RestoreOptions, UnknownField};
 use crate::protocol::hiperface::CodeNumber;
 use crate::worker::hiperface::{Change, Hiperface, Prepared, WEAR_LIMIT};
 
@@ -17,7 +17,7 @@ impl Review {
     /// The options of a restore, where this is one.
     pub fn options(&self) -> Option<RestoreOptions> {
         match &self.change {
-            Change::Restore { options, .. } => Some(*options),
+            Change::Restore { options, .. } => Some(options.clone()),
             _ => None,
         }
     }
@@ -40,6 +40,8 @@ impl Reviewed for Hiperface {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
             Permit::Mounting => Some(&mut options.with_mounting),
             Permit::Recreate => Some(&mut options.recreate),
+            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Copy(field) => Some(options.copy.entry(field).or_insert(false)),
         }
     }
 
@@ -55,8 +57,25 @@ impl Reviewed for Hiperface {
         !prepared.mounting_left.is_empty()
     }
 
+    fn redo(prepared: &Prepared) -> Vec<Text> {
+        prepared.redo().iter().map(explain::hiperface::redo).collect()
+    }
+
+    fn questions(prepared: &Prepared) -> Vec<Question> {
+        let question = |own: &UnknownField| Question {
+            what: explain::hiperface::unknown_field(own),
+            no: Text::new("review.leave_field").with("field", own.field),
+            yes: Text::new("review.copy_field").with("field", own.field),
+            permit: Permit::Copy(own.field),
+            is_on: own.is_copied(),
+        };
+        prepared.unknown_fields.iter().map(question).collect()
+    }
+
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
+        warnings.extend(prepared.other_type.map(explain::hiperface::other_type));
+        warnings.extend(explain::hiperface::created_left(&prepared.created_left));
         if let Some(wanted) = prepared.wanted_position {
             let set = prepared.plan.ops.iter().find_map(|op| match op {
                 Op::SetPosition { to, .. } => Some(*to),

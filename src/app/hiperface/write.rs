@@ -7,8 +7,8 @@ use crate::app::review::Permit;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, OnLine, Saved, WithMemory};
 use crate::app::{Severity, Text};
-use crate::device::hiperface::SaveOptions;
-use crate::profile::hiperface::{FieldRange, HiperfaceProfile, RestoreOptions, check_device};
+use crate::device::hiperface::{SaveOptions, profile_of};
+use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Recorded, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker::hiperface::{Change, Commit, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
@@ -34,7 +34,7 @@ impl Encoder {
             return;
         }
         let Some(review) = &mut self.review else { return };
-        *review = Review::new(change.clone(), review.is_for_another);
+        *review = Review::new(change.clone(), review.is_for_another, review.is_for_another_type);
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
             self.review = None;
         }
@@ -53,6 +53,11 @@ impl WithMemory for Encoder {
     fn is_for_another(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
         check_device(profile, &own.serial.serial_number, own.label.encoder_type).is_err()
+    }
+
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
+        profile.identity.encoder_type != own.label.encoder_type
     }
 
     fn is_of_another(&self, prepared: &Prepared) -> bool {
@@ -105,9 +110,19 @@ impl Saved for Encoder {
     }
 
     fn wanted_body(&self) -> Option<Body> {
-        let mut profile = self.wanted_profile()?;
-        profile.mark_mounting();
-        Some(Body::Hiperface(profile))
+        Some(Body::Hiperface(self.wanted_profile()?))
+    }
+
+    fn known_body(&self) -> Option<(Body, Vec<Text>)> {
+        let identity = self.identity.as_ref()?;
+        let fields = self.staged.device().to_vec();
+        let locked = fields.iter().filter(|own| own.bytes.is_none() && !self.unreadable.contains_key(&own.number));
+        let locked = locked
+            .map(|own| Text::new("session.saved_locked").with("field", own.number).with("number", own.status.code()));
+        let edits = self.is_dirty().then(|| Text::new("session.saved_without").with("count", self.edits()));
+        let remarks = edits.into_iter().chain(locked).chain(self.unreadable.values().cloned()).collect();
+        let recorded = Recorded { counter: self.counter, ..Recorded::default() };
+        Some((Body::Hiperface(profile_of(identity, fields, recorded)), remarks))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

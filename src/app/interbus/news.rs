@@ -64,8 +64,8 @@ impl Kind for Interbus {
         explain::interbus::loss(error)
     }
 
-    fn has_begun(error: &JobError) -> bool {
-        matches!(error, JobError::Interrupted { .. })
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
     }
 }
 

@@ -35,6 +35,11 @@ pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
     /// What is wanted was made for another device than this one.
     fn is_for_another(&self, change: &Change<Self>) -> bool;
 
+    /// What is wanted was made for another type of device than this one, where that needs a permit of its own.
+    fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
+        false
+    }
+
     /// A plan was made for another device than the one that was read before.
     fn is_of_another(&self, prepared: &Prepared<Self>) -> bool;
 
@@ -83,11 +88,11 @@ pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         if let Some(why) = self.session().why_not_ready() {
             return services.tell(Severity::Warning, vec![why], Some(&self.session().name()));
         }
-        let review = Review::new(change.clone(), self.is_for_another(&change));
+        let review = Review::new(change.clone(), self.is_for_another(&change), self.is_for_another_type(&change));
         let objection = self.objection(&change);
         let review = self.review_mut().insert(review);
         if let Some(why) = objection {
-            return review.fail(vec![why], false);
+            return review.fail(vec![why], false, 0);
         }
         if !self.try_submit(Self::prepare(change), services) {
             *self.review_mut() = None;
@@ -123,7 +128,7 @@ pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         let Some(review) = self.review_mut() else { return };
         match objection {
             None => review.state = ReviewState::Ready(prepared),
-            Some(why) => review.fail(vec![why], false),
+            Some(why) => review.fail(vec![why], false, 0),
         }
     }
 
@@ -191,23 +196,24 @@ pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
     /// is no review any more.
     fn cut_write(&mut self, how: Cut<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.review() else { return false };
-        let begun = match (how, review.is_planning(), review.is_writing()) {
+        let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
             (_, false, false) | (Cut::Lost, _, false) => return false,
             (Cut::Cancelled(_), true, _) => {
                 *self.review_mut() = None;
                 return false;
             }
-            (Cut::Lost, ..) => true,
+            // How far it came is not known.
+            (Cut::Lost, ..) => (true, 0),
             (Cut::Failed(error) | Cut::Cancelled(error), ..) => {
-                let begun = Self::Device::has_begun(error);
-                if begun {
+                let done = Self::Device::done(error);
+                if done.is_some() {
                     self.reads_again();
                 }
-                begun
+                (done.is_some(), done.unwrap_or(0))
             }
         };
         if let Some(review) = self.review_mut() {
-            review.fail(texts.to_vec(), begun);
+            review.fail(texts.to_vec(), begun, done);
         }
         true
     }

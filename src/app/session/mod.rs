@@ -35,7 +35,7 @@ use super::trace::TraceLog;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Scheme};
 use crate::profile::Document;
-use crate::store::{Backup, Entry};
+use crate::store::{Backup, Entry, StatusEntry};
 use crate::worker::SubmitError;
 
 /// Where the data come from.
@@ -112,6 +112,8 @@ pub struct Session<D: Kind> {
     pub writes: Option<Result<Vec<Entry>, Text>>,
     /// Write cycles that the logbook has seen of this device; `None` where it does not tell, or was not asked.
     pub cycles: Option<u64>,
+    /// Status codes of this device that the logbook knows, the newest first.
+    pub statuses: Vec<StatusEntry>,
     /// Nothing has been read since the link was opened.
     pub(in crate::app) just_connected: bool,
     /// Where the profile goes that is being read.
@@ -157,6 +159,7 @@ impl<D: Kind> Session<D> {
             backups: None,
             writes: None,
             cycles: None,
+            statuses: Vec::new(),
             just_connected: false,
             save_to: None,
             is_saving: false,

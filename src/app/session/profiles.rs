@@ -8,7 +8,7 @@ use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, Severity, Text, explain};
 use crate::profile::{Body, Document};
-use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, Store};
+use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, StatusEntry, Store};
 
 impl<D: Kind> Session<D> {
     /// A name for a profile of it.
@@ -99,6 +99,7 @@ impl<D: Kind> Session<D> {
     pub(in crate::app) fn take_backups(&mut self, listed: Listed) {
         self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
         self.cycles = listed.cycles;
+        self.statuses = listed.statuses;
         self.writes = Some(
             listed
                 .writes
@@ -115,22 +116,29 @@ pub struct Listed {
     pub writes: Result<Vec<Entry>, LogbookError>,
     /// Write cycles in all; `None` where the logbook does not tell.
     pub cycles: Option<u64>,
+    /// Status codes that were read, the newest first. That the logbook cannot be read, the writes tell.
+    pub statuses: Vec<StatusEntry>,
 }
 
 impl Listed {
+    /// Readings of status codes that are shown.
+    const STATUSES: u32 = 20;
     /// Entries of the logbook that are shown.
     const WRITES: u32 = 200;
 
     /// Asks the disk.
     pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
         let backups = store.backups().list(&key.kind, &key.serial_number);
-        let (writes, cycles) = match store.logbook_path() {
-            path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0)),
+        let (writes, cycles, statuses) = match store.logbook_path() {
+            path if matches!(path.try_exists(), Ok(false)) => (Ok(Vec::new()), Some(0), Vec::new()),
             path => match Logbook::open(&path) {
-                Ok(logbook) => (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok()),
-                Err(error) => (Err(error), None),
+                Ok(logbook) => {
+                    let statuses = logbook.statuses(key, Self::STATUSES).unwrap_or_default();
+                    (logbook.history(key, Self::WRITES), logbook.write_cycles(key).ok(), statuses)
+                }
+                Err(error) => (Err(error), None, Vec::new()),
             },
         };
-        Listed { backups, writes, cycles }
+        Listed { backups, writes, cycles, statuses }
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{OnDesk, Phase, Source, WithMemory};
 use crate::app::Text;
 use crate::app::action::ReadError;
-use crate::app::documents::{only_looked_at, read_error};
+use crate::app::documents::{document_of, only_looked_at, read_error};
 use crate::app::services::Services;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::DeviceKey;
@@ -24,6 +24,17 @@ pub(in crate::app) trait Saved: WithMemory {
     /// The profile as the user wants it, where this is one.
     fn wanted_body(&self) -> Option<Body>;
 
+    /// What was read of a device that cannot be read now, and what is not in it; `None` where that is not all that there is
+    /// to save.
+    fn known_body(&self) -> Option<(Body, Vec<Text>)> {
+        None
+    }
+
+    /// What was read is saved: the device does not answer any more.
+    fn saves_what_was_read(&self) -> bool {
+        matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.known_body().is_some()
+    }
+
     /// Makes the plan of restoring a profile, to be looked at.
     ///
     /// # Errors
@@ -35,7 +46,8 @@ pub(in crate::app) trait Saved: WithMemory {
         Vec::new()
     }
 
-    /// A connected device is read again for it; a profile is written as it is edited.
+    /// A connected device is read again for it; of one that does not answer any more, what was read is written. A profile is
+    /// written as it is edited.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = only_looked_at(&self.session().source) {
             self.session().refuse(refusal, services);
@@ -45,6 +57,11 @@ pub(in crate::app) trait Saved: WithMemory {
                 document.body = body;
             }
             let remarks = self.remarks();
+            self.session_mut().write_document(path, document, remarks, services);
+        } else if let Some((body, remarks)) = self.known_body().filter(|_| self.saves_what_was_read()) {
+            let mut document = document_of(body);
+            document.note = Some("as it was read last; the device did not answer when this was saved".to_owned());
+            let remarks = std::iter::once(Text::new("session.saved_as_read")).chain(remarks).collect();
             self.session_mut().write_document(path, document, remarks, services);
         } else if self.try_submit(Self::read_all(), services) {
             self.session_mut().save_to = Some(path);

@@ -20,7 +20,9 @@ use crate::store::ReadCaptureError;
 /// All that the Signals tab knows.
 pub struct Signals {
     family: Family,
-    periods: u32,
+    periods: Option<u32>,
+    /// The periods are those of the virtual encoder: they say nothing about a capture.
+    periods_of_source: bool,
     /// The virtual encoder, or an adapter.
     pub(in crate::app) source: Source,
     synchronise: Synchronise,
@@ -39,7 +41,8 @@ impl Default for Signals {
     fn default() -> Self {
         Signals {
             family: Family::default(),
-            periods: 1024,
+            periods: None,
+            periods_of_source: false,
             source: Source::default(),
             synchronise: Synchronise::default(),
             scope: Scope::live(true),
@@ -86,8 +89,8 @@ impl Signals {
         self.family
     }
 
-    /// Signal periods in a revolution, at least 1.
-    pub fn periods(&self) -> u32 {
+    /// Signal periods in a revolution, at least 1; `None`: not known, so that nothing is told that rests on them.
+    pub fn periods(&self) -> Option<u32> {
         self.periods
     }
 
@@ -164,8 +167,9 @@ impl Signals {
     }
 
     /// Another number of periods a revolution: what is shown is judged again.
-    pub(super) fn set_periods(&mut self, periods: u32, services: &mut Services) {
-        self.periods = periods.clamp(1, MOST_PERIODS);
+    pub(super) fn set_periods(&mut self, periods: u32, of_source: bool, services: &mut Services) {
+        self.periods = Some(periods.clamp(1, MOST_PERIODS));
+        self.periods_of_source = of_source;
         if self.measurement.as_ref().is_some_and(|own| own.judge != self.judge()) {
             self.judge_again(services);
         }
@@ -215,7 +219,7 @@ impl Signals {
             }
             Action::DropComparison => self.comparison = None,
             Action::Synchronise(action) => self.synchronise.act(action),
-            Action::SetPeriods(periods) => self.set_periods(periods, services),
+            Action::SetPeriods(periods) => self.set_periods(periods, false, services),
         }
     }
 
@@ -326,11 +330,14 @@ impl Signals {
 
     fn open(&mut self, place: Place, services: &mut Services) {
         let settled = self.settled();
+        if std::mem::take(&mut self.periods_of_source) {
+            self.periods = None;
+        }
         self.read(place, Wishes::default(), settled, services);
     }
 
     pub(super) fn judge(&self) -> Judge {
-        Judge { family: self.family, periods: Some(self.periods) }
+        Judge { family: self.family, periods: self.periods }
     }
 
     /// Judges what is shown by what is set now.

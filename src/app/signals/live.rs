@@ -315,7 +315,7 @@ impl Signals {
                 if self.source.start_encoder(services) {
                     self.forget_reading();
                     self.replace_scope(Scope::live(true), services);
-                    self.set_periods(settings.periods as u32, services);
+                    self.set_periods(settings.periods as u32, true, services);
                 }
             }
             // The studio knows who else is on its wire.
@@ -368,7 +368,7 @@ impl Signals {
     fn set_source(&mut self, settings: Settings, with_periods: bool, services: &mut Services) {
         let own = self.source.kind == SourceKind::Encoder;
         if self.source.change(settings) && with_periods && own {
-            self.set_periods(self.source.settings().periods as u32, services);
+            self.set_periods(self.source.settings().periods as u32, true, services);
         }
     }
 

@@ -83,6 +83,8 @@ pub struct Measurement {
 pub struct Results {
     /// Where it comes from.
     pub origin: Origin,
+    /// Rows of its table that were left out, because they have no value.
+    pub rows_left_out: u64,
     /// The analysis, or why there is none.
     pub analysis: Result<Analysis, AnalysisError>,
     /// What there is to look at.
@@ -129,6 +131,7 @@ impl Measurement {
         let results = Results {
             diagnosis: diagnosis(&capture, &analysis, judge),
             judge,
+            rows_left_out: capture.left_out,
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::of(samples),
             nonlinearities: beside_reference(&capture, &analysis, judge),

@@ -120,7 +120,7 @@ impl Quantity {
 
 /// What was measured, judged by the limits of a family; `periods` a revolution turn the frequency into a speed. Nothing
 /// where there is no ellipse.
-pub fn quantities(measurement: &Results, family: Family, periods: u32) -> Vec<Quantity> {
+pub fn quantities(measurement: &Results, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = of_ellipse(analysis, family);
     let (least, most) = family.limits().level_v;
@@ -133,11 +133,16 @@ pub fn quantities(measurement: &Results, family: Family, periods: u32) -> Vec<Qu
         let frequency = Quantity::new("quality.frequency", frequency_hz / 1e3, 4, Unit::Kilohertz)
             .bounded(Bound::Within(BANDWIDTH_HZ / 1e3));
         list.push(if analysis.is_followed() { frequency } else { frequency.judged(Verdict::Warn) });
-        list.extend(speed_rpm_at(periods, frequency_hz).map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
+        let speed = periods.and_then(|periods| speed_rpm_at(periods, frequency_hz));
+        list.extend(speed.map(|rpm| Quantity::new("quality.speed", rpm, 2, Unit::Rpm)));
     }
     list.push(Quantity::new("quality.samples", analysis.samples as f64, 0, Unit::One));
     let left_out = |count: usize| Quantity::new("quality.left_out", count as f64, 0, Unit::One);
     list.extend(analysis.outliers.as_ref().map(|outliers| left_out(outliers.count)));
+    let rows = measurement.rows_left_out;
+    list.extend(
+        (rows > 0).then(|| Quantity::new("quality.rows_left_out", rows as f64, 0, Unit::One).judged(Verdict::Warn)),
+    );
     list.extend(analysis.duration_s.map(|s| Quantity::new("quality.duration", 1e3 * s, 3, Unit::Milliseconds)));
     list
 }
@@ -176,19 +181,24 @@ fn of_ellipse(analysis: &Analysis, family: Family) -> Vec<Quantity> {
 }
 
 /// The position error inside a period, before and after the correction; `periods` a revolution turn electrical degrees
-/// into mechanical seconds of arc.
-pub fn error_quantities(analysis: &Analysis, periods: u32) -> Vec<Quantity> {
+/// into mechanical seconds of arc, of which nothing is told without them.
+pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quantity> {
     /// Seconds of arc in an electrical degree of one period a revolution.
     const ARC_SECONDS: f64 = 3600.0;
-    let periods = f64::from(periods.max(1));
+    let a_degree = periods.map(|periods| ARC_SECONDS / f64::from(periods.max(1)));
     let peak_to_peak = |word, degrees: f64| {
-        Quantity::new(word, degrees, 3, Unit::Degrees).also(degrees * ARC_SECONDS / periods, 2, Unit::ArcSeconds)
+        let quantity = Quantity::new(word, degrees, 3, Unit::Degrees);
+        match a_degree {
+            Some(a_degree) => quantity.also(degrees * a_degree, 2, Unit::ArcSeconds),
+            None => quantity,
+        }
     };
-    vec![
+    let mut list = vec![
         peak_to_peak("error.raw_pp", analysis.error.raw_pp_deg()),
         peak_to_peak("error.corrected_pp", analysis.error.corrected_pp_deg),
-        Quantity::new("error.period", ARC_SECONDS * 360.0 / periods, 2, Unit::ArcSeconds),
-    ]
+    ];
+    list.extend(a_degree.map(|own| Quantity::new("error.period", 360.0 * own, 2, Unit::ArcSeconds)));
+    list
 }
 
 #[cfg(test)]
@@ -214,7 +224,7 @@ mod tests {
 
     #[test]
     fn numbers_of_section_7_with_their_limits() {
-        let list = quantities(&section_7(), Family::Hiperface, 50);
+        let list = quantities(&section_7(), Family::Hiperface, Some(50));
         let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
         // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 a
         // revolution 2 revolutions a second.
@@ -243,7 +253,9 @@ mod tests {
         let least = find("quality.vector_least");
         assert!((least.value - 0.445_95).abs() < 2e-5 && least.verdict == Some(Verdict::Warn), "{least:?}");
         assert!((find("quality.vector_most").value - 0.537_64).abs() < 2e-5);
-        let wide = quantities(&section_7(), Family::AfsAfm60, 50);
+        let bare = quantities(&section_7(), Family::Hiperface, None);
+        assert!(bare.len() + 1 == list.len() && bare.iter().all(|own| own.unit != Unit::Rpm), "issue 22.13");
+        let wide = quantities(&section_7(), Family::AfsAfm60, Some(50));
         let least = wide.iter().find(|own| own.word == "quality.vector_least").unwrap();
         assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(Bound::Between(0.4, 0.6))));
     }
@@ -258,7 +270,10 @@ mod tests {
             ..Capture::default()
         };
         let analysis = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default()).analysis.clone().unwrap();
-        let list = error_quantities(&analysis, 1024);
+        // Issue 22.13: without the periods of a turn there are no mechanical angles and no speed.
+        let bare = error_quantities(&analysis, None);
+        assert!(bare.len() == 2 && bare.iter().all(|own| own.unit == Unit::Degrees && own.also.is_none()), "{bare:?}");
+        let list = error_quantities(&analysis, Some(1024));
         assert!((list[0].value - 1.1459).abs() < 1e-3 && list[0].unit == Unit::Degrees, "{:?}", list[0]);
         let (arc_seconds, _, unit) = list[0].also.unwrap();
         assert!((arc_seconds - 4.029).abs() < 4e-3 && unit == Unit::ArcSeconds, "{:?}", list[0]);

@@ -1,7 +1,7 @@
 //! The table that a capture comes from: its first lines, what was found out about it, and what a person says instead.
 
 use super::Place;
-use crate::signal::capture::{Columns, Delimiter, Layout, Wishes};
+use crate::signal::capture::{Columns, Delimiter, Layout, Wishes, decode_head};
 
 /// The beginning of a table, and how it is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,13 +47,13 @@ const MOST_COLUMNS: usize = 64;
 impl Table {
     /// The beginning of a table, from its first bytes.
     pub(super) fn of(place: Place, head: &[u8], wishes: Wishes) -> Self {
-        let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
+        let text = decode_head(head);
         let shown = |line: &[u8]| {
             let text = String::from_utf8_lossy(line.trim_ascii_end()).replace('\t', "  →  ");
             let short: String = text.chars().take(WIDTH).collect();
             if short.len() < text.len() { short + "…" } else { short }
         };
-        let lines = head.split(|byte| *byte == b'\n').take(LINES).map(shown).collect();
+        let lines = text.split(|byte| *byte == b'\n').take(LINES).map(shown).collect();
         let layout = Layout::detect(head, &wishes).ok();
         Table { place, head: lines, wishes, layout, half_chosen: (None, None) }
     }

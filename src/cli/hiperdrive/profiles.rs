@@ -84,7 +84,9 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
         };
         output.remark(&format!("{item} belongs to the mounting and is left alone: {how}"));
     }
-    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone() };
+    let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    left.warn(output);
     if restore.dry_run {
         return show_dry_run(output, &shown(&prepared), &left);
     }

@@ -12,6 +12,7 @@ use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
+use crate::device::hiperface::check::{Finding, Line, Step, Verdict};
 use crate::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize, KIND};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
@@ -146,5 +147,12 @@ fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
         HiperfaceOutput::Check(lines) => lines,
         other => return Err(unexpected(&other)),
     };
-    check::show(output, &explain::hiperface::check(&lines))
+    let quality = lines.iter().flat_map(|line| &line.findings).find_map(|finding| match finding {
+        Finding::Line(quality) => Some(quality),
+        _ => None,
+    });
+    // A line on which nothing had to be repeated is no step: scripts have its figures in `line_quality`.
+    let shown: Vec<Line> =
+        lines.iter().filter(|own| own.step != Step::Line || own.verdict != Verdict::Good).cloned().collect();
+    check::show_with(output, &explain::hiperface::check(&shown), quality)
 }

@@ -7,6 +7,7 @@ use serde_json::{Value as Json, json};
 use crate::app::explain;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Find, Position};
+use crate::cli::consent::can_ask;
 use crate::cli::hiperface::run::{Runner, codes_met};
 use crate::cli::hiperface::table::Table;
 use crate::cli::output::{Lines, Output};
@@ -17,9 +18,20 @@ use crate::device::hiperface::find::{FindOptions, Findings, Found};
 use crate::device::hiperface::{Identity, PositionReading};
 use crate::profile::hiperface::Item;
 use crate::protocol::hiperface::{EncoderTypes, KIND, LineSettings, StatusCode};
-use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value};
+use crate::worker::hiperface::{Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master};
 
 pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
+    if let Some(url) = &common.link
+        && may_have_other_master(url)
+        && !common.only_master
+        && !can_ask()
+    {
+        return Err(Failure::Usage(
+            "a search sends to every address: give --only-master when no drive is connected to this line or powered, or \
+             run it on a terminal; nothing was sent"
+                .to_owned(),
+        ));
+    }
     let mut runner = Runner::open(common)?;
     let power_cycle = find.power_cycle.map(Duration::from_secs);
     output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");

@@ -1,5 +1,7 @@
 //! What the commands about profiles do with a HIPERFACE encoder: `save`, `restore`, and reading it for a comparison.
 
+use std::collections::BTreeMap;
+
 use serde_json::json;
 
 use super::write::{commit, operations, plan_text};
@@ -11,9 +13,9 @@ use crate::cli::output::{Output, count};
 use crate::cli::plan::Shown;
 use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
 use crate::cli::runner::{failed, unexpected};
-use crate::cli::{Done, Result};
+use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::SaveOptions;
-use crate::profile::hiperface::{self, RestoreOptions};
+use crate::profile::hiperface::{self, FieldRange, Item, RestoreOptions, UnknownField};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 
@@ -76,8 +78,10 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     let options = RestoreOptions {
         allow_other_device: restore.allow_other_device,
+        allow_other_type: restore.allow_other_type,
         with_mounting: restore.with_mounting,
         recreate: restore.recreate,
+        copy: answers(restore)?,
     };
     let mut runner = Runner::open(common)?;
     let change = Change::Restore { profile: Box::new(profile), options };
@@ -85,6 +89,13 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
         HiperfaceOutput::Prepared(prepared) => *prepared,
         other => return Err(unexpected(&other)),
     };
+    if let Some(types) = prepared.other_type {
+        output.remark(&explain::hiperface::other_type(types).terminal());
+    }
+    check_answers(output, &prepared, restore.dry_run)?;
+    if let Some(text) = explain::hiperface::created_left(&prepared.created_left) {
+        output.remark(&text.terminal());
+    }
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: profile or encoder does not have it, or it cannot be read"));
     }
@@ -93,12 +104,55 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
             "{range} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
         ));
     }
-    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone() };
+    let redo = prepared.redo().iter().map(ToString::to_string).collect();
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    left.warn(output);
     if restore.dry_run {
         return show_dry_run(output, &shown(&prepared), &left);
     }
     let spent = commit(&mut runner, output, prepared, &restore.consent)?;
     show_restored(output, &spent, &left)
+}
+
+/// What the command line answers about data fields whose bytes have no known meaning.
+fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
+    let mut answers = BTreeMap::new();
+    for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
+        for text in given {
+            let Item::Field(FieldRange { field, start: 0, count: None }) = super::item(text)? else {
+                return Err(Failure::Usage(format!("{text:?} is not a whole data field: give field:N")));
+            };
+            if answers.insert(field, copies).is_some_and(|before| before != copies) {
+                return Err(Failure::Usage(format!("field:{field} cannot be both copied and left")));
+            }
+        }
+    }
+    Ok(answers)
+}
+
+/// Names the data fields whose bytes have no known meaning, and stops where one is not answered for. A dry run leaves such a
+/// field.
+fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
+    let words = |own: &UnknownField| explain::hiperface::unknown_field(own).terminal();
+    let fields = &prepared.unknown_fields;
+    let open: Vec<&UnknownField> = fields.iter().filter(|own| own.answer.is_none()).collect();
+    if !dry_run && !open.is_empty() {
+        let open: Vec<String> = open.into_iter().map(words).collect();
+        return Err(Failure::Failed(vec![format!(
+            "{} Nothing was written. Answer for each with --copy field:N or --leave field:N.",
+            open.join(" ")
+        )]));
+    }
+    for own in fields {
+        let item = own.item();
+        let becomes = match own.answer {
+            Some(true) => "They are copied.".to_owned(),
+            Some(false) => "They are left as they are.".to_owned(),
+            None => format!("They are left as they are; a restore needs --copy {item} or --leave {item}."),
+        };
+        output.remark(&format!("{} {becomes}", words(own)));
+    }
+    Ok(())
 }
 
 fn shown(prepared: &Prepared) -> Shown {

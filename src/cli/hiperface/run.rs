@@ -8,7 +8,7 @@ use crate::link::LinkUrl;
 use crate::protocol::hiperface::StatusCode;
 use crate::store::Store;
 use crate::units::CharacterFormat;
-use crate::worker::hiperface::{Doing, Hiperface, JobError, Remark, open};
+use crate::worker::hiperface::{Doing, Hiperface, JobError, Remark, may_have_other_master, open};
 use crate::worker::{OpenError, Session};
 
 /// A session with a HIPERFACE encoder on its thread.
@@ -17,7 +17,12 @@ pub(super) type Runner = runner::Runner<Hiperface>;
 impl Runs for Hiperface {
     /// How the line is set: for `identify`.
     type Kept = CharacterFormat;
+    const HAS_ONE_MASTER: bool = true;
     const HAS_CODES: bool = true;
+
+    fn may_have_other_master(url: &LinkUrl) -> bool {
+        may_have_other_master(url)
+    }
 
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
         open(url, store)
@@ -55,6 +60,6 @@ pub(super) fn codes_met(runner: &Runner) -> Vec<StatusCode> {
 fn codes(remark: &Remark) -> &[StatusCode] {
     match remark {
         Remark::Codes(codes) => codes,
-        Remark::Found(_) => &[],
+        Remark::Found(_) | Remark::Line(_) => &[],
     }
 }

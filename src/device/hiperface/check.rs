@@ -1,6 +1,10 @@
 //! The device check: the start-up sequence of the manual (figures 8 and 9) with a verdict a line.
 
-use super::{Error, Identity, Master, identify, read_analogue, read_field, read_position, read_status, reset};
+use super::fields::tolerated;
+use super::{
+    Error, Identity, LineQuality, Master, UnreadableField, identify, read_analogue, read_position, read_status, reset,
+    try_read_field,
+};
 use crate::protocol::hiperface::{DataFieldStatus, EncoderTypes, Position, StatusCode};
 
 pub use crate::device::check::Verdict;
@@ -23,6 +27,8 @@ pub enum Step {
     Limits,
     /// 4Ch and 4Ah on every data field.
     DataFields,
+    /// What was repeated, damaged or late meanwhile, and before in this session.
+    Line,
 }
 
 /// One fact that the check found.
@@ -68,9 +74,21 @@ pub enum Finding {
         /// Why.
         codes: Vec<StatusCode>,
     },
+    /// A data field that cannot be read.
+    FieldUnreadable {
+        /// Its number.
+        number: u8,
+        /// Why.
+        why: Error,
+    },
+    /// Something else that cannot be read.
+    Unreadable(Error),
+    /// How good the line is.
+    Line(LineQuality),
 }
 
-/// Carries out the check; with `restart` it begins with 53h, as after power-on. It ends early only when the line fails.
+/// Carries out the check; with `restart` it begins with 53h, as after power-on. It ends early only when the encoder does
+/// not answer any more.
 ///
 /// # Errors
 /// The line, or the user's wish.
@@ -92,12 +110,14 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
     lines.push(check_position(master, &identity)?);
     lines.extend(check_limits(master, &identity)?);
     lines.push(check_fields(master, &identity)?);
+    lines.push(check_line(master));
     Ok(lines)
 }
 
 fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Error> {
     let step = Step::Position;
-    match refusal(read_position(master, identity.geometry))? {
+    let reading = read_position(master, identity.geometry);
+    match tolerated(master, reading)? {
         Ok(reading) => {
             let mut findings = vec![match reading.position {
                 Some(position) => Finding::Position(position),
@@ -107,7 +127,8 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, 
             let verdict = if reading.valid { verdict(&reading.codes) } else { Verdict::Bad };
             Ok(Line { step, verdict, findings })
         }
-        Err(codes) => Ok(Line { step, verdict: Verdict::Bad, findings: found(&codes) }),
+        Err(Error::Rejected { codes, .. }) => Ok(Line { step, verdict: Verdict::Bad, findings: found(&codes) }),
+        Err(why) => Ok(Line { step, verdict: Verdict::Bad, findings: vec![Finding::Unreadable(why)] }),
     }
 }
 
@@ -117,11 +138,20 @@ fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<L
     let mut findings = Vec::new();
     let mut worst = Verdict::Good;
     for (channel, limit) in label.limits() {
-        if let Ok(value) = refusal(read_analogue(master, channel))? {
-            if value > limit {
-                worst = Verdict::Attention;
+        let value = read_analogue(master, channel);
+        match tolerated(master, value)? {
+            Ok(value) => {
+                if value > limit {
+                    worst = worst.max(Verdict::Attention);
+                }
+                findings.push(Finding::Limit { channel, value, limit });
             }
-            findings.push(Finding::Limit { channel, value, limit });
+            // The encoder does not have the channel.
+            Err(Error::Rejected { .. }) => {}
+            Err(why) => {
+                worst = Verdict::Bad;
+                findings.push(Finding::Unreadable(why));
+            }
         }
     }
     Ok((!findings.is_empty()).then_some(Line { step: Step::Limits, verdict: worst, findings }))
@@ -131,14 +161,18 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Er
     let mut findings = Vec::new();
     let mut verdict = Verdict::Good;
     for number in 0..identity.memory.map_or(0, |memory| memory.fields) {
-        match refusal(read_field(master, number))? {
+        match try_read_field(master, number)? {
             Ok(field) if field.bytes.is_some() => findings.push(Finding::Field { number, status: field.status }),
             Ok(field) => {
                 findings.push(Finding::FieldLocked { number, status: field.status });
-                verdict = Verdict::Attention;
+                verdict = verdict.max(Verdict::Attention);
             }
-            Err(codes) => {
+            Err(UnreadableField { why: Error::Rejected { codes, .. }, .. }) => {
                 findings.push(Finding::FieldRefused { number, codes });
+                verdict = Verdict::Bad;
+            }
+            Err(UnreadableField { why, .. }) => {
+                findings.push(Finding::FieldUnreadable { number, why });
                 verdict = Verdict::Bad;
             }
         }
@@ -146,13 +180,11 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Er
     Ok(Line { step: Step::DataFields, verdict, findings })
 }
 
-/// A refusal is a finding, anything else ends the check.
-fn refusal<T>(result: Result<T, Error>) -> Result<Result<T, Vec<StatusCode>>, Error> {
-    match result {
-        Ok(value) => Ok(Ok(value)),
-        Err(Error::Rejected { codes, .. }) => Ok(Err(codes)),
-        Err(error) => Err(error),
-    }
+/// A line on which something had to be repeated works, and somebody should look at its wiring.
+fn check_line(master: &mut Master<'_>) -> Line {
+    let quality = master.station().line.quality.clone();
+    let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };
+    Line { step: Step::Line, verdict, findings: vec![Finding::Line(quality)] }
 }
 
 fn verdict(codes: &[StatusCode]) -> Verdict {

@@ -1,6 +1,7 @@
 //! Reading data fields (4Ch, 4Ah). Long transfers are halved when the line damages them.
 
 use super::error::Damage;
+use super::identify::read_type_label;
 use super::master::Trouble;
 use super::{Error, Master};
 use crate::profile::hiperface::FieldImage;
@@ -49,6 +50,48 @@ pub fn read_all_fields(
         fields.push(read_field(master, number)?);
     }
     Ok(fields)
+}
+
+/// A data field that could not be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnreadableField {
+    /// Its number.
+    pub number: u8,
+    /// Its status, where that could be read.
+    pub status: Option<DataFieldStatus>,
+    /// Why.
+    pub why: Error,
+}
+
+/// Reads a field, or says why it cannot be read, as long as the encoder answers to anything else.
+///
+/// # Errors
+/// The encoder does not answer any more, or the user's wish.
+pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<FieldImage, UnreadableField>, Error> {
+    let status = read_field_status(master, number);
+    let status = match tolerated(master, status)? {
+        Ok(status) => status,
+        Err(why) => return Ok(Err(UnreadableField { number, status: None, why })),
+    };
+    let field = read_field(master, number);
+    Ok(tolerated(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
+}
+
+/// What could not be read, as long as the encoder answers to another request.
+///
+/// # Errors
+/// It does not, or the user's wish.
+pub(super) fn tolerated<T>(master: &mut Master<'_>, result: Result<T, Error>) -> Result<Result<T, Error>, Error> {
+    match result {
+        Ok(value) => Ok(Ok(value)),
+        Err(error @ Error::Rejected { .. }) => Ok(Err(error)),
+        Err(error @ (Error::Damaged { .. } | Error::NoReply { .. })) => match read_type_label(master) {
+            Ok(_) => Ok(Err(error)),
+            Err(Error::Cancelled) => Err(Error::Cancelled),
+            Err(_) => Err(error),
+        },
+        Err(error) => Err(error),
+    }
 }
 
 /// Reads `count` bytes of a field from `address`, in transfers of at most 128 bytes.

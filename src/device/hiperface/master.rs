@@ -11,7 +11,7 @@ use super::error::Damage;
 use super::{Error, Station};
 use crate::device::line::{Line, TRIES};
 use crate::link::Ctx;
-use crate::protocol::hiperface::{Answer, Command, Reply, Request, StatusCode};
+use crate::protocol::hiperface::{Answer, Command, Reply, Request};
 use crate::units::Moment;
 pub(super) use exchange::{Answered, Trouble};
 
@@ -119,6 +119,7 @@ impl<'a> Master<'a> {
             if again == reply {
                 return Ok(reply);
             }
+            self.station.line.quality.damaged += 1;
             reply = again;
         }
         Err(Error::Damaged { command: request.command(), tries: TRIES, cause: Damage::Inconsistent })
@@ -184,6 +185,12 @@ impl<'a> Master<'a> {
 
     /// What is right about a broken line before the next try; an error when there is to be none.
     pub(super) fn may_try_again(&mut self, request: &Request, tries: u32, trouble: Trouble) -> Result<(), Error> {
+        let quality = &mut self.station.line.quality;
+        match &trouble {
+            Trouble::Silence { .. } => quality.silent += 1,
+            Trouble::Damage(Damage::Late) => quality.late += 1,
+            Trouble::Damage(_) => quality.damaged += 1,
+        }
         let longest = self.station.timing().worst_case(request) + self.station.line.margin;
         if self.line.may_ask_again(&mut self.station.line, tries, longest) {
             if matches!(trouble, Trouble::Silence { .. }) {
@@ -238,7 +245,7 @@ impl<'a> Master<'a> {
             };
             let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = answered.answer;
             if let Answer::Reply { reply: Reply::Status(codes), .. } = answered.answer {
-                self.station.codes_met.extend(codes.into_iter().filter(|code| *code != StatusCode::OK));
+                self.station.meet_codes(codes);
             }
             if !pending {
                 break;

@@ -17,9 +17,9 @@ mod station;
 mod survey;
 pub mod write;
 
-pub use super::line::Echo;
+pub use super::line::{Echo, LineQuality};
 pub use error::{Damage, Error};
-pub use fields::{read_all_fields, read_field, read_field_status, read_range};
+pub use fields::{UnreadableField, read_all_fields, read_field, read_field_status, read_range, try_read_field};
 pub use identify::{Identity, identify, identity_of, read_address, read_extended_label, read_settings, read_status};
 pub use master::Master;
 pub use position::{
@@ -31,5 +31,5 @@ pub use rest::{Rest, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
 pub use station::{Codes, PARAMETERS, Station};
 
-use survey::look_around;
+use survey::{Reading, look_around};
 pub use survey::{Survey, survey};

@@ -1,6 +1,6 @@
 //! Reading everything that can be restored, and what identifies the encoder.
 
-use super::{Error, Identity, Master, Sample, Survey, look_around};
+use super::{Error, Identity, Master, Reading, Sample, Survey, look_around};
 use crate::profile::Unknown;
 use crate::profile::hiperface::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
 use crate::protocol::hiperface::EncoderTypes;
@@ -31,7 +31,7 @@ fn save_once(
     options: SaveOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<HiperfaceProfile, Error> {
-    let Survey { identity, fields, counter, position, .. } = look_around(master, types, progress)?;
+    let Survey { identity, fields, counter, position, .. } = look_around(master, types, progress, Reading::Whole)?;
     if let Some(locked) = fields.iter().find(|field| field.bytes.is_none())
         && options.complete
     {
@@ -62,6 +62,7 @@ pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Record
         recorded,
         mounting: Vec::new(),
         fields,
+        created: Vec::new(),
         unknown_in_fields: Vec::new(),
     };
     profile.mark_mounting();

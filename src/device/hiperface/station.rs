@@ -54,6 +54,8 @@ pub struct Station {
     pub geometry: Option<Geometry>,
     /// Status codes that replies announced, in the order in which they were read; taken out by whoever shows them.
     pub codes_met: Vec<StatusCode>,
+    /// The same codes, for the logbook: 50h takes them out of the encoder, so that they are nowhere else.
+    codes_read: Vec<StatusCode>,
     /// What is read is to be kept: it has to come twice, on a line that seems good as well.
     pub(super) thorough: bool,
     /// Most bytes to read at once: halved when the line damages long replies, doubled when it does not.
@@ -71,6 +73,7 @@ impl Station {
             codes: Codes::default(),
             geometry: None,
             codes_met: Vec::new(),
+            codes_read: Vec::new(),
             thorough: false,
             chunk: MAX_TRANSFER,
         }
@@ -115,6 +118,18 @@ impl Station {
     /// Once is not enough: an XOR lets some pairs of flipped bits through.
     pub(super) fn reads_twice(&self) -> bool {
         self.thorough || self.line.damaged > 0
+    }
+
+    /// Takes in status codes that the encoder has given away.
+    pub(super) fn meet_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
+        let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
+        self.codes_read.extend(&codes);
+        self.codes_met.extend(codes);
+    }
+
+    /// Takes what is to be written into the logbook, before any of it is shown.
+    pub fn take_codes_read(&mut self) -> Vec<StatusCode> {
+        std::mem::take(&mut self.codes_read)
     }
 
     /// Takes the status codes met since the last time.

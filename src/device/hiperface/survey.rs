@@ -1,6 +1,10 @@
 //! Everything that there is to see of an encoder, in one go.
 
-use super::{Error, Identity, Master, Sample, identify, read_all_fields, read_counter, read_sample, read_status};
+use super::fields::tolerated;
+use super::{
+    Error, Identity, LineQuality, Master, Sample, UnreadableField, identify, read_all_fields, read_counter,
+    read_sample, try_read_field,
+};
 use crate::profile::hiperface::FieldImage;
 use crate::protocol::hiperface::{EncoderTypes, StatusCode};
 
@@ -11,8 +15,13 @@ pub struct Survey {
     pub identity: Identity,
     /// The error queue, in the encoder's order, and what came to it meanwhile.
     pub codes: Vec<StatusCode>,
-    /// All data fields, without bytes where the access code is not known.
+    /// All data fields, without bytes where they cannot be read: the access code is not known, or it says why in
+    /// `unreadable`.
     pub fields: Vec<FieldImage>,
+    /// Data fields that could not be read, for another reason than their access code.
+    pub unreadable: Vec<UnreadableField>,
+    /// How good the line was until then.
+    pub line: LineQuality,
     /// The counter, where the type has one.
     pub counter: Option<u32>,
     /// The position, where the encoder does not refuse it for another reason than that it has none at the moment.
@@ -28,10 +37,10 @@ pub fn survey(
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Survey, Error> {
-    let codes = read_status(master)?;
-    let mut survey = look_around(master, types, progress)?;
-    survey.codes = codes;
-    survey.codes.extend(master.station().take_codes());
+    // They stay among the codes met until the survey is there: where it fails, they are told all the same.
+    master.collect_codes()?;
+    let mut survey = look_around(master, types, progress, Reading::AsFarAsPossible)?;
+    survey.codes = master.station().take_codes();
     // A code that the encoder announced before is about this position too.
     let spoilt = survey.codes.iter().any(|code| code.spoils_position());
     if let Some(Sample::Position(reading)) = &mut survey.position {
@@ -40,24 +49,55 @@ pub fn survey(
     Ok(survey)
 }
 
+/// What becomes of a data field that cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// The others are read all the same.
+    AsFarAsPossible,
+    /// It ends the reading: what is kept for years has to be whole.
+    Whole,
+}
+
 /// All but the error queue.
 pub(super) fn look_around(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
+    reading: Reading,
 ) -> Result<Survey, Error> {
     let identity = identify(master, types)?;
-    let fields = read_all_fields(master, identity.memory.map_or(0, |memory| memory.fields), progress)?;
+    let count = identity.memory.map_or(0, |memory| memory.fields);
+    let mut unreadable = Vec::new();
+    let fields = match reading {
+        Reading::Whole => read_all_fields(master, count, progress)?,
+        Reading::AsFarAsPossible => read_readable_fields(master, count, &mut unreadable, progress)?,
+    };
     // Neither is needed for a restore: an encoder that refuses them is looked at all the same.
-    let position = refused(read_sample(master, identity.geometry))?;
-    let counter = refused(read_counter(master))?;
-    Ok(Survey { identity, codes: Vec::new(), fields, counter, position })
+    let position = read_sample(master, identity.geometry);
+    let position = tolerated(master, position)?.ok();
+    let counter = read_counter(master);
+    let counter = tolerated(master, counter)?.ok();
+    let line = master.station().line.quality.clone();
+    Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }
 
-fn refused<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
-    match result {
-        Ok(value) => Ok(Some(value)),
-        Err(Error::Rejected { .. }) => Ok(None),
-        Err(error) => Err(error),
+/// All fields as far as they can be read; of one that cannot, its status stands among them, where that is known.
+fn read_readable_fields(
+    master: &mut Master<'_>,
+    count: u8,
+    unreadable: &mut Vec<UnreadableField>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<FieldImage>, Error> {
+    let mut fields = Vec::new();
+    for number in 0..count {
+        progress(u64::from(number), u64::from(count));
+        match try_read_field(master, number)? {
+            Ok(field) => fields.push(field),
+            Err(field) => {
+                fields.extend(field.status.map(|status| FieldImage { number, status, bytes: None }));
+                unreadable.push(field);
+            }
+        }
     }
+    Ok(fields)
 }

@@ -210,7 +210,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>) -> Resul
             match master.tell(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
                 // Some types tell the overflow in this way (manual, "Zähler erhöhen"): it was carried out.
                 Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
-                    master.station().codes_met.extend(codes);
+                    master.station().meet_codes(codes);
                     Ok(1)
                 }
                 result => result,

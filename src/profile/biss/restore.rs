@@ -133,7 +133,8 @@ pub fn plan_restore(
         check_device(profile, &device.identity)?;
     }
     let same_device = is_same_device(profile, &device.identity);
-    let mut planner = Planner::new(profile, device, !same_device && !options.with_mounting);
+    let mounting = if same_device { Mounting::Own } else { Mounting::of_another(options) };
+    let mut planner = Planner::new(profile, device, mounting);
     planner.data()?;
     planner.filter()?;
     planner.preset()?;
@@ -145,7 +146,7 @@ pub fn plan_restore(
 /// # Errors
 /// See [`PlanError`]; nothing has been written.
 pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore, PlanError> {
-    let mut planner = Planner::new(profile, device, false);
+    let mut planner = Planner::new(profile, device, Mounting::Own);
     planner.data()?;
     Ok(planner.finish())
 }
@@ -191,28 +192,47 @@ pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Re
     Ok(())
 }
 
+/// What becomes of the values of the mounting.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mounting {
+    /// They are this encoder's.
+    Own,
+    /// They are another encoder's, and are left.
+    Leave,
+    /// They are another encoder's, and are written.
+    Write,
+}
+
+impl Mounting {
+    fn of_another(options: RestoreOptions) -> Self {
+        if options.with_mounting { Mounting::Write } else { Mounting::Leave }
+    }
+}
+
 struct Planner<'a> {
     profile: &'a BissProfile,
     device: &'a DeviceState,
-    keep_mounting: bool,
+    mounting: Mounting,
     base: Base,
     ops: Vec<Op>,
     unchanged: u64,
     missing: Vec<String>,
     left: Vec<RegisterAddress>,
+    mounting_written: Vec<RegisterAddress>,
 }
 
 impl<'a> Planner<'a> {
-    fn new(profile: &'a BissProfile, device: &'a DeviceState, keep_mounting: bool) -> Self {
+    fn new(profile: &'a BissProfile, device: &'a DeviceState, mounting: Mounting) -> Self {
         Planner {
             profile,
             device,
-            keep_mounting,
+            mounting,
             base: Base::default(),
             ops: Vec::new(),
             unchanged: 0,
             missing: Vec::new(),
             left: Vec::new(),
+            mounting_written: Vec::new(),
         }
     }
 
@@ -247,9 +267,12 @@ impl<'a> Planner<'a> {
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
             if old == new {
                 self.unchanged += 1;
-            } else if self.keep_mounting && self.profile.is_mounting(address) {
+            } else if self.mounting == Mounting::Leave && self.profile.is_mounting(address) {
                 self.left.push(address);
             } else {
+                if self.mounting == Mounting::Write && self.profile.is_mounting(address) {
+                    self.mounting_written.push(address);
+                }
                 changes.push(RegisterChange { address, old, new });
             }
         }
@@ -276,12 +299,12 @@ impl<'a> Planner<'a> {
             (None, _) => {}
             (Some(_), None) => self.missing.push(BissProfile::PRESET.to_owned()),
             (Some(to), Some(from)) if to == from => self.unchanged += to.emit().len() as u64,
-            (Some(_), Some(_)) if self.keep_mounting => {
-                let range = BissProfile::PRESET.parse::<RegisterRange>();
-                self.left.extend(range.into_iter().flat_map(RegisterRange::addresses));
-            }
+            (Some(_), Some(_)) if self.mounting == Mounting::Leave => self.left.extend(preset_addresses()),
             (Some(to), Some(from)) => {
                 check_preset(to, &self.device.identity)?;
+                if self.mounting == Mounting::Write {
+                    self.mounting_written.extend(preset_addresses());
+                }
                 self.base.preset = Some(from);
                 self.ops.push(Op::StorePreset { from, to });
             }
@@ -291,13 +314,20 @@ impl<'a> Planner<'a> {
 
     fn finish(mut self) -> Restore {
         self.left.sort_unstable();
+        self.mounting_written.sort_unstable();
         Restore {
             plan: BissPlan { base: self.base, ops: self.ops },
             unchanged: self.unchanged,
             missing: self.missing,
             mounting_left: RegisterRange::runs(self.left),
+            mounting_written: RegisterRange::runs(self.mounting_written),
         }
     }
+}
+
+/// The registers of the preset value.
+fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
+    BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
 }
 
 /// An area that is opened and saved takes all of it at once; another one, register by register.

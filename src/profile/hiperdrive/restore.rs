@@ -44,7 +44,8 @@ pub fn plan_restore(
         check_device(profile, &device.identity)?;
     }
     let mut wanted = Image::default();
-    let (mut unchanged, mut missing, mut mounting_left) = (0, Vec::new(), Vec::new());
+    let (mut unchanged, mut missing) = (0, Vec::new());
+    let (mut mounting_left, mut mounting_written) = (Vec::new(), Vec::new());
     for (&number, &to) in &profile.image.values {
         let item = Item(number);
         match device.image.get(number) {
@@ -52,12 +53,15 @@ pub fn plan_restore(
             Some(from) if from == to => unchanged += 1,
             Some(_) if stays(profile, &device.identity, item, options) => mounting_left.push(item),
             Some(_) => {
+                if is_of_another_mounting(profile, &device.identity, item) {
+                    mounting_written.push(item);
+                }
                 wanted.values.insert(number, to);
             }
         }
     }
     let plan = plan_edits(device, &wanted)?;
-    Ok(Restore { plan, unchanged, missing, mounting_left })
+    Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
 /// Refuses a device, or drives of it, that the profile was not read from, and those of another kind. What the profile does not
@@ -92,8 +96,12 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
 
 /// An item that differs is left as it is.
 fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
-    item.0.base() == REFERENCE
-        || profile.is_mounting(item) && !options.with_mounting && !is_same_place(profile, device, item)
+    item.0.base() == REFERENCE || !options.with_mounting && is_of_another_mounting(profile, device, item)
+}
+
+/// An item belongs to the mounting of another device or drive.
+fn is_of_another_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+    profile.is_mounting(item) && !is_same_place(profile, device, item)
 }
 
 /// The profile was read from this very device, and the drive's parameter from this very drive.

@@ -14,4 +14,7 @@ pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store}
 pub use item::{FieldRange, Item, ItemError};
 pub use plan::{Base, HiperfacePlan, Op, Scalar};
 pub use record::{FieldImage, HiperfaceProfile, Interface, MountingMark, ProfileIdentity, Recorded};
-pub use restore::{DeviceState, PlanError, Restore, RestoreOptions, check_device, plan_restore};
+pub use restore::{
+    DeviceState, PlanError, Redo, Restore, RestoreOptions, UnknownField, check_allowed, check_device, created_by,
+    plan_restore,
+};

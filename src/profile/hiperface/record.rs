@@ -19,6 +19,8 @@ pub struct HiperfaceProfile {
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
+    /// Of a before-image: fields that the write created, as it wrote them. Restoring the before-image deletes them again.
+    pub created: Vec<FieldImage>,
     /// Unknown entries of the fields, by field number.
     pub unknown_in_fields: Vec<(u8, Unknown)>,
 }
@@ -132,7 +134,11 @@ impl HiperfaceProfile {
             fields.push(field);
         }
         fields.sort_by_key(|field| field.number);
-        Ok(HiperfaceProfile { identity, interface, recorded, mounting, fields, unknown_in_fields })
+        let mut created = Vec::new();
+        for entries in entries.structures("created")? {
+            created.push(read_field(entries)?.0);
+        }
+        Ok(HiperfaceProfile { identity, interface, recorded, mounting, fields, created, unknown_in_fields })
     }
 
     pub(in crate::profile) fn write(&self, writer: &mut Writer) {
@@ -158,6 +164,15 @@ impl HiperfaceProfile {
         for field in &self.fields {
             let unknown = self.unknown_in_fields.iter().find(|(number, _)| *number == field.number);
             write_field(writer, field, unknown.map(|(_, unknown)| unknown));
+        }
+        writer.close(']');
+        if self.created.is_empty() {
+            return;
+        }
+        writer.comment("created by the write: restoring this deletes them again where they are unchanged and the last");
+        writer.open("created", '[');
+        for field in &self.created {
+            write_field(writer, field, None);
         }
         writer.close(']');
     }

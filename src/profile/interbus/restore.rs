@@ -41,9 +41,10 @@ pub fn plan_restore(
     if !options.allow_other_device {
         check_device(profile, &device.identity)?;
     }
-    let keep_mounting = !is_same_device(profile, &device.identity) && !options.with_mounting;
+    let is_other = !is_same_device(profile, &device.identity);
     let mut wanted = Image::of(device.image.parameters);
-    let (mut unchanged, mut missing, mut mounting_left) = (0, Vec::new(), Vec::new());
+    let (mut unchanged, mut missing) = (0, Vec::new());
+    let (mut mounting_left, mut mounting_written) = (Vec::new(), Vec::new());
     for item in profile.items() {
         let (Some(to), Some(from)) = (profile.image.item(item), device.image.item(item)) else {
             missing.push(item.to_string());
@@ -51,8 +52,8 @@ pub fn plan_restore(
         };
         if to == from {
             unchanged += 1;
-        } else if keep_mounting && profile.is_mounting(item) {
-            mounting_left.push(item);
+        } else if is_other && profile.is_mounting(item) {
+            if options.with_mounting { &mut mounting_written } else { &mut mounting_left }.push(item);
         }
         wanted.put(item, if mounting_left.last() == Some(&item) { from } else { to });
     }
@@ -66,7 +67,7 @@ pub fn plan_restore(
         },
         other => other,
     })?;
-    Ok(Restore { plan, unchanged, missing, mounting_left })
+    Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
 /// Refuses an encoder that the profile was not read from. A profile without a serial number is of no encoder, so that it is

@@ -2,6 +2,7 @@
 //! as SICK 8010701 names them.
 
 use super::CaptureError;
+use super::encoding::decode_head;
 use super::header::{Columns, TimeUnit, VoltUnit, is_unit, unit_of};
 use super::import::{Number, number, whole};
 
@@ -51,6 +52,17 @@ pub struct Layout {
     pub time_unit: TimeUnit,
     /// Volts in one unit of the sine and cosine columns.
     pub volts_per_unit: f64,
+    /// The time column counts samples, and the header says when they were taken.
+    pub clock: Option<SampleClock>,
+}
+
+/// When samples were taken that are counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleClock {
+    /// The time of sample 0 in seconds.
+    pub start_s: f64,
+    /// From one sample to the next in seconds.
+    pub increment_s: f64,
 }
 
 impl Delimiter {
@@ -79,7 +91,8 @@ impl Layout {
     /// # Errors
     /// [`CaptureError`] where they hold no table with sine and cosine.
     pub fn detect(head: &[u8], wishes: &Wishes) -> Result<Self, CaptureError> {
-        let text = whole_lines(head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head));
+        let decoded = decode_head(head);
+        let text = whole_lines(&decoded, head.len());
         if text.iter().all(u8::is_ascii_whitespace) {
             return Err(CaptureError::Empty);
         }
@@ -94,6 +107,7 @@ impl Layout {
         let (before, data) = lines.split_at(first);
         let width = data.first().map_or(0, |line| filled(&line.fields));
         let first_row = data.first().map_or(1, |line| line.row);
+        let clock = sample_clock(before, decimal_comma)?;
         let header = header(before, width);
         let names = header.first().cloned().unwrap_or_default();
         let named = Columns::named(&names).map(|columns| fitting(columns, data.first(), decimal_comma));
@@ -117,6 +131,8 @@ impl Layout {
             columns,
             time_unit: wishes.time_unit.or(time_unit).unwrap_or_default(),
             volts_per_unit: wishes.volts_per_unit.unwrap_or(volt_unit.factor()),
+            // Who says what the time column is in does not mean sample numbers.
+            clock: clock.filter(|_| columns.time.is_some() && wishes.time_unit.is_none()),
         })
     }
 }
@@ -133,11 +149,29 @@ fn fitting(columns: Columns, first: Option<&Line>, decimal_comma: bool) -> Colum
     Columns { reference_angle: angle, absolute, ..columns }
 }
 
-/// Without a line that is cut off at the end of the head.
-fn whole_lines(head: &[u8]) -> &[u8] {
+/// Without a line that is cut off at the end of the head, of which so many bytes were read.
+fn whole_lines(head: &[u8], read: usize) -> &[u8] {
     match head.iter().rposition(|byte| *byte == b'\n') {
-        Some(end) if head.len() + 3 >= HEAD => head.get(..=end).unwrap_or(head),
+        Some(end) if read + 3 >= HEAD => head.get(..=end).unwrap_or(head),
         _ => head,
+    }
+}
+
+/// The columns `Start` and `Increment` of a header, and what the line below it says of them: the first column counts
+/// samples then (as oscilloscopes of Rigol write it).
+fn sample_clock(before: &[Line], decimal_comma: bool) -> Result<Option<SampleClock>, CaptureError> {
+    let at = |line: &Line, name: &[u8]| line.fields.iter().position(|field| field.eq_ignore_ascii_case(name));
+    let places = |line: &Line| at(line, b"start").zip(at(line, b"increment"));
+    let named = before.iter().enumerate().find_map(|(row, line)| Some((row, places(line)?)));
+    let Some((row, (start, increment))) = named else { return Ok(None) };
+    let below = before.get(row + 1);
+    let value = |column: usize| match number(below?.fields.get(column)?, decimal_comma) {
+        Number::Finite(value) => Some(value),
+        Number::NotFinite | Number::Text => None,
+    };
+    match (value(start), value(increment)) {
+        (Some(start_s), Some(increment_s)) if increment_s > 0.0 => Ok(Some(SampleClock { start_s, increment_s })),
+        _ => Err(CaptureError::NoSampleClock { row: below.map_or(0, |line| line.row) }),
     }
 }
 
@@ -217,9 +251,11 @@ fn header(before: &[Line], width: usize) -> Vec<Vec<String>> {
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&latin(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
-    // Of two lines the second is one of units, or the first is none of names.
+    // Of two lines the second is one of units, or the first is none of names. What is no unit there may be a count
+    // ("Sequence") or a number of the header.
+    let is_named = |line: &Vec<String>| Columns::named(line).is_some();
     let units = |line: &Vec<String>| {
-        line.iter().all(|name| name.is_empty() || name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))
+        !is_named(line) && line.iter().any(|name| name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))
     };
     if found.len() == 2 && !found.first().is_some_and(units) {
         found.truncate(1);

@@ -4,6 +4,7 @@
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use super::detect::{HEAD, Layout, Wishes};
+use super::encoding::Decoder;
 use super::header::Columns;
 use super::{Capture, CaptureError, Wires};
 
@@ -18,7 +19,9 @@ pub struct Import {
     ends: Vec<usize>,
     ended: usize,
     last: Option<u8>,
-    begun: bool,
+    decoder: Decoder,
+    /// What is missing in the first row that was left out, and that row.
+    first_left_out: Option<(u64, CaptureError)>,
     taken: Taken,
     capture: Capture,
 }
@@ -27,7 +30,8 @@ pub struct Import {
 #[derive(Clone, Copy, Debug)]
 struct Taken {
     columns: Columns,
-    seconds: f64,
+    /// The time in seconds is the first, and the second for each unit of the column.
+    seconds: (f64, f64),
     volts: f64,
     comma: bool,
 }
@@ -42,6 +46,8 @@ pub(super) enum Number {
 
 /// Longest row. What is longer is no table.
 const LONGEST_ROW: usize = 1 << 20;
+/// Rows without which there is nothing to measure: a table of fewer is refused for the first value that is missing.
+const LEAST_ROWS: u64 = 6;
 /// Letters of a wrong field that are told.
 const SHOWN: usize = 24;
 
@@ -53,14 +59,18 @@ impl Import {
     /// As [`Layout::detect`].
     pub fn begin(head: &[u8], wishes: &Wishes) -> Result<Self, CaptureError> {
         let head = head.get(..HEAD).unwrap_or(head);
-        Ok(Import::with(Layout::detect(head, wishes)?))
+        let import = Import::with(Layout::detect(head, wishes)?);
+        Ok(Import { decoder: Decoder::of(head), ..import })
     }
 
     /// Begins with a layout that is known.
     pub fn with(layout: Layout) -> Self {
         let taken = Taken {
             columns: layout.columns,
-            seconds: layout.time_unit.factor(),
+            seconds: match layout.clock {
+                Some(clock) => (clock.start_s, clock.increment_s),
+                None => (0.0, layout.time_unit.factor()),
+            },
             volts: layout.volts_per_unit,
             comma: layout.decimal_comma,
         };
@@ -78,7 +88,8 @@ impl Import {
             ends: vec![0; 64],
             ended: 0,
             last: None,
-            begun: false,
+            decoder: Decoder::of(&[]),
+            first_left_out: None,
             taken,
             capture,
         }
@@ -99,11 +110,8 @@ impl Import {
     /// # Errors
     /// [`CaptureError`] with the row and the column.
     pub fn feed(&mut self, bytes: &[u8]) -> Result<(), CaptureError> {
-        let mut rest = bytes;
-        if !self.begun && !rest.is_empty() {
-            self.begun = true;
-            rest = rest.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(rest);
-        }
+        let decoded = self.decoder.decode(bytes);
+        let mut rest = &*decoded;
         while !rest.is_empty() {
             let used = self.step(rest)?;
             rest = rest.get(used..).unwrap_or_default();
@@ -114,11 +122,24 @@ impl Import {
     /// The samples, after the last bytes.
     ///
     /// # Errors
-    /// Where the last row is broken, or none had numbers.
+    /// Where no row had numbers, or most of them had none.
     pub fn finish(mut self) -> Result<(Layout, Capture), CaptureError> {
-        // No more bytes: a row without an end of line ends here.
-        self.step(&[])?;
-        if self.capture.sine_v.is_empty() { Err(CaptureError::NoNumbers) } else { Ok((self.layout, self.capture)) }
+        // No more bytes: a row without an end of line ends here, and may be cut off.
+        if let Err(error) = self.step(&[]) {
+            self.leave_out(self.reader.line(), error);
+        }
+        let (taken, left_out) = (self.capture.sine_v.len() as u64, self.capture.left_out);
+        match self.first_left_out {
+            Some((_, error)) if taken < LEAST_ROWS => Err(error),
+            Some((row, _)) if left_out > taken => Err(CaptureError::NoValues { left_out, rows: taken + left_out, row }),
+            _ if taken == 0 => Err(CaptureError::NoNumbers),
+            _ => Ok((self.layout, self.capture)),
+        }
+    }
+
+    fn leave_out(&mut self, row: u64, why: CaptureError) {
+        self.capture.left_out += 1;
+        self.first_left_out.get_or_insert((row, why));
     }
 
     /// One call of the splitter; bytes used.
@@ -141,8 +162,10 @@ impl Import {
                 let ends = self.ends.get(..self.ended).unwrap_or_default();
                 // After a row that ended with its line break, the splitter is in the next line.
                 let line = self.reader.line() - u64::from(self.last == Some(b'\n'));
-                if line >= self.layout.first_row {
-                    self.taken.take(&mut self.row, ends, line, &mut self.capture)?;
+                if line >= self.layout.first_row
+                    && let Some(missing) = self.taken.take(&self.row, ends, line, &mut self.capture)?
+                {
+                    self.leave_out(line, missing);
                 }
                 (self.written, self.ended) = (0, 0);
             }
@@ -153,50 +176,107 @@ impl Import {
 }
 
 impl Taken {
-    fn take(&self, row: &mut [u8], ends: &[usize], line: u64, capture: &mut Capture) -> Result<(), CaptureError> {
+    /// Takes a row; gives what is missing in it where it is left out.
+    fn take(
+        &self,
+        row: &[u8],
+        ends: &[usize],
+        line: u64,
+        capture: &mut Capture,
+    ) -> Result<Option<CaptureError>, CaptureError> {
         if ends.len() == 1
             && row.get(..ends.first().copied().unwrap_or(0)).is_some_and(|row| row.trim_ascii().is_empty())
         {
-            return Ok(());
+            return Ok(None);
         }
-        let mut value = |column: usize| self.value(row, ends, line, column);
-        let time = self.columns.time.map(&mut value).transpose()?;
-        let mut sine = value(self.columns.sine)? * self.volts;
-        let mut cosine = value(self.columns.cosine)? * self.volts;
-        if let (Some((refsin, refcos)), Some(wires)) = (self.columns.references, &mut capture.wires) {
-            let (refsin, refcos) = (value(refsin)? * self.volts, value(refcos)? * self.volts);
+        let columns = &self.columns;
+        // A time is always there: a table without one is broken.
+        let time = columns.time.map(|column| self.time(row, ends, line, column)).transpose()?;
+        let (refsin, refcos) = columns.references.unzip();
+        let taken =
+            [Some(columns.sine), Some(columns.cosine), refsin, refcos, columns.reference_angle, columns.absolute];
+        let mut values = [None; 6];
+        for (own, column) in values.iter_mut().zip(taken) {
+            let Some(column) = column else { continue };
+            match self.value(row, ends, line, column)? {
+                Ok(value) => *own = Some(value),
+                Err(missing) => return Ok(Some(missing)),
+            }
+        }
+        let [sine, cosine, refsin, refcos, angle, steps] = values;
+        let (sine, cosine) = (sine.unwrap_or_default(), cosine.unwrap_or_default());
+        let steps = match (steps, columns.absolute) {
+            (Some(steps), Some(column)) => {
+                let not_whole = || CaptureError::NotWhole { row: line, column, text: steps.to_string() };
+                Some(whole(steps).ok_or_else(not_whole)?)
+            }
+            _ => None,
+        };
+        let (mut sine, mut cosine) = (sine * self.volts, cosine * self.volts);
+        if let (Some(refsin), Some(refcos), Some(wires)) = (refsin, refcos, &mut capture.wires) {
+            let (refsin, refcos) = (refsin * self.volts, refcos * self.volts);
             wires.sin_v.push(sine);
             wires.refsin_v.push(refsin);
             wires.cos_v.push(cosine);
             wires.refcos_v.push(refcos);
             (sine, cosine) = (sine - refsin, cosine - refcos);
         }
-        if let (Some(column), Some(kept)) = (self.columns.reference_angle, &mut capture.reference_deg) {
-            kept.push(value(column)?);
+        if let (Some(angle), Some(kept)) = (angle, &mut capture.reference_deg) {
+            kept.push(angle);
         }
-        if let (Some(column), Some(kept)) = (self.columns.absolute, &mut capture.absolute) {
-            let steps = value(column)?;
-            let not_whole = || CaptureError::NotWhole { row: line, column, text: steps.to_string() };
-            kept.push(whole(steps).ok_or_else(not_whole)?);
+        if let (Some(steps), Some(kept)) = (steps, &mut capture.absolute) {
+            kept.push(steps);
         }
-        capture.time_s.extend(time.map(|time| time * self.seconds));
+        let (start, per_unit) = self.seconds;
+        capture.time_s.extend(time.map(|time| start + time * per_unit));
         capture.sine_v.push(sine);
         capture.cosine_v.push(cosine);
-        Ok(())
+        Ok(None)
     }
 
-    fn value(&self, row: &mut [u8], ends: &[usize], line: u64, column: usize) -> Result<f64, CaptureError> {
-        let at = column.saturating_sub(1);
-        let start = at.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0);
-        let short = || CaptureError::ShortRow { row: line, columns: ends.len(), needed: self.columns.last() };
-        let end = *ends.get(at).ok_or_else(short)?;
-        let field = row.get(start..end).unwrap_or_default().trim_ascii();
+    fn time(&self, row: &[u8], ends: &[usize], line: u64, column: usize) -> Result<f64, CaptureError> {
+        let field = self.field(row, ends, line, column)?;
         match number(field, self.comma) {
             Number::Finite(value) => Ok(value),
             Number::NotFinite => Err(CaptureError::NotFinite { row: line, column, text: shown(field) }),
             Number::Text => Err(CaptureError::NotANumber { row: line, column, text: shown(field) }),
         }
     }
+
+    /// A value; the inner error where the instrument had none.
+    fn value(
+        &self,
+        row: &[u8],
+        ends: &[usize],
+        line: u64,
+        column: usize,
+    ) -> Result<Result<f64, CaptureError>, CaptureError> {
+        let field = self.field(row, ends, line, column)?;
+        let not_a_number = || CaptureError::NotANumber { row: line, column, text: shown(field) };
+        match number(field, self.comma) {
+            Number::Finite(value) => Ok(Ok(value)),
+            Number::NotFinite => Ok(Err(CaptureError::NotFinite { row: line, column, text: shown(field) })),
+            Number::Text if is_no_value(field) => Ok(Err(not_a_number())),
+            Number::Text => Err(not_a_number()),
+        }
+    }
+
+    /// What stands in a column, without the spaces around it.
+    fn field<'r>(&self, row: &'r [u8], ends: &[usize], line: u64, column: usize) -> Result<&'r [u8], CaptureError> {
+        let at = column.saturating_sub(1);
+        let start = at.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0);
+        let short = || CaptureError::ShortRow { row: line, columns: ends.len(), needed: self.columns.last() };
+        let end = *ends.get(at).ok_or_else(short)?;
+        Ok(row.get(start..end).unwrap_or_default().trim_ascii())
+    }
+}
+
+/// What instruments write where they have no value: nothing, dashes, or that their input was overloaded.
+fn is_no_value(field: &[u8]) -> bool {
+    const WORDS: [&str; 10] =
+        ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
+    let text = String::from_utf8_lossy(field).to_lowercase();
+    text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || WORDS.contains(&text.as_str())
 }
 
 /// The whole number that a value is; nothing beyond 2⁵³, where not every number can be told from the next.

@@ -5,10 +5,12 @@
 //! differences; and beside them what belongs to the same moment: the angle of a reference encoder, the absolute position.
 
 mod detect;
+mod encoding;
 mod header;
 mod import;
 
-pub use detect::{Delimiter, HEAD, Layout, Wishes};
+pub use detect::{Delimiter, HEAD, Layout, SampleClock, Wishes};
+pub use encoding::decode_head;
 pub use header::{Columns, TimeUnit, VoltUnit};
 pub use import::Import;
 
@@ -29,6 +31,8 @@ pub struct Capture {
     pub reference_deg: Option<Vec<f64>>,
     /// Absolute positions in steps of 1/32 period, where the table has them.
     pub absolute: Option<Vec<i64>>,
+    /// Rows without a measured value (empty, NaN, overload) beside their time, and a last line that is cut off: they are left out.
+    pub left_out: u64,
 }
 
 impl Capture {
@@ -86,7 +90,7 @@ pub enum CaptureError {
         /// What stands there.
         text: String,
     },
-    /// A number is NaN or infinite.
+    /// A number is NaN or infinite: a time, or a value of a table with too few rows.
     #[error("row {row}, column {column}: {text} is not finite")]
     NotFinite {
         /// The line in the file, from 1.
@@ -95,5 +99,21 @@ pub enum CaptureError {
         column: usize,
         /// What stands there, shortened.
         text: String,
+    },
+    /// More than half of the rows have no measured value.
+    #[error("{left_out} of {rows} rows have no value, the first is row {row}")]
+    NoValues {
+        /// Rows without one.
+        left_out: u64,
+        /// Rows in all.
+        rows: u64,
+        /// The first of them: the line in the file, from 1.
+        row: u64,
+    },
+    /// The header names a start and an increment of the time, and the line below does not give them.
+    #[error("the header names Start and Increment, and row {row} has no numbers for them")]
+    NoSampleClock {
+        /// The line in the file, from 1.
+        row: u64,
     },
 }

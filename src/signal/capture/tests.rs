@@ -71,6 +71,7 @@ fn what_was_found_out_is_told_and_can_be_corrected() {
         columns: Columns::PLAIN,
         time_unit: TimeUnit::Milliseconds,
         volts_per_unit: 1e-3,
+        clock: None,
     };
     assert_eq!(layout, expected);
     let wishes = Wishes {
@@ -86,7 +87,7 @@ fn what_was_found_out_is_told_and_can_be_corrected() {
 fn errors_name_row_and_column() {
     let not_a_number = |row, column, text: &str| CaptureError::NotANumber { row, column, text: text.to_owned() };
     let not_finite = |row, column, text: &str| CaptureError::NotFinite { row, column, text: text.to_owned() };
-    let cases: [(&str, CaptureError); 17] = [
+    let cases: [(&str, CaptureError); 21] = [
         ("", CaptureError::Empty),
         (" \n\r\n", CaptureError::Empty),
         ("time,sin,cos\n", CaptureError::NoNumbers),
@@ -97,12 +98,16 @@ fn errors_name_row_and_column() {
         ("t,sin,cos\n0,abc,0.5\n", not_a_number(2, 2, "abc")),
         ("0,1,2\n1,2,x\n", not_a_number(2, 3, "x")),
         ("t,sin,cos\r\n0,1,2\r\n\r\n1,,2\r\n", not_a_number(4, 2, "")),
+        ("0,1,2\n1,NaN,3\n", not_finite(2, 2, "NaN")),
+        ("0,1,2\n1,2,-inf\n", not_finite(2, 3, "-inf")),
         ("0,1,2\n1,2,1.2.3", not_a_number(2, 3, "1.2.3")),
         ("0;1,5;2\n1;2;1.234,5", not_a_number(2, 3, "1.234,5")),
+        ("0,1,2\n1,OVERLOAD,3\n", not_a_number(2, 2, "OVERLOAD")),
+        ("0,1,2\n1,2,1.2.3\n", not_a_number(2, 3, "1.2.3")),
+        ("0;1,5;2\n1;2;1.234,5\n", not_a_number(2, 3, "1.234,5")),
         ("0,1,2\n1,--2,3\n", not_a_number(2, 2, "--2")),
-        ("0,1,2\n1,NaN,3\n", not_finite(2, 2, "NaN")),
         ("t,sin,cos\nnan,0.1,0.2\n", not_finite(2, 1, "nan")),
-        ("0,1,2\n1,2,-inf\n", not_finite(2, 3, "-inf")),
+        ("t,sin,cos\n,0.1,0.2\n1,2,3\n", not_a_number(2, 1, "")),
         ("0,1,2\n1,2\n", CaptureError::ShortRow { row: 2, columns: 2, needed: 3 }),
     ];
     for (text, expected) in cases {
@@ -150,4 +155,89 @@ fn a_reference_and_an_absolute_position_are_taken_where_they_fit() {
     assert_eq!(error, CaptureError::NotWhole { row: 2, column: 5, text: "-8.5".to_owned() });
     let error = read("t,sin,cos,reference\n0,1,2,3\n1,1,2\n").unwrap_err();
     assert_eq!(error, CaptureError::ShortRow { row: 3, columns: 3, needed: 4 });
+}
+
+/// Issue 22.13: the first column of an oscilloscope that writes Start and Increment counts samples.
+#[test]
+fn start_and_increment_give_the_times() {
+    let text =
+        "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-6.000e-03,2.000e-06,\n0,0.1,0.2,,\n1,0.3,0.4,,\n2,0.5,0.6,,\n";
+    let (layout, capture) = read(text).unwrap();
+    assert_eq!(layout.clock, Some(SampleClock { start_s: -6e-3, increment_s: 2e-6 }));
+    for (time, expected) in capture.time_s.iter().zip([-6e-3, -5.998e-3, -5.996e-3]) {
+        assert!((time - expected).abs() < 1e-12, "{time}");
+    }
+    assert_eq!((capture.sine_v, capture.cosine_v), (vec![0.1, 0.3, 0.5], vec![0.2, 0.4, 0.6]));
+    // In millivolts, and with other separators.
+    let (_, capture) = read("X;CH1;CH2;START;INCREMENT\nSequence;mV;mV;0;0,5\n0;1;2;;\n2;3;4;;\n").unwrap();
+    assert_eq!((capture.time_s, capture.sine_v), (vec![0.0, 1.0], vec![0.001, 0.003]));
+    // Sample numbers are never taken for seconds.
+    for second in ["Sequence,Volt,Volt,,", "Sequence,Volt,Volt,now,soon", "Sequence,Volt,Volt,0,0"] {
+        let text = format!("X,CH1,CH2,Start,Increment\n{second}\n0,0.1,0.2,,\n1,0.3,0.4,,\n");
+        assert_eq!(read(text).unwrap_err(), CaptureError::NoSampleClock { row: 2 }, "{second}");
+    }
+    // Who says what the column is in is right.
+    let wishes = Wishes { time_unit: Some(TimeUnit::Milliseconds), ..Wishes::default() };
+    assert_eq!(read_in(99, text.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 1e-3, 2e-3]);
+}
+
+/// Issue 22.13: rows without a value are left out and counted; so is a last line that is cut off. Six rows are enough to
+/// measure something.
+#[test]
+fn rows_without_a_value_are_left_out() {
+    let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
+    for gap in ["6,,3", "6,NaN,3", "6,2,-inf", "6,OVERLOAD,3", "6,2,---", "6,2,\u{221e}", "6, ,3"] {
+        let (_, capture) =
+            read(format!("t,sin,cos\n{six}{gap}\n7,8,9\n")).unwrap_or_else(|error| panic!("{gap}: {error}"));
+        assert_eq!((capture.left_out, capture.time_s), (1, vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 7.0]), "{gap}");
+        assert_eq!((capture.sine_v[6], capture.cosine_v[6], capture.sine_v.len()), (8.0, 9.0, 7), "{gap}");
+    }
+    for (broken, column) in [("6,#,3", 2), ("nan,2,3", 1), (",2,3", 1)] {
+        let error = read(format!("t,sin,cos\n{six}{broken}\n7,8,9\n")).unwrap_err();
+        let place = match error {
+            CaptureError::NotANumber { row, column, .. } | CaptureError::NotFinite { row, column, .. } => (row, column),
+            other => panic!("{broken}: {other}"),
+        };
+        assert_eq!(place, (8, column), "{broken}");
+    }
+    for cut in ["6,3", "6,3,-", "6,", "6,3,4e", "6"] {
+        let (_, capture) = read(format!("t,sin,cos\n{six}{cut}")).unwrap();
+        assert_eq!((capture.sine_v.len(), capture.left_out), (6, 1), "{cut}");
+    }
+    let wires = "0,3,2.5,2,2.5,7\n".repeat(6);
+    let (_, capture) = read(format!("t,SIN,REFSIN,COS,REFCOS,abs\n{wires}1,3,OL,2,2.5,8\n2,3,2.5,2,2.5,9\n")).unwrap();
+    let absolute = capture.absolute.unwrap();
+    assert_eq!(
+        (absolute.len(), absolute[6], capture.wires.unwrap().sin_v.len()),
+        (7, 9, 7),
+        "all columns stay in step"
+    );
+    let most = format!("t,sin,cos\n{six}{}", "6,NaN,2\n".repeat(7));
+    assert_eq!(read(most).unwrap_err(), CaptureError::NoValues { left_out: 7, rows: 13, row: 8 });
+}
+
+/// Issue 22.13: a table in UTF-16, and units in a second row.
+#[test]
+fn encodings_and_rows_of_units_do_not_reject_a_table() {
+    let text = "Zeit (\u{b5}s)\tSinus\tKosinus\r\n0\t0,25\t0,5\r\n1000\t-0,3\t0,4\r\n";
+    let units: Vec<u16> = text.encode_utf16().collect();
+    let le: Vec<u8> = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+    let be: Vec<u8> = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+    for bytes in [[&[0xFF, 0xFE], &le[..]].concat(), le, [&[0xFE, 0xFF], &be[..]].concat(), be] {
+        let (layout, capture) = read(bytes).unwrap();
+        assert_eq!((layout.first_row, &layout.names[0][..]), (2, "Zeit (\u{b5}s)"));
+        assert_eq!((capture.time_s, capture.sine_v), (vec![0.0, 0.001], vec![0.25, -0.3]));
+    }
+    let rows = [
+        "t,sin,cos\ns,mV,mV\n",
+        "t,sin,cos\n,mV,mV\n",
+        "n,sin,cos\n#,mV,mV\n",
+        "Time,Channel A,Channel B\n(s),(mV),(mV)\n\n",
+        "t,sin,cos\nSample, mV , mV \n",
+    ];
+    for head in rows {
+        let (_, capture) =
+            read(format!("{head}0,250,500\n1,-300,400\n")).unwrap_or_else(|error| panic!("{head}: {error}"));
+        assert_eq!((capture.sine_v, capture.cosine_v), (vec![0.25, -0.3], vec![0.5, 0.4]), "{head}");
+    }
 }

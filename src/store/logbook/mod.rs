@@ -89,6 +89,15 @@ pub struct Conclusion {
     pub cycles_spent: u64,
 }
 
+/// Status codes that a device has given away: reading them took them out of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StatusEntry {
+    /// When they were read.
+    pub at: Timestamp,
+    /// The codes, in words, in the device's order.
+    pub codes: String,
+}
+
 impl Logbook {
     /// Opens the logbook, making it and its folder where there is none.
     ///
@@ -193,6 +202,38 @@ impl Logbook {
                    ORDER BY id DESC LIMIT ?5";
         let key = (&device.kind, &device.device_type, &device.serial_number, device.is_virtual, limit);
         self.database.prepare(sql)?.query_map(key, read_entry)?.collect()
+    }
+
+    /// Records status codes that were read from a device. They are on disk when this returns.
+    ///
+    /// # Errors
+    /// Where the logbook cannot be written.
+    pub fn note_status(&mut self, at: Timestamp, device: &DeviceKey, codes: &str) -> Result<(), LogbookError> {
+        let sql = "INSERT INTO status (at, kind, device_type, serial_number, is_virtual, codes)
+                   VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
+        let (kind, device_type, serial) = (&device.kind, &device.device_type, &device.serial_number);
+        let row = (at.to_string(), kind, device_type, serial, device.is_virtual, codes);
+        self.database.execute(sql, row).map(drop).map_err(|error| self.failed(error))
+    }
+
+    /// The last `limit` readings of status codes from a device, newest first.
+    ///
+    /// # Errors
+    /// Where the logbook cannot be read.
+    pub fn statuses(&self, device: &DeviceKey, limit: u32) -> Result<Vec<StatusEntry>, LogbookError> {
+        self.read_statuses(device, limit).map_err(|error| self.failed(error))
+    }
+
+    fn read_statuses(&self, device: &DeviceKey, limit: u32) -> rusqlite::Result<Vec<StatusEntry>> {
+        let sql = "SELECT at, codes FROM status
+                   WHERE kind = ?1 AND device_type = ?2 AND serial_number = ?3 AND is_virtual = ?4
+                   ORDER BY id DESC LIMIT ?5";
+        let key = (&device.kind, &device.device_type, &device.serial_number, device.is_virtual, limit);
+        let read = |row: &Row<'_>| {
+            let at = row.get("at").and_then(|text: String| schema::parse_time(&text))?;
+            Ok(StatusEntry { at, codes: row.get("codes")? })
+        };
+        self.database.prepare(sql)?.query_map(key, read)?.collect()
     }
 
     fn failed(&self, error: rusqlite::Error) -> LogbookError {

@@ -12,7 +12,8 @@ use super::LogbookProblem;
 use crate::store::files::create_folder;
 
 /// What leads from each schema to the next. Steps are added, never changed: logbooks made by them exist.
-const STEPS: [&str; 1] = ["
+const STEPS: [&str; 2] = [
+    "
     CREATE TABLE entry (
         id             INTEGER PRIMARY KEY,
         at             TEXT    NOT NULL, -- RFC 3339, UTC
@@ -32,7 +33,20 @@ const STEPS: [&str; 1] = ["
         CHECK ((outcome IS 'failed') = (failure IS NOT NULL))
     ) STRICT;
     CREATE INDEX entry_of_device ON entry (kind, device_type, serial_number, is_virtual);
-"];
+",
+    "
+    CREATE TABLE status (
+        id             INTEGER PRIMARY KEY,
+        at             TEXT    NOT NULL, -- RFC 3339, UTC
+        kind           TEXT    NOT NULL,
+        device_type    TEXT    NOT NULL,
+        serial_number  TEXT    NOT NULL,
+        is_virtual     INTEGER NOT NULL CHECK (is_virtual IN (0, 1)),
+        codes          TEXT    NOT NULL
+    ) STRICT;
+    CREATE INDEX status_of_device ON status (kind, device_type, serial_number, is_virtual);
+",
+];
 
 /// The schema this version knows.
 pub(super) const KNOWN: i64 = STEPS.len() as i64;

@@ -21,7 +21,7 @@ pub(in crate::ui) fn question_ui(ctx: &egui::Context, skin: &Skin, studio: &Stud
             if name(response, true, &word).clicked() {
                 actions.push(Action::Confirm);
             }
-            if button(ui, "", &skin.say("question.stay")).clicked() {
+            if button(ui, "", &skin.words(&question.decline)).clicked() {
                 actions.push(Action::Escape);
             }
         });

@@ -56,7 +56,19 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
             let total = format!("{} B", identity.label.eeprom_bytes());
             row(ui, skin, &skin.say("encoder_card.memory"), skin.mono(total));
         }
+        line_quality(ui, skin, encoder);
     });
+}
+
+/// What had to be repeated on the line, while it is connected.
+fn line_quality(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+    if encoder.session.line().is_none() {
+        return;
+    }
+    let quality = &encoder.line_quality;
+    let words = RichText::new(skin.words(&words::line_quality(quality)));
+    let words = if quality.is_troubled() { words.color(skin.palette.warn) } else { words };
+    row(ui, skin, &skin.say("encoder_card.line"), words);
 }
 
 fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {

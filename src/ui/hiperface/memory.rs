@@ -160,7 +160,7 @@ fn field_ui(
         ui.add_space(skin.space.between);
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::KEY).color(skin.palette.warn));
-            let why = rules::edit(field).err();
+            let why = encoder.why_not_edited(field);
             paragraph(ui, why.map(|why| skin.words(&why)).unwrap_or_default());
         });
         return;
@@ -168,7 +168,7 @@ fn field_ui(
     let read_only = match encoder.session.phase {
         Phase::Offline => None,
         _ if encoder.session.is_writing() => Some(Text::new("session.busy")),
-        _ => rules::edit(field).err(),
+        _ => encoder.why_not_edited(field),
     };
     let device = encoder.field(field.number).and_then(|own| own.bytes.clone()).unwrap_or_default();
     let mounting = encoder.mounting(field.number);

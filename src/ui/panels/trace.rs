@@ -5,7 +5,8 @@ use egui::{RichText, Ui};
 use egui_extras::{Column, TableBuilder};
 
 use super::nothing;
-use crate::app::{AnyDevice, Studio};
+
+use crate::app::{AnyDevice, Studio, TraceFault};
 use crate::link::Direction;
 use crate::ui::{Skin, Views};
 
@@ -36,9 +37,12 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views:
         .body(|body| {
             body.rows(ROW, lines.len(), |mut row| {
                 let Some(line) = lines.get(row.index()) else { return };
-                let (arrow, colour) = match line.direction {
-                    Direction::Sent => ("→", palette.muted),
-                    Direction::Received => ("←", palette.text),
+                let arrow = if line.direction == Direction::Sent { "→" } else { "←" };
+                let colour = match (line.fault, line.direction) {
+                    (Some(TraceFault::Broken), _) => palette.bad,
+                    (Some(TraceFault::Reported), _) => palette.warn,
+                    (None, Direction::Sent) => palette.muted,
+                    (None, Direction::Received) => palette.text,
                 };
                 row.col(|ui| {
                     let time = trace.time_of(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();

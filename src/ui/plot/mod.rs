@@ -97,9 +97,11 @@ pub fn plot_ui(
         ui.data_mut(|data| data.insert_temp(readout_id, used));
         ui.ctx().request_repaint();
     }
-    // The tools are no part of the picture.
-    let picture = Rect::from_min_max(egui::pos2(ui.min_rect().left(), top), ui.min_rect().max).expand(4.0);
-    view.shot.take(ui.ctx(), picture, context.actions);
+    // The tools are no part of the picture; the numbers are where all of them can be seen.
+    let shown = ui.min_rect();
+    let bottom = if used <= shown.bottom() - top - height + 0.5 { shown.bottom() } else { top + height };
+    let picture = Rect::from_min_max(egui::pos2(shown.left(), top), egui::pos2(shown.right(), bottom));
+    view.shot.take(ui, picture, context.actions);
 }
 
 /// Draws the chart; gives the time under the pointer.
@@ -127,7 +129,8 @@ fn chart_ui(
         return None;
     }
     let layout = lanes::layout(recorder, rect.shrink(6.0), ui.pixels_per_point(), &mut view.reduced);
-    let hovered = response.hover_pos().filter(|place| layout.chart.contains(*place) && view.drag.is_none());
+    let is_free = view.drag.is_none() && !view.shot.is_wanted();
+    let hovered = response.hover_pos().filter(|place| layout.chart.contains(*place) && is_free);
     pointer::interact(ui, &response, context, &layout, &mut view.drag);
     let painter = ui.painter().with_clip_rect(rect);
     chart::paint(&painter, context, &layout, &view.reduced, view.drag.as_ref(), hovered);

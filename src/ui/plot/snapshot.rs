@@ -1,34 +1,83 @@
-//! A picture of the plot: the window gives its pixels with the next frame, and a part of them is kept.
+//! A picture of the plot: the window gives its pixels some frames later, and a part of them is kept. The plot has to be in
+//! sight as a whole, and nothing may stand over it: no menu, no pointer.
 
 use std::sync::{Arc, OnceLock};
 
-use egui::{ColorImage, Context, Rect};
+use egui::{ColorImage, Context, Rect, Ui};
 
 use crate::app::{Action, Picture};
 
-/// The pixels of the window, as soon as they are there.
+/// A picture that is wanted.
 #[derive(Default)]
-pub(super) struct Shot(Option<Arc<OnceLock<Arc<ColorImage>>>>);
+pub(super) enum Shot {
+    /// None is.
+    #[default]
+    None,
+    /// It is asked for as soon as the plot is in sight; so many frames were waited.
+    Wanted(usize),
+    /// The window was asked for its pixels; where the plot was in the frame before this one.
+    Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
+}
+
+/// Frames in which the plot has to come into sight.
+const FRAMES: usize = 60;
 
 impl Shot {
-    /// Wishes a picture: the next one, without the menu that it was wished in.
+    /// Wishes a picture: not of this frame, in which the menu is open that it was wished in.
     pub(super) fn wish(&mut self, ctx: &Context) {
-        let place: Arc<OnceLock<Arc<ColorImage>>> = Arc::default();
-        self.0 = Some(place.clone());
-        let waker = ctx.clone();
-        ctx.request_screenshot(move |image| {
-            // It is called once.
-            let _ = place.set(image);
-            waker.request_repaint();
-        });
+        *self = Shot::Wanted(0);
+        ctx.request_repaint();
     }
 
-    /// Takes the pixels of the plot out of those of the window when they have come.
-    pub(super) fn take(&mut self, ctx: &Context, plot: Rect, actions: &mut Vec<Action>) {
-        let Some(image) = self.0.as_ref().and_then(|place| place.get()).cloned() else { return };
-        self.0 = None;
-        actions.extend(part(&image, plot, ctx.pixels_per_point()).map(Action::AskPicture));
+    /// The next frame may be the one that is kept.
+    pub(super) fn is_wanted(&self) -> bool {
+        !matches!(self, Shot::None)
     }
+
+    /// The plot was drawn at `plot`: asks for the pixels when it can be seen as a whole, and takes its part of them when they
+    /// have come.
+    pub(super) fn take(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
+        match self {
+            Shot::None => {}
+            // The menu closes in the first frame.
+            Shot::Wanted(0) => {
+                *self = Shot::Wanted(1);
+                ui.ctx().request_repaint();
+            }
+            Shot::Wanted(frames) if !ui.clip_rect().expand(0.5).contains_rect(plot) => {
+                *frames += 1;
+                if *frames > FRAMES {
+                    *self = Shot::None;
+                    actions.push(Action::PictureCut);
+                    return;
+                }
+                ui.scroll_to_rect(plot, None);
+                ui.ctx().request_repaint();
+            }
+            Shot::Wanted(_) => *self = Shot::Asked(ask(ui.ctx()), plot),
+            Shot::Asked(place, before) => match place.get().cloned() {
+                // The pixels are those of the frame before.
+                Some(image) => {
+                    let wanted = *before;
+                    *self = Shot::None;
+                    actions.extend(part(&image, wanted, ui.ctx().pixels_per_point()).map(Action::AskPicture));
+                }
+                None => *before = plot,
+            },
+        }
+    }
+}
+
+fn ask(ctx: &Context) -> Arc<OnceLock<Arc<ColorImage>>> {
+    let place: Arc<OnceLock<Arc<ColorImage>>> = Arc::default();
+    let (kept, waker) = (place.clone(), ctx.clone());
+    ctx.request_screenshot(move |image| {
+        // It is called once.
+        let _ = kept.set(image);
+        waker.request_repaint();
+    });
+    ctx.request_repaint();
+    place
 }
 
 fn part(image: &ColorImage, wanted: Rect, pixels_per_point: f32) -> Option<Picture> {
@@ -69,5 +118,55 @@ mod tests {
             })
             .unwrap()
         );
+    }
+
+    /// Draws a frame with a plot of this place in an area of this size; what was asked for in it.
+    fn frame(ctx: &Context, shot: &mut Shot, area: f32, plot: Rect) -> Vec<Action> {
+        let mut actions = Vec::new();
+        let screen = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(area, area));
+        let input = egui::RawInput { screen_rect: Some(screen), ..Default::default() };
+        let mut output = ctx.run_ui(input, |ui| {
+            ui.set_clip_rect(screen);
+            shot.take(ui, plot, &mut actions);
+        });
+        output.textures_delta.clear();
+        actions
+    }
+
+    /// Issue 22.14: the picture is of the plot as it stood in the frame whose pixels came, without the menu; nothing around
+    /// it, and all of it.
+    #[test]
+    fn the_picture_is_of_the_plot_as_it_stood_in_its_frame() {
+        let ctx = Context::default();
+        let mut shot = Shot::default();
+        let place = |left: f32| Rect::from_min_size(pos2(left, 2.0), egui::vec2(3.0, 2.0));
+        assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty() && !shot.is_wanted());
+        shot.wish(&ctx);
+        assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty());
+        assert!(matches!(shot, Shot::Wanted(1)), "the menu is still open in this frame");
+        frame(&ctx, &mut shot, 8.0, place(1.0));
+        // It moves in the frame that is kept, and again before the pixels have come.
+        frame(&ctx, &mut shot, 8.0, place(4.0));
+        let Shot::Asked(pixels, _) = &shot else { panic!() };
+        let mut image = ColorImage::filled([8, 8], Color32::BLACK);
+        image.pixels[2 * 8 + 4] = Color32::RED;
+        pixels.set(Arc::new(image)).unwrap();
+        let mut bytes = vec![0; 3 * 2 * 3];
+        bytes[0] = 255;
+        let actions = frame(&ctx, &mut shot, 8.0, place(0.0));
+        let [Action::AskPicture(picture)] = &actions[..] else { panic!("{} actions", actions.len()) };
+        assert_eq!(Some(picture), Picture::new(3, 2, bytes).as_ref());
+        assert!(!shot.is_wanted());
+    }
+
+    /// Issue 22.14: a plot of which a part is out of sight gives no picture, and that is said.
+    #[test]
+    fn a_plot_that_is_not_wholly_in_sight_gives_no_picture() {
+        let ctx = Context::default();
+        let mut shot = Shot::default();
+        shot.wish(&ctx);
+        let plot = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(8.0, 20.0));
+        let told = (0..100).flat_map(|_| frame(&ctx, &mut shot, 8.0, plot)).collect::<Vec<_>>();
+        assert!(matches!(&told[..], [Action::PictureCut]) && !shot.is_wanted());
     }
 }

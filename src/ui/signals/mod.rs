@@ -114,7 +114,13 @@ pub(super) fn page_ui(
                 error::page_ui(ui, skin, signals, view, actions);
             }
         }
-        Page::Synchronise => synchronise::page_ui(ui, skin, signals, encoder, actions),
-        Page::InputCircuit => input_circuit::page_ui(ui, skin, &mut view.input_circuit),
+        Page::Synchronise => {
+            source::problem(ui, skin, signals);
+            synchronise::page_ui(ui, skin, signals, encoder, actions);
+        }
+        Page::InputCircuit => {
+            source::problem(ui, skin, signals);
+            input_circuit::page_ui(ui, skin, &mut view.input_circuit);
+        }
     });
 }

@@ -243,14 +243,15 @@ pub(super) fn periods_ui(
 ) {
     let word = skin.say("quality.periods_per_turn");
     entry(ui, skin, &word, |ui| {
-        settled_entry(ui, draft, &signals.periods().to_string(), 72.0, &word, |text| {
+        let shown = signals.periods().map(|periods| periods.to_string()).unwrap_or_default();
+        settled_entry(ui, draft, &shown, 72.0, &word, |text| {
             actions.push(Action::Signals(Signals_::SetPeriods(forms::periods(text)?)));
             Ok(())
         });
         let usual = skin.say("quality.periods_usual");
         let menu = ui.menu_button(icons::CARET_DOWN, |ui| {
             for periods in USUAL_PERIODS {
-                if ui.selectable_label(signals.periods() == periods, periods.to_string()).clicked() {
+                if ui.selectable_label(signals.periods() == Some(periods), periods.to_string()).clicked() {
                     *draft = None;
                     actions.push(Action::Signals(Signals_::SetPeriods(periods)));
                     ui.close();
@@ -261,5 +262,8 @@ pub(super) fn periods_ui(
     });
     if let Some((_, Some(why))) = draft {
         problem(ui, skin, Some(why));
+    }
+    if signals.periods().is_none() {
+        line(ui, icons::QUESTION, skin.palette.warn, skin.say("quality.periods_open"));
     }
 }

@@ -90,7 +90,8 @@ fn reading(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action
     ui.add_space(skin.space.between);
 }
 
-fn problem(ui: &mut Ui, skin: &Skin, signals: &Signals) {
+/// Why a capture could not be read. The other pages say it too.
+pub(super) fn problem(ui: &mut Ui, skin: &Skin, signals: &Signals) {
     let Some(problem) = signals.problem() else { return };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::X_CIRCLE).color(skin.palette.bad));

@@ -3,8 +3,8 @@
 use egui::{ScrollArea, Ui};
 
 use super::Draft;
-use crate::app::Action;
 use crate::app::signals::{Action as Signals, Column, Table, forms};
+use crate::app::{Action, Text};
 use crate::signal::capture::{Delimiter, TimeUnit};
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Skin, icons};
@@ -57,6 +57,10 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, 
         );
         if let Some((_, Some(why))) = &view.volts {
             problem(ui, skin, Some(why));
+        }
+        if let Some(clock) = table.layout.as_ref().and_then(|layout| layout.clock) {
+            let text = Text::new("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
+            paragraph(ui, skin.caption(skin.words(&text)));
         }
         if table.half_chosen != (None, None) {
             paragraph(ui, skin.caption(skin.say("columns.half_chosen")));

@@ -86,6 +86,10 @@ impl Interruption for Interrupted {
         (!self.cause.is_cancelled()).then(|| self.cause.to_string())
     }
 
+    fn done(&self) -> usize {
+        self.done.ops
+    }
+
     fn write_cycles(&self) -> u64 {
         self.done.write_cycles
     }

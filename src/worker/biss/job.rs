@@ -137,6 +137,8 @@ pub struct Prepared {
     pub mounting_left: Vec<RegisterRange>,
     /// The device mode in which the profile was read that is restored, where it may hold what was never saved.
     pub unsaved: Option<DeviceMode>,
+    /// Values of the mounting of another device that are written: they have to be set up anew.
+    pub mounting_written: Vec<RegisterRange>,
 }
 
 impl Prepared {

@@ -48,16 +48,26 @@ pub(super) fn prepare(
         }
     };
     let cycles_seen = cycles_seen(&desk.store, &device_key(&identity, desk.is_virtual));
-    let Restore { plan, unchanged, missing, mounting_left } = plan;
+    let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
     let unsaved = match change {
         Change::Restore { profile, .. } => profile.recorded.device_mode,
         _ => None,
     };
-    Ok(Prepared { kind: change.kind(), plan, identity, cycles_seen, unchanged, missing, mounting_left, unsaved })
+    Ok(Prepared {
+        kind: change.kind(),
+        plan,
+        identity,
+        cycles_seen,
+        unchanged,
+        missing,
+        mounting_left,
+        mounting_written,
+        unsaved,
+    })
 }
 
 fn only(plan: BissPlan) -> Restore {
-    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new() }
+    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
 }
 
 fn state(

@@ -74,8 +74,18 @@ pub(super) fn prepare(
         }
     };
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
-    let Restore { plan, unchanged, missing, mounting_left } = plan;
-    Ok(Prepared { kind: change.kind(), plan, identity, image, cycles_seen, unchanged, missing, mounting_left })
+    let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
+    Ok(Prepared {
+        kind: change.kind(),
+        plan,
+        identity,
+        image,
+        cycles_seen,
+        unchanged,
+        missing,
+        mounting_left,
+        mounting_written,
+    })
 }
 
 /// That there are the drives which a person has named. A profile may have more of them.
@@ -89,5 +99,5 @@ fn are_there(identity: &Identity, change: &Change) -> Result<(), Error> {
 }
 
 fn only(plan: HiperdrivePlan) -> Restore {
-    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new() }
+    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
 }

@@ -4,7 +4,7 @@ use super::{Commit, Committed, Doing, Hiperface, JobError, Prepared, WEAR_LIMIT}
 use crate::device::hiperface::write::{Confirmed, Interrupted, Written, carry_out, confirm};
 use crate::device::hiperface::{Error, Identity, Master, profile_of};
 use crate::profile::Body;
-use crate::profile::hiperface::{Op, Recorded, Scalar};
+use crate::profile::hiperface::{Op, Recorded, Scalar, created_by};
 use crate::protocol::hiperface::KIND;
 use crate::store::DeviceKey;
 use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
@@ -78,6 +78,10 @@ impl Interruption for Interrupted {
         (self.cause != Error::Cancelled).then(|| self.cause.to_string())
     }
 
+    fn done(&self) -> usize {
+        self.done.ops
+    }
+
     fn write_cycles(&self) -> u64 {
         self.done.write_cycles
     }
@@ -94,6 +98,7 @@ fn before_image(prepared: &Prepared) -> String {
             Scalar::Address(_) | Scalar::Settings(_) => {}
         }
     }
-    let profile = profile_of(&prepared.identity, base.fields.clone(), recorded);
+    let mut profile = profile_of(&prepared.identity, base.fields.clone(), recorded);
+    profile.created = created_by(&prepared.plan);
     backup_of(Body::Hiperface(profile)).emit()
 }

@@ -5,9 +5,11 @@ use std::fmt;
 use crate::device::hiperface::check::Line;
 use crate::device::hiperface::find::{Attempt, FindOptions, Findings, Found};
 use crate::device::hiperface::write::{Interrupted, Written};
-use crate::device::hiperface::{Error, Identity, PositionReading, Rest, SaveOptions, Survey};
+use crate::device::hiperface::{Error, Identity, LineQuality, PositionReading, Rest, SaveOptions, Survey};
 use crate::profile::Consent;
-use crate::profile::hiperface::{FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, RestoreOptions};
+use crate::profile::hiperface::{
+    FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, Redo, RestoreOptions, UnknownField,
+};
 use crate::protocol::hiperface::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
@@ -175,8 +177,36 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<FieldRange>,
+    /// Values of the mounting of another device that are written: they have to be set up anew.
+    pub mounting_written: Vec<FieldRange>,
+    /// Data fields with bytes of unknown meaning that differ from another encoder's.
+    pub unknown_fields: Vec<UnknownField>,
+    /// Data fields that the write created which this undoes, and that are left: they have changed since, or are not the last.
+    pub created_left: Vec<u8>,
+    /// The profile is of another type of encoder.
+    pub other_type: Option<OtherType>,
     /// The position asked for, where the plan sets another one that keeps the phase.
     pub wanted_position: Option<u32>,
+}
+
+/// The types of a profile and of the encoder that it goes onto, which is of another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OtherType {
+    /// In the profile.
+    pub profile: u8,
+    /// In the encoder.
+    pub device: u8,
+}
+
+impl Prepared {
+    /// What has to be set up anew after it. Any value of another mounting, and any byte of unknown meaning, may be an
+    /// offset between encoder and motor.
+    pub fn redo(&self) -> Vec<Redo> {
+        let values = self.mounting_written.iter().copied().map(Redo::Value);
+        let copies = self.unknown_fields.iter().any(UnknownField::is_copied);
+        let commutation = (copies || !self.mounting_written.is_empty()).then_some(Redo::Commutation);
+        commutation.into_iter().chain(values).collect()
+    }
 }
 
 /// A plan that a person consented to.
@@ -225,6 +255,8 @@ pub enum Remark {
     Codes(Vec<StatusCode>),
     /// An encoder that answered while one searched.
     Found(Found),
+    /// Something had to be repeated, or came too late.
+    Line(LineQuality),
 }
 
 /// The step that a HIPERFACE job is at. Its text is the command line's.

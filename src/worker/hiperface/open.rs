@@ -21,6 +21,12 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
+/// Behind this link is a line on which a drive may be a second master. It reads the encoder at power-up and then runs on
+/// sine and cosine, so that a silent line proves nothing.
+pub fn may_have_other_master(url: &LinkUrl) -> bool {
+    matches!(url.scheme, Scheme::Serial | Scheme::Tcp)
+}
+
 /// Opens a link to a HIPERFACE encoder.
 ///
 /// # Errors

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use super::{Change, Doing, Hiperface, JobError, Prepared, device_key};
+use super::{Change, Doing, Hiperface, JobError, OtherType, Prepared, device_key};
 use crate::device::hiperface::write::{ensure_free, read_guarded_fields, read_memory};
 use crate::device::hiperface::{
     Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
 use crate::profile::hiperface::{
-    Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, RestoreOptions, Scalar,
-    check_device, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
+    Base, DeviceState, FieldImage, HiperfacePlan, HiperfaceProfile, Op, PlanError, Restore, RestoreOptions, Scalar,
+    check_allowed, plan_create, plan_delete, plan_redefine, plan_restore, plan_scalar, plan_store,
 };
 use crate::protocol::hiperface::{BROADCAST, CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase};
 use crate::worker::commit::cycles_seen;
@@ -32,6 +32,10 @@ pub(super) fn prepare(
         unchanged: 0,
         missing: Vec::new(),
         mounting_left: Vec::new(),
+        mounting_written: Vec::new(),
+        unknown_fields: Vec::new(),
+        created_left: Vec::new(),
+        other_type: None,
         wanted_position: None,
     };
     match change {
@@ -63,18 +67,23 @@ fn restore(
 ) -> Result<(), JobError> {
     let serial_number = prepared.identity.serial.serial_number.clone();
     let encoder_type = prepared.identity.label.encoder_type;
-    if !options.allow_other_device {
-        // Known before the fields are read.
-        check_device(profile, &serial_number, encoder_type)?;
-    }
+    // Known before the fields are read.
+    check_allowed(profile, &serial_number, encoder_type, &options)?;
     let memory = read_memory(master)?;
     let progress = &mut |done, total| tell(Progress { done, total, what: Doing::Field(done) });
     let fields = read_all_fields(master, memory.fields, progress)?;
     let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
-    prepared.plan = restore.plan;
-    prepared.unchanged = restore.unchanged;
-    prepared.missing = restore.missing;
-    prepared.mounting_left = restore.mounting_left;
+    let Restore { common, unknown_fields, created_left } = restore;
+    prepared.plan = common.plan;
+    prepared.unchanged = common.unchanged;
+    prepared.missing = common.missing;
+    prepared.mounting_left = common.mounting_left;
+    prepared.mounting_written = common.mounting_written;
+    prepared.unknown_fields = unknown_fields;
+    prepared.created_left = created_left;
+    let of_profile = profile.identity.encoder_type;
+    prepared.other_type =
+        (of_profile != encoder_type).then_some(OtherType { profile: of_profile, device: encoder_type });
     Ok(())
 }
 

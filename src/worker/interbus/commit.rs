@@ -74,6 +74,10 @@ impl Interruption for Interrupted {
         (self.cause != Error::Cancelled).then(|| self.cause.to_string())
     }
 
+    fn done(&self) -> usize {
+        self.done.ops
+    }
+
     fn write_cycles(&self) -> u64 {
         self.done.write_cycles
     }

@@ -127,6 +127,8 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
+    /// Values of the mounting of another device that are written: they have to be set up anew.
+    pub mounting_written: Vec<Item>,
 }
 
 /// How much of an EEPROM's life is gone.
@@ -274,9 +276,17 @@ mod tests {
             let (kind, identity) = (ChangeKind::Default, identity.clone());
             let parameters =
                 Parameters { steps: 4096, revolutions: 1, direction: identity.direction, preset: 0, zero_shift: 0 };
-            let (missing, mounting_left) = (Vec::new(), Vec::new());
-            let prepared =
-                Prepared { kind, plan, identity, parameters, cycles_seen: seen, unchanged: 0, missing, mounting_left };
+            let prepared = Prepared {
+                kind,
+                plan,
+                identity,
+                parameters,
+                cycles_seen: seen,
+                unchanged: 0,
+                missing: Vec::new(),
+                mounting_left: Vec::new(),
+                mounting_written: Vec::new(),
+            };
             prepared.wear()
         };
         let cases = [

@@ -58,9 +58,19 @@ pub(super) fn prepare(
         }
     };
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
-    let Restore { plan, unchanged, missing, mounting_left } = plan;
+    let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
     let parameters = device.image.parameters;
-    Ok(Prepared { kind: change.kind(), plan, identity, parameters, cycles_seen, unchanged, missing, mounting_left })
+    Ok(Prepared {
+        kind: change.kind(),
+        plan,
+        identity,
+        parameters,
+        cycles_seen,
+        unchanged,
+        missing,
+        mounting_left,
+        mounting_written,
+    })
 }
 
 /// The programs that an image speaks of; the shift of the window is read with any.
@@ -73,5 +83,5 @@ fn programs_touched(wanted: &Image) -> Vec<ProgramNumber> {
 }
 
 fn only(plan: InterbusPlan) -> Restore {
-    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new() }
+    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
 }

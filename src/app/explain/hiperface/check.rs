@@ -1,9 +1,11 @@
 //! The device check in words.
 
+use super::encoder;
 use super::words::{field_status, position, raw_position, status_with_number};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
+use crate::device::hiperface::LineQuality;
 use crate::device::hiperface::check::{Finding, Line, Step};
 
 /// The lines of a check.
@@ -19,7 +21,19 @@ fn step(step: Step) -> Text {
         Step::Position => "check.position",
         Step::Limits => "check.limits",
         Step::DataFields => "check.data_fields",
+        Step::Line => "check.line",
     })
+}
+
+/// How good a line is.
+pub fn line_quality(quality: &LineQuality) -> Text {
+    let [retries, damaged, silent, late] = quality.troubles();
+    Text::new(if quality.is_troubled() { "line.troubled" } else { "line.good" })
+        .with("requests", quality.requests)
+        .with("retries", retries)
+        .with("damaged", damaged)
+        .with("silent", silent)
+        .with("late", late)
 }
 
 /// What a step found.
@@ -44,6 +58,11 @@ fn finding(finding: &Finding) -> Text {
         Finding::FieldRefused { number, codes } => Text::new("check.field_refused")
             .with("number", number)
             .with_list("codes", codes.iter().copied().map(status_with_number)),
+        Finding::FieldUnreadable { number, why } => {
+            Text::new("check.field_unreadable").with("number", number).with_text("why", encoder(why))
+        }
+        Finding::Unreadable(why) => encoder(why),
+        Finding::Line(quality) => line_quality(quality),
     }
 }
 

@@ -184,6 +184,7 @@ impl Master<'_> {
             return Err(Trouble::Damage(Damage::AtEncoder(*code)));
         }
         self.station.line.answered();
+        self.station.line.answer_began(heard.first_at);
         self.station.line.echo.learn(heard.echo_heard);
         let sender = heard.reply.first().copied().unwrap_or(self.station.address);
         Ok(Answered { answer, sender, at: heard.first_at - self.station.timing().character })

@@ -144,6 +144,10 @@ fn another_encoder_keeps_its_mounting() {
     let all = ["OEM data 0x24:0x00:00>01 0x24:0x01:00>02 0x24:0x02:00>03 (1)", "0x01:0x02+6 (1)"];
     assert_eq!(ops(&restore), all);
     assert_eq!(restore.mounting_left, []);
+    // Issue 22.7: what comes from another mounting is named where it is written.
+    let written: Vec<String> = restore.mounting_written.iter().map(ToString::to_string).collect();
+    assert_eq!(written, ["0x01:0x02+6", "0x24:0x01+2"]);
+    assert_eq!(planned(&wanted, &device(&profile("1"))).mounting_written, []);
     // On the encoder itself nothing is held back.
     assert_eq!(ops(&planned(&wanted, &device(&profile("1")))), all);
     assert_eq!(ops(&plan_data(&wanted, &now).unwrap()), all[..1]);

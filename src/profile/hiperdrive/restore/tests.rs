@@ -98,6 +98,8 @@ fn what_a_person_marks_stays_on_its_own_drive() {
     assert_eq!((written(&restore), restore.mounting_left), (vec![160], vec![Item(number(360))]));
     let restore = plan_restore(&marked, &device, ALL).unwrap();
     assert_eq!(written(&restore), [160, 360]);
+    // Issue 22.7: what comes from another mounting is named where it is written; drive 1 is the profile's own.
+    assert_eq!(restore.mounting_written, [Item(number(360))]);
 }
 
 #[test]

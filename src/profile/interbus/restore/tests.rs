@@ -52,6 +52,8 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     let restore = plan_restore(&of, &other, with_it).unwrap();
     assert_eq!(operations(&restore), ["preset: 7 → 500, zero-shift: 9 → 0", "cam-mask:1: 0x00 → 0xFF"]);
     assert!(restore.mounting_left.is_empty());
+    // Issue 22.7: what comes from another mounting is named where it is written.
+    assert_eq!(restore.mounting_written, [Item::Preset, Item::ZeroShift]);
 }
 
 /// What stands in the file counts, not what usually belongs to a mounting.

@@ -1,0 +1,53 @@
+//! A question that is asked before something is lost, interrupted, or sent to a line with a drive on it.
+
+use std::path::PathBuf;
+
+use super::Text;
+use super::action::{Desk, FileQuestion};
+use super::session::{Saving, without_codes};
+use super::studio::SessionId;
+use crate::device::hiperface::find::FindOptions;
+use crate::link::LinkUrl;
+
+/// A question that has to be answered before something is done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// What would be lost or interrupted.
+    pub text: Text,
+    /// The word for going on.
+    pub confirm: Text,
+    /// The word for not going on.
+    pub decline: Text,
+    pub(super) then: Then,
+}
+
+/// What a confirmed question leads to.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Then {
+    CloseWindow,
+    CloseSession(SessionId),
+    Write(FileQuestion, PathBuf),
+    Forget(Desk),
+    Save(Box<Saving>),
+    /// The link of this session is opened.
+    OpenLink(SessionId),
+    /// The link of the connection dialog is searched.
+    Search(FindOptions),
+}
+
+impl Question {
+    /// A question before something is lost or interrupted.
+    pub(super) fn before(text: Text, confirm: Text, then: Then) -> Self {
+        Question { text, confirm, decline: Text::new("question.stay"), then }
+    }
+
+    /// Whether another master may be on the line behind a link.
+    pub(super) fn other_master(link: &LinkUrl, then: Then) -> Self {
+        Question {
+            text: Text::new("question.drive").with("link", without_codes(link)),
+            confirm: Text::new("question.no_drive"),
+            decline: Text::new("question.maybe_drive"),
+            then,
+        }
+    }
+}

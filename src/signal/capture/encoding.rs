@@ -1,0 +1,116 @@
+//! The characters of a table: UTF-8 as it is, UTF-16 (as Windows programs export "Unicode text") turned into it, piece by
+//! piece.
+
+use std::borrow::Cow;
+
+/// How the characters of a table are encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Encoding {
+    /// UTF-8, or one byte a character.
+    Bytes,
+    /// UTF-16, least significant byte first.
+    Utf16Le,
+    /// UTF-16, most significant byte first.
+    Utf16Be,
+}
+
+/// Turns the pieces of a table into UTF-8, without its byte order mark.
+#[derive(Debug)]
+pub(super) struct Decoder {
+    encoding: Encoding,
+    /// Bytes of the byte order mark that are still to come.
+    mark: usize,
+    /// The first byte of a unit that is cut by the end of a piece.
+    half: Option<u8>,
+    /// The first unit of a surrogate pair, likewise.
+    high: Option<u16>,
+}
+
+/// The beginning of a table in UTF-8.
+pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
+    Decoder::of(head).decode(head)
+}
+
+impl Decoder {
+    /// For a table that begins like this. Without a byte order mark, UTF-16 is known by the empty halves of its first two
+    /// characters.
+    pub(super) fn of(head: &[u8]) -> Self {
+        let (encoding, mark) = match head {
+            [0xEF, 0xBB, 0xBF, ..] => (Encoding::Bytes, 3),
+            [0xFF, 0xFE, ..] => (Encoding::Utf16Le, 2),
+            [0xFE, 0xFF, ..] => (Encoding::Utf16Be, 2),
+            [1..=255, 0, 1..=255, 0, ..] => (Encoding::Utf16Le, 0),
+            [0, 1..=255, 0, 1..=255, ..] => (Encoding::Utf16Be, 0),
+            _ => (Encoding::Bytes, 0),
+        };
+        Decoder { encoding, mark, half: None, high: None }
+    }
+
+    /// The next piece in UTF-8.
+    pub(super) fn decode<'b>(&mut self, bytes: &'b [u8]) -> Cow<'b, [u8]> {
+        let skipped = self.mark.min(bytes.len());
+        self.mark -= skipped;
+        let bytes = bytes.get(skipped..).unwrap_or_default();
+        match self.encoding {
+            Encoding::Bytes => Cow::Borrowed(bytes),
+            Encoding::Utf16Le => Cow::Owned(self.decode_units(bytes, u16::from_le_bytes)),
+            Encoding::Utf16Be => Cow::Owned(self.decode_units(bytes, u16::from_be_bytes)),
+        }
+    }
+
+    fn decode_units(&mut self, bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
+        let mut text = String::with_capacity(bytes.len() / 2 + 1);
+        for &byte in bytes {
+            match self.half.take() {
+                None => self.half = Some(byte),
+                Some(first) => self.take_unit(unit([first, byte]), &mut text),
+            }
+        }
+        text.into_bytes()
+    }
+
+    fn take_unit(&mut self, unit: u16, text: &mut String) {
+        if self.high.is_none() && (0xD800..0xDC00).contains(&unit) {
+            self.high = Some(unit);
+            return;
+        }
+        let units = self.high.take().into_iter().chain([unit]);
+        text.extend(char::decode_utf16(units).map(|own| own.unwrap_or(char::REPLACEMENT_CHARACTER)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decoded(bytes: &[u8], pieces: usize) -> Vec<u8> {
+        let mut decoder = Decoder::of(bytes);
+        let mut out = Vec::new();
+        for piece in bytes.chunks(pieces) {
+            out.extend_from_slice(&decoder.decode(piece));
+        }
+        out
+    }
+
+    #[test]
+    fn utf_16_becomes_utf_8_in_pieces_of_any_size() {
+        let text = "Zeit (µs);sin;cos 𝛼\n0;1;2\n";
+        let le: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let be: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        let ways = [
+            ("UTF-8", text.as_bytes().to_vec()),
+            ("UTF-8 with mark", [b"\xEF\xBB\xBF", text.as_bytes()].concat()),
+            ("LE", le.clone()),
+            ("LE with mark", [vec![0xFF, 0xFE], le].concat()),
+            ("BE", be.clone()),
+            ("BE with mark", [vec![0xFE, 0xFF], be].concat()),
+        ];
+        for (label, bytes) in ways {
+            for pieces in [1, 2, 3, 100] {
+                assert_eq!(decoded(&bytes, pieces), text.as_bytes(), "{label} in pieces of {pieces}");
+            }
+        }
+        assert_eq!(decoded(b"\xFF\xFE\x00\xD8a\x00b\x00", 1), "\u{FFFD}ab".as_bytes(), "half of a pair");
+        assert_eq!(decoded(b"", 1), b"");
+    }
+}
