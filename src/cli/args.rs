@@ -16,7 +16,7 @@ pub(super) use act::{Action, Do, action_name, no_action, no_option};
 pub(super) use analyse::Analyse;
 pub(super) use decode::{Decode, Direction, Protocol, Words};
 pub(super) use motion::Move;
-pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFormat, SsiLayout};
+pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFind, SsiFormat, SsiLayout};
 
 use super::hiperdrive::listed_parameters;
 use crate::link::LinkUrl;

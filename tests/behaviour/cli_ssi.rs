@@ -89,6 +89,71 @@ fn layouts_go_to_other_programs() {
     assert_eq!(told["position"], 0x2A5B);
 }
 
+/// A recording of `tests/vectors/ssi_find` (made in Python): its path, its frames as text and the positions that were meant.
+fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
+    let path = format!("{}/tests/vectors/ssi_find/{name}.txt", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    let lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split_once(' ').unwrap());
+    let rows = lines.map(|(frame, meant)| (frame.to_owned(), meant.parse().ok())).collect();
+    (path, rows)
+}
+
+/// Issue 22.22: `ssi find` of the contract: the first in the list reads the frames as they were meant, and can be tried as it
+/// stands.
+#[test]
+fn layouts_of_recorded_frames_are_found() {
+    let bench = Bench::new();
+    // Whether the frames can decide.
+    for (name, ambiguous) in
+        [("excess_360_fast", false), ("start_bit", true), ("twice_with_gap", true), ("gray_even_parity", true)]
+    {
+        let (path, rows) = recording(name);
+        let found = bench.run(&["ssi", "find", "--json", &path]).json();
+        assert_eq!((&found["frames"], &found["ambiguous"]), (&json!(900), &json!(ambiguous)), "{name}");
+        assert_eq!(found["next"].is_string(), ambiguous, "{name}: {}", found["next"]);
+        let layouts = found["layouts"].as_array().unwrap();
+        let scores: Vec<f64> = layouts.iter().map(|layout| layout["score"].as_f64().unwrap()).collect();
+        assert!(scores.iter().all(|score| (0.0..=1.0).contains(score)), "{name}: {scores:?}");
+        assert!(scores.windows(2).all(|pair| pair[0] >= pair[1]), "{name}: {scores:?}");
+        let first = &layouts[0];
+        assert!(first["explained"].as_u64().unwrap() > 860 && first["why"].is_string(), "{name}: {first}");
+        let spec = first["spec"].as_str().unwrap();
+        let (frame, meant) = rows.iter().rev().find(|(_, meant)| meant.is_some()).unwrap();
+        let decoded = bench.run(&["ssi", "decode", "--json", "--layout", spec, frame]).json();
+        assert_eq!(decoded["position"].as_u64(), *meant, "{name}: {spec}");
+    }
+    // Further columns are ignored, hex takes its clocks from the option, and a person reads the same.
+    let (_, rows) = recording("excess_360_fast");
+    let hex = |(frame, _): &(String, Option<u64>)| format!("0x{:X},17\n", u64::from_str_radix(frame, 2).unwrap());
+    let hex = bench.write("hex.csv", rows.iter().map(hex).collect::<String>());
+    let found = bench.run(&["ssi", "find", &hex, "--clocks", "9"]);
+    assert!(found.out.contains("steps=360") && found.out.contains("every bit of it is explained"), "{found:?}");
+    let guessed = bench.run(&["ssi", "find", &hex]);
+    assert!(guessed.err.contains("taken as 9"), "{guessed:?}");
+    // What says nothing.
+    let standing = bench.write("standing.txt", "101010101\n".repeat(300));
+    bench.run(&["ssi", "find", &standing]).fails(1, &["the shaft stands"]);
+    let low = bench.write("low.txt", "000000000\n".repeat(300));
+    bench.run(&["ssi", "find", &low]).fails(1, &["low"]);
+    let broken = bench.write("broken.txt", "101010101\n10101\n");
+    bench.run(&["ssi", "find", &broken]).fails(1, &["Line 2", "9 clocks"]);
+    bench.run(&["ssi", "find", &bench.file("nowhere.txt")]).fails(1, &["nowhere.txt"]);
+    bench.run(&["ssi", "find", &hex, "--clocks", "65"]).fails(2, &["65"]);
+}
+
+/// Issue 22.22: any frame in one word, as `ssi find` gives it.
+#[test]
+fn any_frame_is_written_in_one_word() {
+    let bench = Bench::new();
+    let decoded = |layout: &str, frame: &str| bench.run(&["ssi", "decode", "--json", "--layout", layout, frame]).json();
+    // Reference section 8: AHM36 in Gray, and the same with exchanged wires.
+    let ahm36 = "frame,clocks=27,mt=12,st=14,code=gray,area=26,err=27";
+    assert_eq!(decoded(ahm36, "0x0D93EEC")["position"], 4_778_587);
+    assert_eq!(decoded(&format!("{ahm36},inverted=1"), "0x726C113")["position"], 4_778_587);
+    bench.run(&["ssi", "decode", "--layout", "frame,clock=3", "0"]).fails(2, &["clock=3", "clocks, mt, st"]);
+    bench.run(&["ssi", "decode", "--layout", "frame,clocks=3,st=4", "000"]).fails(1, &["3"]);
+}
+
 #[test]
 fn what_is_wrong_is_said() {
     let bench = Bench::new();

@@ -6,7 +6,9 @@ mod refused;
 
 use super::{adapter, link};
 use crate::app::Text;
-use crate::protocol::ssi::{Advice, Code, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning};
+use crate::protocol::ssi::{
+    Advice, Code, Coded, Doubt, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning,
+};
 use crate::worker::ssi::JobError;
 
 pub use check::check;
@@ -100,14 +102,35 @@ pub fn frame(layout: &Layout) -> Text {
             Text::new("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
         }
     };
-    let errors = descriptor.errors.iter().map(|bit| format!("{} {}", bit.name, bit.clock)).collect::<Vec<_>>();
+    // A name that ends with its clock says it.
+    let named = |name: &str, clock: u8| match name.ends_with(&clock.to_string()) {
+        true => name.to_owned(),
+        false => format!("{name} {clock}"),
+    };
+    let errors = descriptor.errors.iter().map(|bit| named(&bit.name, bit.clock)).collect::<Vec<_>>();
     let errors = if errors.is_empty() { "–".to_owned() } else { errors.join(", ") };
-    Text::new("ssi.frame_line")
+    let line = Text::new("ssi.frame_line")
         .with("clocks", layout.clocks())
         .with_text("range", range)
         .with_text("code", code(descriptor.code))
         .with("lead", descriptor.lead)
-        .with("errors", errors)
+        .with("errors", errors);
+    unusual(layout)
+        .into_iter()
+        .fold(line, |line, more| Text::new("ssi.frame_and").with_text("line", line).with_text("more", more))
+}
+
+/// What few frames have.
+fn unusual(layout: &Layout) -> Vec<Text> {
+    let descriptor = layout.descriptor();
+    let between = (descriptor.between > 0).then(|| Text::new("ssi.frame_between").with("zeros", descriptor.between));
+    let over = (descriptor.coded != Coded::Position).then(|| Text::new("ssi.frame_over"));
+    let parity = descriptor.parity.map(|parity| {
+        Text::new(if parity.even { "ssi.frame_even" } else { "ssi.frame_odd" }).with("clock", parity.clock)
+    });
+    let repeat = descriptor.repeat.map(|repeat| Text::new("ssi.frame_twice").with("bits", repeat.word));
+    let inverted = descriptor.inverted.then(|| Text::new("ssi.frame_inverted"));
+    [between, over, parity, repeat, inverted].into_iter().flatten().collect()
 }
 
 /// A code by its name.
@@ -122,11 +145,30 @@ pub fn code(code: Code) -> Text {
 
 /// What would tell layouts apart.
 pub fn open(open: Open) -> Text {
-    Text::new(match open {
-        Open::TurnOnce => "ssi_find.turn_once",
-        Open::TurnFarther => "ssi_find.turn_farther",
-        Open::SeeAnError => "ssi_find.see_an_error",
-        Open::TypeLabel => "ssi_find.type_label",
+    match open {
+        Open::TurnOnce => Text::new("ssi_find.turn_once"),
+        Open::TurnFarther { from, to } if from == to => Text::new("ssi_find.turn_farther_one").with("clock", from),
+        Open::TurnFarther { from, to } => Text::new("ssi_find.turn_farther").with("from", from).with("to", to),
+        Open::PassAnEnd => Text::new("ssi_find.pass_the_end"),
+        Open::Direction => Text::new("ssi_find.direction"),
+        Open::OtherSpeed => Text::new("ssi_find.other_speed"),
+        Open::PassTheEnd { least, most } => Text::new("ssi_find.steps").with("least", least).with("most", most),
+        Open::Unexplained { clock } => Text::new("ssi_find.unexplained").with("clock", clock),
+        Open::SeeAnError => Text::new("ssi_find.see_an_error"),
+        Open::TypeLabel => Text::new("ssi_find.type_label"),
+    }
+}
+
+/// Why the first layout that was found is not to be relied on, or that it is.
+pub fn doubt(doubt: Option<Doubt>) -> Text {
+    Text::new(match doubt {
+        None => "ssi_find.sure",
+        Some(Doubt::Standing) => "ssi_find.standing",
+        Some(Doubt::Stuck { high: true }) => "ssi.stuck_high",
+        Some(Doubt::Stuck { high: false }) => "ssi.stuck_low",
+        Some(Doubt::Nothing) => "ssi_find.nothing_fits",
+        Some(Doubt::Close) => "ssi_find.close",
+        Some(Doubt::Open) => "ssi_find.open",
     })
 }
 
@@ -136,7 +178,6 @@ pub fn evidence(evidence: &Evidence) -> Text {
         .with("steps", evidence.steps_a_frame)
         .with("jumps", evidence.jumps)
         .with("misfits", evidence.misfits)
-        .with("errors", evidence.errors)
         .with("bits", evidence.bits_seen)
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::form::whole;
 use crate::app::Text;
 use crate::app::explain;
-use crate::protocol::ssi::{FrameTextError, Search, parse_frame};
+use crate::protocol::ssi::{Search, parse_frame};
 use crate::store::read_file;
 
 /// Frames that are searched at most: the newest.
@@ -22,7 +22,7 @@ pub enum Origin {
 
 /// Frames that follow each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Frames {
+pub struct Frames {
     /// Where they are from.
     pub origin: Origin,
     /// Bits of each, 1…64.
@@ -62,41 +62,70 @@ pub fn read_clocks(text: &str) -> Result<u8, Text> {
     clocks.ok_or_else(|| Text::new("ssi_find.clocks_range").with("clocks", number))
 }
 
-/// Reads frames from a file, one a line: bits in the order of the clocks or 0x and hex digits, the last column where there
-/// are several. Empty lines, a heading and what begins with # are passed over. Hexadecimal frames have `clocks` bits.
+/// Reads frames from a file, one a line: bits in the order of the clocks or 0x and hex digits, in the first column that
+/// looks like a frame; others are not looked at. Empty lines, a heading and what begins with # are passed over. Hexadecimal
+/// frames have `clocks` bits.
 ///
 /// # Errors
 /// The file cannot be read, or a line is no frame: which, and why.
-pub(super) fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
+pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
     let text = read_file(path).map_err(|error| explain::file(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     parse_frames(&text, clocks).map(|(clocks, frames)| Frames { origin: Origin::File(name), clocks, frames })
 }
 
 fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
-    let mut own = None;
+    // The column of the frames and their bits, once a line has told.
+    let mut own: Option<(usize, u8)> = None;
     let mut frames = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.trim().trim_start_matches('\u{feff}');
-        let column = line.rsplit([',', ';', '\t']).next().unwrap_or_default().trim().trim_matches('"');
-        if column.is_empty() || line.starts_with('#') {
+        if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let width = *own.get_or_insert_with(|| bits_of(column).unwrap_or(clocks));
-        match parse_frame(column, width) {
-            Ok(frame) => frames.push(frame),
+        let columns: Vec<&str> = columns(line);
+        let place = columns.iter().position(|column| is_frame(column));
+        let (place, width) = match (own, place) {
+            (Some(own), _) => own,
+            (None, Some(place)) => {
+                let width = columns.get(place).and_then(|column| bits_of(column)).unwrap_or(clocks);
+                *own.insert((place, width))
+            }
             // A heading.
-            Err(FrameTextError::Form(_)) if frames.is_empty() && !column.starts_with("0x") => own = None,
+            (None, None) if number == 1 || columns.len() > 1 => continue,
+            (None, None) => (0, clocks),
+        };
+        match parse_frame(columns.get(place).copied().unwrap_or_default(), width) {
+            Ok(frame) => frames.push(frame),
             Err(error) => {
                 let why = explain::ssi::frame_text(&error);
                 return Err(Text::new("ssi_find.line").with("line", number).with_text("why", why));
             }
         }
     }
-    match own {
+    match own.map(|(_, clocks)| clocks) {
         Some(clocks) if !frames.is_empty() && (1..=64).contains(&clocks) => Ok((clocks, frames)),
         _ => Err(Text::new("ssi_find.no_frames")),
     }
+}
+
+/// Columns are parted by commas, semicolons, tabs, or blanks; but bits may be written in groups of a byte at most.
+fn columns(line: &str) -> Vec<&str> {
+    let first = line.split_whitespace().next().unwrap_or_default();
+    let parted = line.contains([',', ';', '\t']);
+    let groups = bits_of(line).is_some() && bits_of(first).is_some_and(|bits| bits <= 8);
+    let columns: Vec<&str> = match () {
+        () if parted => line.split([',', ';', '\t']).collect(),
+        () if is_frame(first) && !groups => line.split_whitespace().collect(),
+        () => vec![line],
+    };
+    columns.into_iter().map(|column| column.trim().trim_matches('"')).collect()
+}
+
+/// Bits of more than a nibble, or hex digits behind 0x: it looks like a frame, and not like a number of something else.
+fn is_frame(column: &str) -> bool {
+    let hex = column.strip_prefix("0x").or(column.strip_prefix("0X"));
+    hex.is_some() || bits_of(column).is_some_and(|bits| bits >= 4)
 }
 
 /// How many bits are written down; `None`: it is something else.
@@ -117,6 +146,11 @@ mod tests {
         assert_eq!(parse_frames("0B10_10\n1 1 1 1\n", 25), Ok((4, vec![0b1010, 0b1111])));
         assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
         assert_eq!(parse_frames("\u{feff}t,\"frame\"\n1,\"0x0B\"\n", 8), Ok((8, vec![0x0B])));
+        // Further columns are not looked at.
+        assert_eq!(parse_frames("frame,position\n10101,5\n10111,1010\n", 8), Ok((5, vec![0b10101, 0b10111])));
+        assert_eq!(parse_frames("10101 17\n11111 -\n", 8), Ok((5, vec![0b10101, 0b11111])));
+        assert_eq!(parse_frames("1010101010 11\n", 8), Ok((10, vec![0b10_1010_1010])));
+        assert_eq!(parse_frames("1010 1010 11\n", 8), Ok((10, vec![0b10_1010_1011])));
     }
 
     #[test]

@@ -10,6 +10,10 @@ pub(in crate::cli) enum Ssi {
     Decode(SsiDecode),
     /// The frame of a position.
     Encode(SsiEncode),
+    /// Layouts that fit recorded frames, the best first.
+    ///
+    /// The shaft has to turn while they are recorded. Each layout has a SPEC for --layout.
+    Find(SsiFind),
     /// A decoder or table for other programs, or a profile.
     #[command(after_long_help = PROFILE)]
     Export(SsiExport),
@@ -47,6 +51,17 @@ pub(in crate::cli) struct SsiDecode {
     /// Bits in the order of the clocks (0b1010… or 1010…), or 0x… right-justified; repeatable.
     #[arg(required = true, value_name = "FRAME")]
     pub(in crate::cli) frames: Vec<String>,
+}
+
+#[derive(Args)]
+pub(in crate::cli) struct SsiFind {
+    /// A file with a frame a line, in the order of reading: bits in the order of the clocks, or 0x… right-justified. Further
+    /// columns are not looked at.
+    #[arg(value_name = "FRAMES.txt")]
+    pub(in crate::cli) file: PathBuf,
+    /// Bits of a frame that is written in hex.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub(in crate::cli) clocks: Option<u8>,
 }
 
 #[derive(Args)]
@@ -100,7 +115,9 @@ pub(in crate::cli) struct SsiLayout {
     /// over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps= with turns= or revolutions=25/2,
     /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres),
     /// direction=cw|ccw and preset= (which do not change how a frame is read). Or linuxcnc: with a format string of LinuxCNC
-    /// behind it.
+    /// behind it. Or any frame, as ssi find gives it: frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1 with clocks=, mt= and
+    /// st= (or steps= with turns= or revolutions=, or bits= with step=), code=, over=, area=, lead=, between=, shift=,
+    /// inverted=0|1, parity=even@27|odd@27, repeat=25+1, and clocks of further bits: ones= (always 1), err=, unknown=.
     #[arg(long = "layout", value_name = "FILE|SPEC")]
     pub(in crate::cli) spec: String,
 }

@@ -1,4 +1,5 @@
-//! The layout that `--layout` names: a profile in a file, a family with its settings, or a format string of LinuxCNC.
+//! The layout that `--layout` names: a profile in a file, a family with its settings, any frame in one word, or a format
+//! string of LinuxCNC.
 
 use std::path::Path;
 
@@ -9,7 +10,9 @@ use crate::cli::profiles::load;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::profile::ssi::SsiProfile;
-use crate::protocol::ssi::{Families, Family, Layout, Resolved, Settings, Times, from_linuxcnc};
+use crate::protocol::ssi::{
+    Descriptor, Families, Family, FrameSpecError, Layout, Resolved, Settings, Times, from_linuxcnc,
+};
 use crate::store::Store;
 
 /// A layout to work with.
@@ -31,12 +34,15 @@ pub(in crate::cli) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) ->
         let profile = SsiProfile::new(layout.descriptor().clone());
         return Ok(Chosen { profile, layout, times: None, title: spec.clone() });
     }
+    if let Some(frame) = Descriptor::parse(spec) {
+        return of_frame(spec, frame);
+    }
     let families = families(output)?;
     if is_file(spec, &families) { in_file(output, spec, &families) } else { of_family(output, spec, &families) }
 }
 
 /// The families that ship, with the user's own before them; of those that cannot be used is said why.
-fn families(output: &Output) -> Result<Families> {
+pub(super) fn families(output: &Output) -> Result<Families> {
     let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
     let (families, broken) = store.ssi_families();
     for error in broken {
@@ -52,6 +58,14 @@ fn is_file(spec: &str, families: &Families) -> bool {
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);
     let ends = Path::new(spec).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
     is_path || ends || (families.named(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
+}
+
+/// Any frame in one word.
+fn of_frame(spec: &str, frame: std::result::Result<Descriptor, FrameSpecError>) -> Result<Chosen> {
+    let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
+    let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
+    let profile = SsiProfile::new(layout.descriptor().clone());
+    Ok(Chosen { profile, layout, times: None, title: spec.to_owned() })
 }
 
 fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {

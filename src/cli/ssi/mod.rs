@@ -1,6 +1,7 @@
 //! The commands for SSI encoders: `ssi` without an encoder, and what can be done with one or its profile.
 
 mod export;
+mod find;
 mod frames;
 mod layout;
 mod live;
@@ -41,6 +42,7 @@ pub(super) fn ssi(output: &Output, command: &Ssi) -> Result {
     match command {
         Ssi::Decode(arguments) => frames::decode(output, arguments),
         Ssi::Encode(arguments) => frames::encode(output, arguments),
+        Ssi::Find(arguments) => find::find(output, arguments),
         Ssi::Export(arguments) => export::export(output, arguments),
     }
 }

@@ -1,24 +1,45 @@
-//! Finds the layout of recorded frames: every frame that a family can send, and any other, is read as if it were the
-//! one, and what makes the shaft turn most evenly is proposed. A turning shaft moves evenly; a frame that is read wrong
-//! jumps. What these frames cannot tell apart is one class, with what would decide.
+//! Finds the layout of recorded frames. Every way to read them as numbers is tried; a turning shaft moves evenly, and a
+//! frame that is read wrong jumps. What fits is ranked by how much has to be said about the frames once it is known, and by
+//! how usual it is. Layouts that these frames cannot tell apart are one class, with the motion that would decide.
 
-mod candidates;
-mod cost;
+mod any_other;
+mod ends;
+mod members;
+mod motion;
+mod of_family;
+mod plausible;
+mod probe;
+mod reading;
+mod seen;
 #[cfg(test)]
 mod tests;
+mod verdict;
 
-use std::collections::HashMap;
+use std::collections::HashSet;
 
-use candidates::{Candidate, candidates};
-use cost::{Motion, Seen};
+use members::{Member, members};
+use motion::Motion;
+use probe::Probe;
+use reading::{Read, readings};
+use seen::Seen;
 
 use super::family::{Families, Settings};
 use super::layout::Layout;
 
+/// Frames that are looked at: the newest.
+const MOST_FRAMES: usize = 4_000;
 /// Fewer different frames say nothing: a shaft that stands, or trembles.
 const LEAST_DIFFERENT: usize = 32;
-/// A class is only first if the next one needs so many bits more for all frames.
-const LEAST_LEAD_BITS: f64 = 64.0;
+/// Classes that are shown.
+const CLASSES: usize = 6;
+/// What a class that is less usual by one setting is put back, in bits of all frames.
+const WEIGHT_BITS: f64 = 8.0;
+/// What is less probable than the first by so much is left out.
+const IMPROBABLE: f64 = 8.0;
+/// Of a thousand frames, those in which two ways have to agree to be the same.
+const SAME_PERMILLE: usize = 995;
+/// Families are looked for in what takes no more bits than this beside the best, for all frames.
+const NEAR_BITS: f64 = 300.0;
 
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +48,7 @@ pub struct Search {
     pub frames: usize,
     /// How many of them were different.
     pub different: usize,
-    /// Why the first class is not to be relied on; `None`: it is.
+    /// Why the first class is not to be relied on; `None`: it is the only one, and every bit is explained.
     pub doubt: Option<Doubt>,
     /// What fits, the best first. Empty if nothing does.
     pub classes: Vec<Class>,
@@ -47,114 +68,189 @@ pub enum Doubt {
     Nothing,
     /// Two classes fit as well.
     Close,
+    /// One class is left, but not every bit of it is explained.
+    Open,
 }
 
 /// Layouts that these frames cannot tell apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
-    /// The most probable first: as delivered before what had to be set, families before any other encoder.
+    /// The most probable first: as delivered before what had to be set, usual widths before others.
     pub members: Vec<Proposal>,
     /// What speaks for it.
     pub evidence: Evidence,
-    /// What would tell the members apart.
+    /// What would tell the members apart, or prove them.
     pub open: Vec<Open>,
 }
 
 /// A layout that fits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal {
-    /// The family's key with its settings; `None`: any other encoder.
+    /// The family's key with its settings; `None`: any other encoder. Where the data wires are exchanged, only the layout
+    /// says so.
     pub family: Option<(String, Settings)>,
     /// The frame.
     pub layout: Layout,
 }
 
+impl Proposal {
+    /// The layout in one word, as the command line takes it: a family with as few settings as there can be, or any frame.
+    pub fn spec(&self, families: &Families) -> String {
+        let descriptor = self.layout.descriptor();
+        let named = self.family.as_ref().and_then(|(key, _)| {
+            let settings = families.named(key)?.settings_of(descriptor)?;
+            Some(settings.emit(key))
+        });
+        named.unwrap_or_else(|| descriptor.spec())
+    }
+}
+
 /// What speaks for a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
+    /// 0…1: how well it explains the frames, and how usual it is.
+    pub score: f64,
+    /// Frames that follow from their neighbours.
+    pub explained: usize,
     /// Steps of the lowest bit between two frames, in the middle.
     pub steps_a_frame: i64,
-    /// What has to be said of a frame so that its position is known from the one before, in bits.
+    /// What has to be said of a frame so that it is known from those before, in bits.
     pub bits_a_frame: f64,
     /// Frames that jump from the one before.
     pub jumps: usize,
-    /// Frames with a 1 where a 0 belongs, or a code word that is none.
+    /// Frames with another value where a bit is constant, or a code word that is none.
     pub misfits: usize,
-    /// Frames in which an error bit speaks.
-    pub errors: usize,
-    /// Bits of the position that changed at all.
+    /// Bits from the highest that moved to the lowest.
     pub bits_seen: u8,
 }
 
-/// What would tell the members of a class apart.
+/// What would tell the members of a class apart, or is not explained yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Open {
     /// Where turns end and steps begin: turn exactly once, and see by how much the position grows.
     TurnOnce,
-    /// How many bits the position has: turn on, until further bits change.
-    TurnFarther,
+    /// What clocks are that never changed: turn on until they do, or the position begins again.
+    TurnFarther {
+        /// The first of them.
+        from: u8,
+        /// The last of them.
+        to: u8,
+    },
+    /// Where the position begins again: turn on until it does.
+    PassAnEnd,
+    /// Whether wires are exchanged or the counting is reversed: turn clockwise, and see whether the position grows.
+    Direction,
+    /// Which clock is the lowest bit: turn at another speed, unevenly.
+    OtherSpeed,
+    /// How many steps there are: turn slowly over the end of the range.
+    PassTheEnd {
+        /// The least.
+        least: u32,
+        /// The most.
+        most: u32,
+    },
+    /// This clock moves, and nothing explains it.
+    Unexplained {
+        /// The first such clock.
+        clock: u8,
+    },
     /// Where error bits are: see one speak (turn too fast, exchange the supply).
     SeeAnError,
     /// Which of two families that send the same: the type label.
     TypeLabel,
 }
 
-/// Reads frames of `clocks` bits, right-justified, taken one after the other at even intervals.
-pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
-    let seen = Seen::new(frames, clocks);
-    let nothing =
-        |doubt| Search { frames: frames.len(), different: seen.different, doubt: Some(doubt), classes: Vec::new() };
-    if frames.is_empty() {
-        return nothing(Doubt::Standing);
-    }
-    if let Some(high) = seen.stuck() {
-        return nothing(Doubt::Stuck { high });
-    }
-    if seen.different < LEAST_DIFFERENT {
-        return nothing(Doubt::Standing);
-    }
-    let mut classes: Vec<(Motion, Vec<Candidate>)> = Vec::new();
-    let mut known: HashMap<u64, usize> = HashMap::new();
-    for candidate in candidates(families, &seen) {
-        let Some(motion) = seen.motion(&candidate.layout) else { continue };
-        match known.get(&motion.same).and_then(|index| classes.get_mut(*index)) {
-            Some((_, members)) => members.push(candidate),
-            None => {
-                known.insert(motion.same, classes.len());
-                classes.push((motion, vec![candidate]));
-            }
-        }
-    }
-    classes.sort_by(|a, b| a.0.evidence.bits_a_frame.total_cmp(&b.0.evidence.bits_a_frame));
-    let costs: Vec<f64> = classes.iter().map(|(motion, _)| motion.evidence.bits_a_frame).collect();
-    let even = classes.first().is_some_and(|(motion, _)| motion.is_even());
-    let doubt = match costs.as_slice() {
-        _ if !even => Some(Doubt::Nothing),
-        [best, next, ..] if (next - best) * (frames.len() as f64) < LEAST_LEAD_BITS => Some(Doubt::Close),
-        _ => None,
-    };
-    let classes = classes.into_iter().map(|(motion, members)| class(motion, members)).collect();
-    Search { frames: frames.len(), different: seen.different, doubt, classes }
+/// A way to read the frames with all layouts that do so.
+struct Group {
+    read: Read,
+    members: Vec<Member>,
+    bits: f64,
 }
 
-fn class(motion: Motion, mut members: Vec<Candidate>) -> Class {
-    members.sort_by_key(|candidate| candidate.rank);
-    let differ = |what: fn(&Candidate) -> Vec<u8>| {
-        let mut all = members.iter().filter(|member| member.family.is_some()).map(what);
-        all.next().is_some_and(|first| all.any(|other| other != first))
-    };
-    let open = [
-        (Open::TurnOnce, differ(|member| vec![candidates::singleturn(member)])),
-        (Open::TurnFarther, differ(|member| vec![member.layout.coding().bits(), member.layout.descriptor().lead])),
-        (Open::SeeAnError, differ(|member| member.layout.descriptor().errors.iter().map(|bit| bit.clock).collect())),
-        (
-            Open::TypeLabel,
-            differ(|member| member.family.as_ref().map(|(key, _)| key.clone().into_bytes()).unwrap_or_default()),
-        ),
-    ];
-    Class {
-        evidence: motion.evidence,
-        open: open.into_iter().filter(|(_, open)| *open).map(|(open, _)| open).collect(),
-        members: members.into_iter().map(|Candidate { family, layout, .. }| Proposal { family, layout }).collect(),
+/// Reads frames of `clocks` bits, right-justified, taken one after the other at even intervals.
+pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
+    let newest = frames.get(frames.len().saturating_sub(MOST_FRAMES)..).unwrap_or_default();
+    let seen = Seen::new(newest, clocks);
+    let different = seen.different();
+    let search = |doubt, classes| Search { frames: frames.len(), different, doubt, classes };
+    if let Some(high) = seen.stuck().filter(|_| !newest.is_empty()) {
+        return search(Some(Doubt::Stuck { high }), Vec::new());
     }
+    if different < 8 || seen.stands() {
+        return search(Some(Doubt::Standing), Vec::new());
+    }
+    let repeat = seen.repeat();
+    let words = repeat.map_or_else(|| Seen::new(newest, clocks), |repeat| seen.first_words(repeat));
+    let mut groups: Vec<Group> = Vec::new();
+    for read in readings(&words) {
+        let known = groups.iter().position(|group| same(&group.read.motion, &read.motion));
+        if known.is_none() && groups.len() >= CLASSES {
+            continue;
+        }
+        // Families are worth the search where the motion may be right.
+        let near = groups.first().is_none_or(|best| read.bits < best.bits + NEAR_BITS || known == Some(0));
+        let best = known.and_then(|known| groups.get(known)).map_or(&read, |group| &group.read);
+        let probe = Probe::new(&seen, &words, repeat, best);
+        let mut members = members(&probe, &read, &words, repeat, near.then_some(families));
+        match known.and_then(|known| groups.get_mut(known)) {
+            Some(group) => {
+                let worse = (read.bits - group.read.bits).max(0.0) / WEIGHT_BITS;
+                members.iter_mut().for_each(|member| member.weight += worse);
+                group.members.extend(members);
+            }
+            None if members.is_empty() => {}
+            None => groups.push(Group { bits: read.bits, read, members }),
+        }
+    }
+    if different < LEAST_DIFFERENT && !groups.first().is_some_and(|group| group.read.closed) {
+        return search(Some(Doubt::Standing), Vec::new());
+    }
+    for group in &mut groups {
+        // Where steps vary, a lowest bit that never changes is none: it is a parity, or a zero that the code goes over.
+        if verdict::is_varied(&group.read) && group.members.iter().any(|member| !member.trial.never_odd) {
+            group.members.retain(|member| !member.trial.never_odd);
+        }
+        group.members.sort_by(|a, b| a.weight.total_cmp(&b.weight));
+        // The same frame has several names, also within a family.
+        let mut known = HashSet::new();
+        group.members.retain(|member| {
+            let family = member.family.as_ref().map(|(key, _)| key.clone());
+            known.insert((family, member.layout.descriptor().spec()))
+        });
+        let most = group.members.first().map_or(0.0, |member| member.weight) + IMPROBABLE;
+        group.members.retain(|member| member.weight <= most);
+        group.bits += WEIGHT_BITS * group.members.first().map_or(0.0, |member| member.weight);
+    }
+    groups.sort_by(|a, b| a.bits.total_cmp(&b.bits));
+    let doubt = verdict::doubt(&words, &groups);
+    search(doubt, verdict::classes(&words, groups))
+}
+
+/// Two ways see the same motion: forwards or backwards, in the same steps or in halved ones.
+fn same(one: &Motion, other: &Motion) -> bool {
+    let halvings = |motion: &Motion| {
+        let steps =
+            || motion.steps.iter().enumerate().filter(|(at, _)| motion.is_even(*at)).filter_map(|(_, step)| *step);
+        let all = steps().filter(|step| *step != 0).count();
+        (1..=3_u32)
+            .take_while(|by| steps().filter(|step| step % (1 << by) != 0).count() * 50 <= all)
+            .last()
+            .unwrap_or(0)
+    };
+    let (by, other_by) = (halvings(one), halvings(other));
+    let both = one.steps.iter().zip(&other.steps).enumerate();
+    let both =
+        both.filter(|(at, _)| one.is_even(*at) && other.is_even(*at)).filter_map(|(_, (a, b))| Some(((*a)?, (*b)?)));
+    let (mut all, mut forwards, mut backwards) = (0, 0, 0);
+    for (step, other) in both {
+        all += 1;
+        forwards += usize::from(step >> by == other >> other_by);
+        backwards += usize::from(step >> by == -(other >> other_by));
+    }
+    // Where one of them jumps the other must as well.
+    let even = |motion: &Motion| (0..motion.steps.len()).filter(|at| motion.is_even(*at)).count();
+    // A disturbed bit may be one that the other does not look at.
+    let disturbed = one.jumps.min(other.jumps) / 2;
+    let most = even(one).max(even(other));
+    (all + disturbed) * 1000 >= SAME_PERMILLE * most && forwards.max(backwards) * 1000 >= SAME_PERMILLE * all
 }

@@ -9,6 +9,7 @@ mod explain;
 mod export;
 mod family;
 mod find;
+mod frame_spec;
 mod frame_text;
 mod layout;
 mod range;
@@ -29,6 +30,7 @@ pub use family::{
     StepLimits, TextError,
 };
 pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
+pub use frame_spec::FrameSpecError;
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;

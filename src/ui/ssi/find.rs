@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 
 use crate::app::ssi::{Action as Ssi, Encoder, Hunt, Origin, read_clocks};
 use crate::app::{Action, Text, explain};
-use crate::protocol::ssi::{Class, Doubt, Proposal, Search};
+use crate::protocol::ssi::{Class, Descriptor, Doubt, Proposal, Search};
 use crate::ui::controls::{
     card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,
 };
@@ -106,17 +106,15 @@ fn found(
         .with("different", search.different)
         .with_text("source", source);
     paragraph(ui, skin.label(skin.words(&text)));
-    let (icon, colour, words) = match search.doubt {
-        None => (icons::CHECK_CIRCLE, skin.palette.good, Text::new("ssi_find.sure")),
-        Some(Doubt::Standing) => (icons::WARNING, skin.palette.warn, Text::new("ssi_find.standing")),
-        Some(Doubt::Stuck { high: true }) => (icons::X_CIRCLE, skin.palette.bad, Text::new("ssi.stuck_high")),
-        Some(Doubt::Stuck { high: false }) => (icons::X_CIRCLE, skin.palette.bad, Text::new("ssi.stuck_low")),
-        Some(Doubt::Nothing) => (icons::WARNING, skin.palette.warn, Text::new("ssi_find.nothing_fits")),
-        Some(Doubt::Close) => (icons::WARNING, skin.palette.warn, Text::new("ssi_find.close")),
+    let (icon, colour) = match search.doubt {
+        None => (icons::CHECK_CIRCLE, skin.palette.good),
+        Some(Doubt::Open) => (icons::QUESTION, skin.palette.accent),
+        Some(Doubt::Stuck { .. }) => (icons::X_CIRCLE, skin.palette.bad),
+        Some(Doubt::Standing | Doubt::Nothing | Doubt::Close) => (icons::WARNING, skin.palette.warn),
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, skin.words(&words));
+        paragraph(ui, skin.words(&explain::ssi::doubt(search.doubt)));
     });
     for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
         ui.add_space(skin.space.between);
@@ -180,8 +178,9 @@ fn title(ui: &mut Ui, skin: &Skin, encoder: &Encoder, proposal: &Proposal) {
         return;
     };
     let family = encoder.designer.families().named(key);
-    // As few settings as there can be.
-    let fewest = family.and_then(|family| family.settings_of(proposal.layout.descriptor()));
+    // As few settings as there can be; exchanged wires are none of them.
+    let frame = Descriptor { inverted: false, ..proposal.layout.descriptor().clone() };
+    let fewest = family.and_then(|family| family.settings_of(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(name).font(skin.strong(skin.sizes.body)));

@@ -1,4 +1,8 @@
-//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found.
+//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found; recordings of encoders that
+//! were made by other means.
+
+#[path = "../../../../tests/tools/ssi_recordings.rs"]
+mod recordings;
 
 use fastrand::Rng;
 
@@ -39,12 +43,14 @@ fn the_class_of_every_family_comes_first() {
             let text = format!("{},code={code}", family.key);
             let truth = layout(&text);
             let search = find(&turning(&truth, speed), truth.clocks(), &families);
-            assert_eq!(search.doubt, None, "{text} at {speed}");
+            // Where the end of the range is not passed, it stays open whether higher bits are the position's.
+            assert!(matches!(search.doubt, None | Some(Doubt::Open)), "{text} at {speed}: {:?}", search.doubt);
             let first = &search.classes[0];
             let named =
                 first.members.iter().filter(|member| member.family.as_ref().is_some_and(|(key, _)| *key == family.key));
             assert!(named.clone().any(|member| same_frame(&member.layout, &truth)), "{text} at {speed}");
-            assert_eq!(first.evidence.misfits, 0, "{text} at {speed}");
+            // What changes in the first frames alone counts as disturbed.
+            assert!(first.evidence.misfits <= 2, "{text} at {speed}");
         }
     }
 }
@@ -66,8 +72,9 @@ fn settings_are_found_too() {
     for text in settings {
         let truth = layout(text);
         let search = find(&turning(&truth, 1.3), truth.clocks(), &families);
-        assert_eq!(search.doubt, None, "{text}");
-        assert!(search.classes[0].members.iter().any(|member| same_frame(&member.layout, &truth)), "{text}");
+        assert_eq!(search.doubt, Some(Doubt::Open), "{text}");
+        let first = &search.classes[0];
+        assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)), "{text}");
     }
 }
 
@@ -126,12 +133,12 @@ fn other_encoders() {
     })
     .unwrap();
     let search = find(&turning(&excess, 0.7), 12, &families);
-    assert_eq!((search.doubt, search.classes[0].members[0].layout.coding().last()), (None, 359));
+    assert_eq!((search.doubt, search.classes[0].members[0].layout.coding().last()), (None, 359), "{search:?}");
 
     let parity = crate::protocol::ssi::Parity { clock: 21, even: true };
     let with_parity = Layout::new(Descriptor { clocks: 21, parity: Some(parity), ..Descriptor::plain(0, 20) }).unwrap();
     let search = find(&turning(&with_parity, 2.7), 21, &families);
-    assert_eq!(search.doubt, None);
+    assert_eq!(search.doubt, Some(Doubt::Open));
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
 }
 
@@ -148,7 +155,110 @@ fn disturbed_frames_do_not_hide_the_layout() {
     }
     let search = find(&frames, 27, &Families::built_in());
     let first = &search.classes[0];
-    assert_eq!((search.doubt, first.evidence.misfits, first.evidence.errors), (None, 0, 20));
-    assert!(first.evidence.jumps >= 40);
+    // The disturbed bit is one of turns that do not change.
+    assert_eq!((search.doubt, first.evidence.misfits), (Some(Doubt::Open), 40));
     assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)));
+}
+
+/// Frames of a file of `tests/vectors/ssi_find`, with the positions that were meant; none where a frame is disturbed.
+fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
+    let lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split_once(' ').unwrap());
+    let rows: Vec<(&str, &str)> = lines.collect();
+    let frames = rows.iter().map(|(bits, _)| u64::from_str_radix(bits, 2).unwrap()).collect();
+    let meant = rows.iter().map(|(_, position)| position.parse().ok()).collect();
+    (rows[0].0.len() as u8, frames, meant)
+}
+
+/// It reads every frame that was not disturbed as it was meant.
+fn reads(proposal: &Proposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
+    let read =
+        |(frame, meant): (&u64, &Option<u64>)| meant.is_none_or(|own| proposal.layout.decode(*frame).position == own);
+    frames.iter().zip(meant).all(read)
+}
+
+/// Issue 22.22: recordings of fifteen encoders, made in Python, with noise and disturbed frames. In the order of the
+/// file: whether the tick may be given, since every bit is explained (a 1 before the position and its highest bit look the
+/// same until the end of the range is passed, so do a falling binary position and exchanged wires, and so do 3600 and 3598
+/// steps as long as the shaft jumps over the first and the last).
+#[test]
+fn recordings_made_by_other_means_are_found() {
+    let vectors = [
+        ("AHM36 in Gray", false, include_str!("../../../../tests/vectors/ssi_find/ahm36_gray.txt")),
+        ("8 and 8 bits in a tree", false, include_str!("../../../../tests/vectors/ssi_find/tree_8_8_gray.txt")),
+        ("error, active low", false, include_str!("../../../../tests/vectors/ssi_find/error_active_low.txt")),
+        ("start bit", false, include_str!("../../../../tests/vectors/ssi_find/start_bit.txt")),
+        ("power good first", false, include_str!("../../../../tests/vectors/ssi_find/power_good_first.txt")),
+        ("wires, Gray", false, include_str!("../../../../tests/vectors/ssi_find/wires_exchanged_gray.txt")),
+        ("wires, binary", false, include_str!("../../../../tests/vectors/ssi_find/wires_exchanged_binary.txt")),
+        ("twice with a gap", false, include_str!("../../../../tests/vectors/ssi_find/twice_with_gap.txt")),
+        ("twice, binary", false, include_str!("../../../../tests/vectors/ssi_find/twice_binary.txt")),
+        ("excess of 360, fast", true, include_str!("../../../../tests/vectors/ssi_find/excess_360_fast.txt")),
+        ("excess of 3600", false, include_str!("../../../../tests/vectors/ssi_find/excess_3600_right.txt")),
+        ("Gray, even parity", false, include_str!("../../../../tests/vectors/ssi_find/gray_even_parity.txt")),
+        ("binary, odd parity", false, include_str!("../../../../tests/vectors/ssi_find/binary_odd_parity.txt")),
+        ("counts down", false, include_str!("../../../../tests/vectors/ssi_find/reversed_linear.txt")),
+        (
+            "3600 steps in BCD",
+            false,
+            include_str!("../../../../tests/vectors/ssi_find/three_thousand_six_hundred_steps.txt"),
+        ),
+    ];
+    let families = Families::built_in();
+    let (mut first, mut foremost) = (0, 0);
+    for (name, tick, text) in vectors {
+        let (clocks, frames, meant) = recording(text);
+        let search = find(&frames, clocks, &families);
+        let class = &search.classes[0];
+        assert_eq!(search.doubt.is_none(), tick, "{name}: {:?}", search.doubt);
+        let in_class = class.members.iter().any(|member| reads(member, &frames, &meant));
+        println!("{name}: in the first class: {in_class}, {:?}", class.open);
+        first += usize::from(in_class);
+        foremost += usize::from(reads(&class.members[0], &frames, &meant));
+        assert!(search.classes.windows(2).all(|pair| pair[0].evidence.score >= pair[1].evidence.score), "{name}");
+        assert!(tick || !class.open.is_empty(), "{name}: it says what would decide");
+    }
+    assert_eq!((first, foremost), (15, 14), "the truth in the first class, and as its first member");
+}
+
+/// Issue 22.22: no tick at a layout that reads a frame otherwise than it was meant. All thousand: `cargo bench --bench ssi`.
+#[test]
+fn no_tick_is_wrong() {
+    let families = Families::built_in();
+    let mut ticks = 0;
+    for seed in 0..40 {
+        let recording = recordings::Recording::of(seed);
+        let search = find(&recording.frames, recording.clocks, &families);
+        if search.doubt.is_none() {
+            ticks += 1;
+            let member = &search.classes[0].members[0];
+            assert!(reads(member, &recording.frames, &recording.meant), "{}", recording.what);
+        }
+    }
+    assert!(ticks >= 1, "a tick is given where it may be");
+}
+
+/// Issue 22.22: what the entry is called can be tried as it stands.
+#[test]
+fn every_proposal_can_be_written_down() {
+    let families = Families::built_in();
+    let mut texts = Vec::new();
+    for seed in 0..12 {
+        let recording = recordings::Recording::of(seed);
+        let search = find(&recording.frames, recording.clocks, &families);
+        for proposal in search.classes.iter().flat_map(|class| &class.members) {
+            let text = proposal.spec(&families);
+            let descriptor = Descriptor::parse(&text).unwrap_or_else(|| {
+                let (key, settings) = Settings::parse(&text).unwrap();
+                Ok(settings.resolve(families.named(&key).unwrap()).unwrap().layout.descriptor().clone())
+            });
+            let layout = Layout::new(descriptor.unwrap()).unwrap();
+            for frame in recording.frames.iter().step_by(50) {
+                assert_eq!(layout.decode(*frame).position, proposal.layout.decode(*frame).position, "{text}");
+            }
+            texts.push(text);
+        }
+    }
+    assert!(
+        texts.iter().any(|text| text.starts_with("frame,")) && texts.iter().any(|text| !text.starts_with("frame,"))
+    );
 }

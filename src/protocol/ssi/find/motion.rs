@@ -1,0 +1,114 @@
+//! How evenly a shaft turned if frames are read as certain numbers: what it takes to say each number once the ones before
+//! it are known. A number that is read wrong jumps, and has to be said as a whole.
+
+/// Differences that one median stands for.
+const BLOCK: usize = 16;
+/// Bits for the choice of what a group of differences is like.
+const MODEL_BITS: f64 = 8.0;
+/// What a frame costs whose number is none.
+const NONE_BITS: f64 = 16.0;
+
+/// The motion that numbers make.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Motion {
+    /// All that has to be said, in bits.
+    pub(super) bits: f64,
+    /// Steps from a frame to the next, in the middle.
+    pub(super) median: i64,
+    /// For each frame but the first: the steps from the one before; none where one of the two is no number.
+    pub(super) steps: Vec<Option<i64>>,
+    /// For each of them: by how much it differs from its neighbours.
+    pub(super) uneven: Vec<i64>,
+    /// What differs more is a jump.
+    pub(super) limit: u64,
+    pub(super) jumps: usize,
+    /// Frames whose number is none.
+    pub(super) nones: usize,
+}
+
+impl Motion {
+    /// Of numbers that begin again behind `round`; 0: behind all 64 bits.
+    pub(super) fn of(numbers: &[Option<u64>], round: u64) -> Self {
+        let steps: Vec<Option<i64>> = numbers
+            .iter()
+            .zip(numbers.iter().skip(1))
+            .map(|(before, after)| Some(nearest(after.as_ref()?.wrapping_sub(*before.as_ref()?), round)))
+            .collect();
+        let mut uneven = Vec::with_capacity(steps.len());
+        let mut block: Vec<i64> = Vec::with_capacity(BLOCK);
+        for steps in steps.chunks(BLOCK) {
+            block.clear();
+            block.extend(steps.iter().flatten());
+            let median = median(&mut block);
+            uneven.extend(
+                steps.iter().map(|step| step.map_or(0, |step| nearest(step.wrapping_sub(median) as u64, round))),
+            );
+        }
+        let mut sizes: Vec<i64> = uneven.iter().map(|uneven| uneven.saturating_abs()).collect();
+        let spread = median(&mut sizes);
+        let limit = 8 + 6 * spread.unsigned_abs();
+        let mut known: Vec<i64> = steps.iter().flatten().copied().collect();
+        let nones = numbers.iter().filter(|number| number.is_none()).count();
+        Motion {
+            bits: cost(&uneven) + NONE_BITS * nones as f64,
+            median: median(&mut known),
+            jumps: uneven.iter().filter(|uneven| uneven.unsigned_abs() > limit).count(),
+            limit,
+            nones,
+            steps,
+            uneven,
+        }
+    }
+
+    /// The step to this frame (counted from 1, the second one) is no jump.
+    pub(super) fn is_even(&self, index: usize) -> bool {
+        let within = self.uneven.get(index).is_some_and(|uneven| uneven.unsigned_abs() <= self.limit);
+        within && self.steps.get(index).is_some_and(Option::is_some)
+    }
+
+    /// Frames that follow from the one before or lead to the one behind.
+    pub(super) fn explained(&self) -> usize {
+        let frames = self.steps.len() + 1;
+        (0..frames).filter(|index| self.is_good(*index)).count()
+    }
+
+    /// The frame follows from the one before, or the one behind from it.
+    pub(super) fn is_good(&self, frame: usize) -> bool {
+        frame.checked_sub(1).is_some_and(|before| self.is_even(before)) || self.is_even(frame)
+    }
+}
+
+/// Bits for all differences: for each, which group of sizes it is in, as often as that is met, and where in the group.
+fn cost(uneven: &[i64]) -> f64 {
+    // Sizes in bits, of those below and above 0.
+    let mut groups = [0_usize; 130];
+    let mut within = 0;
+    for uneven in uneven {
+        let size = 64 - uneven.unsigned_abs().leading_zeros();
+        within += u64::from(size.saturating_sub(1));
+        let group = size as usize + if *uneven < 0 { 65 } else { 0 };
+        if let Some(count) = groups.get_mut(group) {
+            *count += 1;
+        }
+    }
+    let all = uneven.len() as f64;
+    let met = || groups.iter().filter(|count| **count > 0);
+    let which: f64 = met().map(|count| -(*count as f64) * (*count as f64 / all).log2()).sum();
+    which + within as f64 + MODEL_BITS * met().count() as f64
+}
+
+/// The shortest way of a step around the end.
+pub(super) fn nearest(step: u64, round: u64) -> i64 {
+    if round == 0 {
+        return step as i64;
+    }
+    let around = i128::from(step as i64).rem_euclid(i128::from(round));
+    let short = if around * 2 > i128::from(round) { around - i128::from(round) } else { around };
+    i64::try_from(short).unwrap_or(0)
+}
+
+/// The middle one; 0 of none.
+pub(super) fn median(values: &mut [i64]) -> i64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { 0 } else { *values.select_nth_unstable(middle).1 }
+}

@@ -1,0 +1,62 @@
+//! How probable a layout is before any frame was read: encoders are built with a few usual widths, and nobody builds 4096
+//! turns of 2 steps. Weights, 0 for what is most usual; one is about as much as a setting that was changed.
+
+/// Bits within a revolution.
+const STEPS: [(u8, f64); 16] = [
+    (12, 0.0),
+    (13, 0.0),
+    (14, 0.2),
+    (10, 1.0),
+    (16, 0.6),
+    (17, 0.6),
+    (18, 0.6),
+    (15, 1.0),
+    (19, 1.2),
+    (20, 1.2),
+    (9, 1.4),
+    (11, 1.4),
+    (8, 1.4),
+    (21, 1.6),
+    (22, 1.6),
+    (24, 1.6),
+];
+/// Bits of the revolutions.
+const TURNS: [(u8, f64); 9] =
+    [(0, 0.0), (12, 0.0), (13, 0.6), (16, 0.6), (14, 1.0), (10, 1.4), (8, 1.4), (15, 1.6), (11, 1.6)];
+/// Fewer steps a turn than this nobody builds in several turns.
+const FEW_STEPS: u8 = 8;
+
+/// How unusual so many bits of turns and of steps are together.
+pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
+    let of = |table: &[(u8, f64)], bits: u8, other: f64| {
+        table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)
+    };
+    let few = if singleturn < FEW_STEPS { f64::from(FEW_STEPS - singleturn) } else { 0.0 };
+    let many = if multiturn == 0 && singleturn > 18 { 1.0 } else { 0.0 };
+    of(&STEPS, singleturn, 2.5) + of(&TURNS, multiturn, 2.5) + few + many
+}
+
+/// The most usual ways to share bits among turns and steps, the most usual first.
+pub(super) fn shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
+    let mut all: Vec<(u8, u8)> =
+        (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();
+    all.sort_by(|a, b| widths(a.0, a.1).total_cmp(&widths(b.0, b.1)));
+    all.truncate(most);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_widths_come_first() {
+        assert_eq!(shares(25, 1), [(12, 13)]);
+        assert_eq!(shares(24, 1), [(12, 12)]);
+        assert_eq!(shares(13, 1), [(0, 13)]);
+        assert_eq!(shares(30, 1), [(12, 18)]);
+        assert_eq!(shares(1, 4), [(0, 1)]);
+        assert!(widths(12, 1) > widths(0, 13) + 6.0, "4096 turns of 2 steps");
+        assert!(shares(64, 9).iter().all(|(turns, steps)| turns + steps == 64));
+    }
+}
