@@ -149,7 +149,7 @@ fn a_folder_that_cannot_be_written_is_told() {
     let mut desk = Desk::begun("");
     desk.ask(Hiperface::Save(desk.outside.path("no/such/folder/mine.ron")));
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
-    assert_eq!(desk.told(Severity::Error), ["file.no_folder"]);
+    assert_eq!(desk.told(Severity::Error), ["file.no_folder", "session.not_saved"]);
     desk.until_ready();
 }
 

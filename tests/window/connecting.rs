@@ -198,7 +198,9 @@ fn a_recording_is_chosen_from_a_list_of_files() {
     desk.connect(Connect::AskRecording);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Recording)));
     desk.act(Action::Chosen(FileQuestion::Recording, "monday.trace".into()));
-    assert_eq!(dialog(&desk).link(), "replay:monday.trace");
+    // Issue 22.24: from wherever the program is started the next time.
+    let path = desk.outside.path("work/monday.trace");
+    assert_eq!(dialog(&desk).link(), format!("replay:{}", path.display()));
 }
 
 #[test]
