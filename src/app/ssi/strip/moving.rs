@@ -89,7 +89,7 @@ fn single_on(descriptor: &Descriptor, clock: u8) -> Option<Single> {
 }
 
 /// The last clock of the position; what is shifted out of its area has none.
-fn end(layout: &Layout) -> u8 {
+pub(super) fn end(layout: &Layout) -> u8 {
     let descriptor = layout.descriptor();
     let late = u8::from(descriptor.shift_right);
     (descriptor.lead + descriptor.between + Parts::of(layout).bits() + late).min(descriptor.area)

@@ -95,6 +95,9 @@ proptest! {
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
         // A bit that has come to stand directly behind others goes with them from now on.
         prop_assume!(moving::chain(there.layout()).len() == moving::chain(&layout).len() || !following);
+        // So does the end of an area that the position has come to fill.
+        let fills = |layout: &Layout| moving::end(layout) == layout.descriptor().area;
+        prop_assume!(fills(there.layout()) == fills(&layout) || !following);
         let back = there.moved(handle, at, following);
         prop_assert_eq!(back.clock(handle), Some(at), "{:?} at {}", handle, reached);
         prop_assert_eq!(without_area(back.layout()), without_area(&layout), "{:?}: {} to {}", handle, at, reached);
