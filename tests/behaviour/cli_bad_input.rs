@@ -42,7 +42,7 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
         assert!(good.contains(from), "{from}");
         good.replacen(from, to, 1)
     };
-    let cases: [(&str, Vec<u8>, &[&str]); 12] = [
+    let cases: [(&str, Vec<u8>, &[&str]); 11] = [
         ("syntax", edited("identity: (", "identity: ((").into(), &["line", "column"]),
         ("cut", good[..good.len() / 2].into(), &["line"]),
         ("empty", Vec::new(), &["line 1"]),
@@ -52,7 +52,6 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
         ("kind", edited("status: 0xC8", "status: \"C8\"").into(), &["status", "number"]),
         ("length", edited("0E 0F\"", "0E\"").into(), &["fields[0].bytes", "15", "16"]),
         ("digit", edited("0E 0F\"", "0E 0G\"").into(), &["fields[0].bytes", "G"]),
-        ("schema", edited("schema: 1", "schema: 99").into(), &["schema 99", "1"]),
         ("device", edited("\"hiperface\"", "\"sse\"").into(), &["sse", "hiperface"]),
         ("latin", [good.as_bytes(), b"// Gr\xFC\xDFe"].concat(), &["UTF-8"]),
     ];
@@ -63,6 +62,20 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
         }
         bench.run(&["diff", &bench.file("good.ron"), &file, "--json"]).fails(1, words);
     }
+}
+
+/// Issue 22.17: a profile of a newer schema is compared, which is said to be all that is done with it.
+#[test]
+fn a_profile_of_a_newer_schema_is_only_read() {
+    let bench = Bench::new();
+    profile(&bench);
+    let newer = bench.write("newer.ron", bench.read("good.ron").replacen("schema: 1", "schema: 99", 1));
+    for consent in ["--yes", "--dry-run"] {
+        bench.run(&["restore", &newer, consent, "--link", SIM, "--json"]).fails(1, &["schema 99", "newer.ron"]);
+    }
+    let compared = bench.run(&["diff", &bench.file("good.ron"), &newer, "--json"]);
+    assert_eq!((compared.status, compared.json()["equal"].as_bool()), (Some(0), Some(true)), "{compared:?}");
+    assert!(["schema 99", "read only"].iter().all(|word| compared.err.contains(word)), "{compared:?}");
 }
 
 #[test]

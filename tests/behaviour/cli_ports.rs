@@ -72,7 +72,9 @@ fn without_a_place_for_before_images_nothing_is_written() {
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
     bench.write("data", "a file where the folder should be");
     bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
-    let ran = bench.run(&["write", "hiperface", "field:0", "00", "--yes", "--link", &encoder.url, "--json"]);
-    ran.fails(1, &["nothing was written", "data"]);
+    let write = ["write", "hiperface", "field:0", "00", "--yes", "--link", &encoder.url, "--json"];
+    // Issue 22.4: there is no place for the logbook either.
+    bench.run(&write).fails(1, &["nothing was written", "logbook", "--force-wear"]);
+    bench.run(&[&write[..], &["--force-wear"]].concat()).fails(1, &["nothing was written", "data"]);
     assert_eq!(encoder.writes(), [""; 0]);
 }

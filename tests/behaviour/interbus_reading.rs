@@ -208,7 +208,7 @@ fn cam_programs_are_read_once_the_machine_stands_still() {
             zero_shift: 0), programs: [(program: 2, mask: 0x00, cams: [(cam: 3, start: 0, stop: 0)])])"#,
     );
     let commands: [&[&str]; 4] = [
-        &["save", "interbus", "-o", &all, "--link", &url],
+        &["save", "interbus", "-o", &all, "--force", "--link", &url],
         &["verify", &file, "--link", &url],
         &["diff", &file, "--link", &url],
         &["read", "interbus", "cam:2:3", "--link", &url],

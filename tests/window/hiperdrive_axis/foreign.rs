@@ -41,7 +41,9 @@ fn a_reference_set_again_while_the_line_is_gone_is_told() {
     target.set_faults(&"silent-after:0".parse().unwrap());
     desk.until("it is silent", |studio| {
         let own = studio.hiperdrive().unwrap();
-        !own.seen(own.drive()).connected
+        let has_ended =
+            studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == "session.poll_failed"));
+        !own.seen(own.drive()).connected && has_ended
     });
     set_by_another(&desk);
     target.set_faults(&Faults::default());
