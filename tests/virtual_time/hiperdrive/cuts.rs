@@ -82,7 +82,11 @@ fn what_is_cut_ends_in_time_and_tells_how_far_it_came() {
             let ended = stand.commit(prepared);
             assert!(stand.elapsed() - begun < LIMIT, "{label} {at}: {:?}", stand.elapsed() - begun);
             let locks = stand.session.motion().permitted(drive(1)).locks;
-            assert_eq!(locks, [Lock::Unread], "{label} {at}: what a drive may do is not known any more");
+            // Whether the device still owes an answer depends on the cut.
+            let not_known = locks
+                .split_first()
+                .is_some_and(|(first, rest)| *first == Lock::Unread && rest.iter().all(|own| *own == Lock::NoAnswer));
+            assert!(not_known, "{label} {at}: what a drive may do is not known any more: {locks:?}");
             match ended {
                 Ok(done) => assert_eq!(done.written.verified, 3, "{label} {at}"),
                 Err(JobError::Device(error)) => assert!(error.is_lost(), "{label} {at}: {error}"),
