@@ -170,7 +170,7 @@ pub enum Done {
     Ports(Result<Vec<connect::Offer>, LinkError>),
     /// A profile was read.
     Read {
-        /// The file, with what it says.
+        /// The file and its content.
         file: ProfileFile,
         /// What is in it.
         result: Result<Box<Document>, ReadError>,

@@ -126,8 +126,8 @@ impl Diverged {
         self.theirs.is_ok()
     }
 
-    /// The file can be written as if nobody else had. What a newer version of the program wrote is not: that would lose what
-    /// this one does not know.
+    /// The file can be written without regard to other changes. A file of a newer version of the program cannot: that would lose
+    /// what this one does not know.
     pub fn can_keep_mine(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }
@@ -151,7 +151,7 @@ impl Diverged {
     /// What is to be written over what the file says now, and nothing else.
     fn over_theirs(self, document: Option<Document>) -> Saving {
         let Diverged { mut saving, theirs, text, .. } = self;
-        // Of what is no profile any more nothing can be kept, which was said.
+        // A file that is no longer a profile has nothing to keep, and the person was told.
         saving.may_lose = theirs.is_err();
         saving.opened = saving.opened.map(|opened| Guard { text, ..opened });
         if let Some(document) = document {
