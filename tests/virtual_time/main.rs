@@ -16,6 +16,7 @@ mod noise;
 mod plan_rules;
 mod polling;
 mod position;
+mod recorded;
 mod rest;
 mod settings;
 mod ssi;

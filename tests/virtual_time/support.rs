@@ -159,6 +159,11 @@ pub(crate) struct Desk {
     pub(crate) session: Session<Hiperface>,
 }
 
+/// A folder for backups and the logbook: in memory where there is room for files in it, because thousands are made.
+pub(crate) fn folder() -> tempfile::TempDir {
+    tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
+}
+
 /// A virtual line as `sim:?…` describes it.
 pub(crate) fn bus(query: &str) -> Bus {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
@@ -179,7 +184,7 @@ impl Desk {
     pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
         let own = Arc::new(VirtualClock::default());
         own.sleep_until(clock.now());
-        let folder = Arc::new(tempfile::tempdir().unwrap());
+        let folder = Arc::new(folder());
         Self::plugged(Arc::new(Mutex::new(bus)), own, folder, station)
     }
 

@@ -3,7 +3,7 @@
 mod adapter;
 mod cuts;
 mod faults;
-mod hands;
+pub(crate) mod hands;
 mod jobs;
 mod master;
 mod procedures;

@@ -18,7 +18,7 @@ use encoder_studio::units::Moment;
 use encoder_studio::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError};
 use encoder_studio::worker::{Event, JobId, Progress, Session};
 
-use crate::support::{MARGIN, Tap, TestLink};
+use crate::support::{MARGIN, Tap, TestLink, folder};
 
 /// The configuration pin of an encoder, with the host's side of it.
 pub(crate) type Pin = Rig<Port>;
@@ -146,14 +146,14 @@ enum End {
 
 impl Bench {
     pub(crate) fn new(way: Way, query: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = folder();
         let store = Store::at(folder.path());
         Self::made(way, query, store, folder)
     }
 
     /// With these folders.
     pub(crate) fn in_store(way: Way, query: &str, store: Store) -> Self {
-        Self::made(way, query, store, tempfile::tempdir().unwrap())
+        Self::made(way, query, store, folder())
     }
 
     fn made(way: Way, query: &str, store: Store, folder: tempfile::TempDir) -> Self {
@@ -201,7 +201,7 @@ impl Bench {
     /// Behind an adapter that switches the encoder's supply, at first off.
     pub(crate) fn supplied(after: SupplyAfter) -> Self {
         let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs("supply=switched")).unwrap());
-        let folder = Arc::new(tempfile::tempdir().unwrap());
+        let folder = Arc::new(folder());
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }
 
@@ -232,9 +232,7 @@ impl Bench {
     pub(crate) fn copied(&self) -> Bench {
         let clock = Arc::new(VirtualClock::default());
         clock.sleep_until(self.clock.now());
-        // Thousands are made: in memory, where there is room for files in it.
-        let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
-        let folder = Arc::new(folder);
+        let folder = Arc::new(folder());
         let end = match &self.end {
             End::Pin(port) => End::Pin(Arc::new(Mutex::new(port.lock().unwrap().clone()))),
             End::Bus(adapter) => End::Bus(Arc::new(Mutex::new(adapter.lock().unwrap().clone()))),

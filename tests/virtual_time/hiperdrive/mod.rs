@@ -4,5 +4,5 @@
 mod cuts;
 mod jobs;
 mod scripted;
-mod support;
+pub(crate) mod support;
 mod writing;

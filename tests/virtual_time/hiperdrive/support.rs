@@ -17,7 +17,7 @@ use encoder_studio::worker::hiperdrive::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Way,
 };
 
-use crate::support::{MARGIN, Tap, TestLink};
+use crate::support::{MARGIN, Tap, TestLink, folder};
 
 /// A virtual device with a session on it.
 pub(crate) struct Stand {
@@ -55,7 +55,7 @@ impl Stand {
         let connection = target.connection(Ipv4Addr::UNSPECIFIED);
         let wire = Box::new(TestLink::new(Arc::new(Mutex::new(connection)), clock.clone(), tap.clone()));
         let port = SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone());
-        let folder = tempfile::tempdir().unwrap();
+        let folder = folder();
         let store = Store::at(folder.path());
         let station = Station::new(MARGIN);
         let way = Way { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };

@@ -4,6 +4,6 @@ mod cuts;
 mod handshake;
 mod jobs;
 mod scripted;
-mod support;
+pub(crate) mod support;
 mod wire;
 mod writing;

@@ -14,7 +14,7 @@ use encoder_studio::worker::interbus::{
 };
 use encoder_studio::worker::{Event, JobId, Session};
 
-use crate::support::{MARGIN, Tap, TestLink};
+use crate::support::{MARGIN, Tap, TestLink, folder};
 
 /// A virtual gateway with a session on it.
 pub(crate) struct Stand {
@@ -46,7 +46,7 @@ impl Stand {
         let clock = Arc::new(VirtualClock::default());
         let tap = Arc::<Mutex<Tap>>::default();
         let link = TestLink::new(Arc::new(Mutex::new(gateway.connection())), clock.clone(), tap.clone());
-        let folder = tempfile::tempdir().unwrap();
+        let folder = folder();
         let store = Store::at(folder.path());
         let motor = Some(gateway.shaft());
         let mut session = Session::to_gateway(Box::new(link), clock.clone(), station, store, motor);

@@ -1,0 +1,83 @@
+//! Writes to a BiSS encoder, at its configuration pin and behind an adapter.
+
+use encoder_studio::device::biss::Error;
+use encoder_studio::device::biss::procedure::Failure;
+use encoder_studio::device::biss::write::Left;
+use encoder_studio::profile::biss::{Bank, MotorSource, MountingRun, PresetParts};
+use encoder_studio::protocol::biss::PresetValue;
+use encoder_studio::worker::biss::{Change, JobError};
+
+use super::{Ready, compare, listen};
+use crate::biss::hands::{Hands, calibration, data, exchanges, filter, preset, restore_of, wiegand_test};
+use crate::biss::support::{Bench, Way};
+
+/// The shortest runs: the fewest exchanges.
+const RPM: (f64, f64) = (500.0, 2000.0);
+
+fn recorded(name: &str, change: fn(&mut Bench) -> Change, every: usize) {
+    for (label, way) in [("pin", Way::ConfigPin), ("adapter", Way::Adapter)] {
+        let mut original = Bench::new(way, "");
+        let change = change(&mut original);
+        let prepared = original.prepare(change).unwrap();
+        let points: Vec<usize> = exchanges(&original, &prepared).into_iter().step_by(every).collect();
+        compare(&format!("biss/{name}-{label}"), Some(&points), &mut || {
+            let (mut bench, prepared) = (original.copied(), prepared.clone());
+            let (lines, cancel) = listen(&mut bench.session);
+            let tap = bench.tap_handle();
+            let carry_out = Box::new(move || {
+                let mut hands = Hands::on(&bench);
+                hands.rpm = RPM;
+                match bench.commit(&prepared, &mut hands).map_err(|error| *error) {
+                    Ok(done) => format!("done, {} operations, {} cycles", done.written.ops, done.written.write_cycles),
+                    Err(JobError::Interrupted { interrupted, .. }) => format!(
+                        "{} after {} operations, {} cycles, {}",
+                        if interrupted.cause == Failure::Device(Error::Cancelled) { "cancelled" } else { "cut off" },
+                        interrupted.done.ops,
+                        interrupted.done.write_cycles,
+                        if interrupted.left == Left::Operation { "in operation" } else { "not led back" },
+                    ),
+                    Err(JobError::Device(Error::Cancelled)) => "cancelled, nothing written".to_owned(),
+                    Err(JobError::Device(error)) if error.is_lost() => "cut off, nothing written".to_owned(),
+                    Err(other) => panic!("{other}"),
+                }
+            });
+            Ready { tap, cancel, lines, carry_out }
+        });
+    }
+}
+
+#[test]
+fn writes_of_registers_are_as_recorded() {
+    recorded("data", |_| data(), 2);
+    recorded("filter", |_| filter(), 2);
+    recorded("preset", |_| preset(0x18000, 2), 2);
+    let value_alone = |_: &mut Bench| Change::Preset { value: PresetValue::new(5, 1), parts: None };
+    recorded("preset-value", value_alone, 2);
+}
+
+#[test]
+fn a_restore_is_as_recorded() {
+    let restore = |bench: &mut Bench| {
+        let mut profile = bench.save();
+        for area in &mut profile.data {
+            area.empty = None;
+        }
+        profile.data[0].listed = vec![Bank { number: 0x04, bytes: [3; 64] }.into()];
+        profile.data[1].listed = vec![Bank { number: 0x24, bytes: [7; 64] }.into()];
+        restore_of(&profile)
+    };
+    recorded("restore", restore, 7);
+}
+
+#[test]
+fn procedures_led_by_a_person_are_as_recorded() {
+    recorded("calibration", |_| calibration(), 7);
+    recorded("wiegand-test", |_| wiegand_test(false), 7);
+    recorded("wiegand-test-saved", |_| wiegand_test(true), 7);
+    let mounting = |_: &mut Bench| {
+        let preset = PresetValue::new(0x18000, 2).map(|value| (value, PresetParts::Both));
+        let run = MountingRun { calibrate: true, wiegand: Some(true), preset, data: None };
+        Change::Guided { run, motor: MotorSource::Other }
+    };
+    recorded("mounting", mounting, 23);
+}

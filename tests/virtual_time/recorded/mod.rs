@@ -1,0 +1,105 @@
+//! What goes over the wire while something is written, and at every early end of it, byte for byte as in the recordings
+//! under `tests/fixtures/wire`: one file a kind of write. A recording shows the whole write; of each early end it tells
+//! how many lines are those of the whole, how many follow them, a sum of all, and how the write ended.
+//!
+//! With `ENCODER_STUDIO_RECORD=1` the files are written anew: only where the wire is meant to change, and the difference
+//! belongs into the same commit.
+
+mod biss;
+mod hiperdrive;
+mod hiperface;
+mod interbus;
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+use encoder_studio::link::{Cancel, Direction};
+use encoder_studio::worker::{Device, Session};
+
+use crate::support::Tap;
+
+/// A write that stands ready, and how to disturb it.
+struct Ready {
+    tap: Arc<Mutex<Tap>>,
+    cancel: Cancel,
+    lines: Lines,
+    /// Carries it out; tells how it ended.
+    carry_out: Box<dyn FnOnce() -> String>,
+}
+
+/// Frames as the trace shows them: access codes are masked.
+type Lines = Arc<Mutex<Vec<String>>>;
+
+/// From now on, every frame of the session; and the wish to end it.
+fn listen<D: Device>(session: &mut Session<D>) -> (Lines, Cancel) {
+    let lines = Lines::default();
+    let kept = lines.clone();
+    session.watch(move |entry| {
+        let sign = if entry.direction == Direction::Sent { '>' } else { '<' };
+        kept.lock().unwrap().push(format!("{sign} {}", entry.bytes));
+    });
+    let cancel = Cancel::default();
+    session.set_cancel(cancel.clone());
+    (lines, cancel)
+}
+
+/// How a write ends early, at a frame of ours.
+const EARLY: [(&str, fn(&mut Tap, &Cancel, usize)); 3] = [
+    ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
+    ("lost", |tap, _, at| tap.lost_from = Some(at)),
+    ("mute", |tap, _, at| tap.mute_from = Some(at)),
+];
+
+impl Ready {
+    fn run(self) -> (Vec<String>, String) {
+        let ended = (self.carry_out)();
+        let lines = std::mem::take(&mut *self.lines.lock().unwrap());
+        (lines, ended)
+    }
+}
+
+/// Compares a write and its early ends with its recording. `points` are the frames of ours at which it ends early, from 0;
+/// every one of them where there are none.
+fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Ready) {
+    let undisturbed = ready();
+    let (tap, first) = (undisturbed.tap.clone(), undisturbed.tap.lock().unwrap().sent.len());
+    let (whole, ended) = undisturbed.run();
+    let frames = tap.lock().unwrap().sent.len() - first;
+    let mut text = whole.join("\n");
+    let _ = writeln!(text, "\n= {ended}");
+    let all: Vec<usize> = (0..frames).collect();
+    for (label, disturb) in EARLY {
+        for at in points.unwrap_or(&all) {
+            let ready = ready();
+            let first = ready.tap.lock().unwrap().sent.len();
+            disturb(&mut ready.tap.lock().unwrap(), &ready.cancel, first + at);
+            let (lines, ended) = ready.run();
+            let same = lines.iter().zip(&whole).take_while(|(one, other)| one == other).count();
+            let more = lines.len() - same;
+            let _ = writeln!(text, "{label} {at}: {same}+{more} {:016x} = {ended}", sum(&lines));
+        }
+    }
+    assert_recorded(name, &text);
+}
+
+/// FNV-1a of 64 bits.
+fn sum(lines: &[String]) -> u64 {
+    let bytes = lines.iter().flat_map(|line| line.bytes().chain([b'\n']));
+    bytes.fold(0xCBF2_9CE4_8422_2325, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))
+}
+
+fn assert_recorded(name: &str, text: &str) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/wire").join(format!("{name}.txt"));
+    if std::env::var_os("ENCODER_STUDIO_RECORD").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, text).unwrap();
+        return;
+    }
+    let recorded = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let pairs = recorded.lines().map(Some).chain([None]).zip(text.lines().map(Some).chain([None]));
+    for (number, (was, is)) in (1..).zip(pairs) {
+        assert_eq!(is, was, "{name}, line {number}: the wire has changed");
+    }
+    assert_eq!(text, recorded, "{name}");
+}
