@@ -372,3 +372,53 @@ pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use clap::{Arg, CommandFactory};
+
+    use super::Arguments;
+
+    /// Commands, options and the values they take, without their descriptions: scripts rely on them. With
+    /// `ENCODER_STUDIO_RECORD=1` the recording is written anew.
+    #[test]
+    fn commands_and_options_are_as_recorded() {
+        let mut text = String::new();
+        list(&mut text, "encoder-studio", &Arguments::command());
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/cli/options.txt");
+        if std::env::var_os("ENCODER_STUDIO_RECORD").is_some() {
+            std::fs::write(path, &text).unwrap();
+        }
+        let recorded = std::fs::read_to_string(path).unwrap();
+        for (is, was) in text.lines().zip(recorded.lines()) {
+            assert_eq!(is, was);
+        }
+        assert_eq!(text, recorded);
+    }
+
+    fn list(text: &mut String, path: &str, command: &clap::Command) {
+        let _ = writeln!(text, "{path}");
+        let arguments: Vec<&Arg> = command.get_arguments().collect();
+        for arg in arguments {
+            let name = match (arg.get_long(), arg.get_short()) {
+                (Some(long), Some(short)) => format!("-{short}, --{long}"),
+                (Some(long), None) => format!("--{long}"),
+                (None, Some(short)) => format!("-{short}"),
+                (None, None) => format!("<{}>", arg.get_id()),
+            };
+            let _ = write!(text, "  {name} {:?}", arg.get_action());
+            for (word, is) in [("global", arg.is_global_set()), ("required", arg.is_required_set())] {
+                let _ = write!(text, "{}", if is { format!(" {word}") } else { String::new() });
+            }
+            for value in arg.get_possible_values() {
+                let _ = write!(text, " {}", value.get_name());
+            }
+            let _ = writeln!(text);
+        }
+        for own in command.get_subcommands() {
+            list(text, &format!("{path} {}", own.get_name()), own);
+        }
+    }
+}

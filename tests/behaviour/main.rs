@@ -40,6 +40,7 @@ mod interbus_offline;
 mod interbus_reading;
 mod interbus_simulate;
 mod interbus_writing;
+mod recorded;
 mod source;
 mod ssi_export;
 mod ssi_live;

@@ -1,0 +1,140 @@
+//! What scripts rely on: exit status and JSON of every command as in the recordings under `tests/fixtures/cli`, one file a
+//! kind of device. A recording is its own list of commands: `$` begins one, `=` tells its status, JSON follows. What a
+//! person reads is not in it.
+//!
+//! With `ENCODER_STUDIO_RECORD=1` the files are written anew: only where the contract is meant to grow.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::support::{Bench, finish};
+
+fn fixtures() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/cli")
+}
+
+/// Runs the commands of a recording, one after the other in a folder of their own.
+fn assert_recorded(kind: &str) {
+    let path = fixtures().join(format!("{kind}.txt"));
+    let recorded = std::fs::read_to_string(&path).unwrap();
+    let bench = Bench::new();
+    let mut text = String::new();
+    for line in recorded.lines().filter_map(|line| line.strip_prefix("$ ")) {
+        let filled = line.replace("{fixtures}", fixtures().to_str().unwrap());
+        let mut arguments: Vec<&str> = filled.split(' ').collect();
+        if !line.ends_with("--csv") {
+            arguments.push("--json");
+        }
+        let mut program = bench.program(&arguments);
+        program.current_dir(bench.path(""));
+        let ran = finish(program);
+        let _ = writeln!(text, "$ {line}\n= {}", ran.status.unwrap());
+        for own in ran.out.lines() {
+            let _ = match serde_json::from_str(own) {
+                Ok(value) => writeln!(text, "{}", steady(value)),
+                Err(_) if line.ends_with("--csv") => writeln!(text, "{}", own.split_once(',').unwrap().1),
+                Err(error) => panic!("{line}: {error}: {own}"),
+            };
+        }
+    }
+    if std::env::var_os("ENCODER_STUDIO_RECORD").is_some() {
+        std::fs::write(&path, text).unwrap();
+        return;
+    }
+    for (number, (is, was)) in (1..).zip(text.lines().zip(recorded.lines())) {
+        assert_eq!(is, was, "{kind}, line {number}");
+    }
+    assert_eq!(text, recorded, "{kind}");
+}
+
+/// Without what another run has otherwise: times, and the names of backups.
+fn steady(value: Value) -> Value {
+    match value {
+        Value::Object(entries) => entries.into_iter().map(|(key, value)| steady_entry(key, value)).collect(),
+        Value::Array(items) => items.into_iter().map(steady).collect(),
+        // A time that was measured, in words.
+        Value::String(text) if text.contains(" ms") => text.replace(|c: char| c.is_ascii_digit(), "#").into(),
+        other => other,
+    }
+}
+
+fn steady_entry(key: String, value: Value) -> (String, Value) {
+    let varies = ["t_s", "answer_ms_median", "answer_ms_p99", "backup"].contains(&key.as_str());
+    let steady = match value {
+        Value::Number(_) if varies => "a number".into(),
+        Value::String(_) if varies => "a text".into(),
+        other => steady(other),
+    };
+    (key, steady)
+}
+
+#[test]
+fn hiperface_is_as_recorded() {
+    assert_recorded("hiperface");
+}
+
+#[test]
+fn biss_is_as_recorded() {
+    assert_recorded("biss");
+}
+
+#[test]
+fn ssi_is_as_recorded() {
+    assert_recorded("ssi");
+}
+
+#[test]
+fn interbus_is_as_recorded() {
+    assert_recorded("interbus");
+}
+
+#[test]
+fn hiperdrive_is_as_recorded() {
+    assert_recorded("hiperdrive");
+}
+
+#[test]
+fn what_is_of_no_kind_is_as_recorded() {
+    assert_recorded("common");
+}
+
+/// Every way to a device, as kind and beginning of a link.
+const LINKS: [&str; 16] = [
+    "hiperface sim:",
+    "hiperface serial:none",
+    "hiperface tcp:none:1",
+    "hiperface replay:none",
+    "biss sim:",
+    "biss sim:?bridge=on",
+    "biss serial:none",
+    "biss tcp:none:1",
+    "biss bridge:none",
+    "biss bridge:tcp:none:1",
+    "ssi sim:",
+    "ssi bridge:none",
+    "interbus sim:",
+    "interbus modbus:none",
+    "hiperdrive sim:",
+    "hiperdrive enip:none",
+];
+
+/// The parameters of links and the settings of virtual devices, which stand in people's scripts and in their settings.
+#[test]
+fn links_take_the_recorded_parameters() {
+    let (path, bench) = (fixtures().join("links.txt"), Bench::new());
+    let mut text = String::new();
+    for link in LINKS {
+        let (kind, url) = link.split_once(' ').unwrap();
+        let url = format!("{url}{}toaster=1", if url.contains('?') { '&' } else { '?' });
+        let layout: &[&str] = if kind == "ssi" { &["--layout", "ahm36"] } else { &[] };
+        let ran = bench.run(&[&["position", kind, "--link", &url], layout].concat());
+        let known = ran.err.split_once(" are ").map(|(_, known)| known.split('.').next().unwrap());
+        let _ = writeln!(text, "{link}: {}", known.unwrap_or_else(|| panic!("{link}: {}", ran.err)));
+    }
+    if std::env::var_os("ENCODER_STUDIO_RECORD").is_some() {
+        std::fs::write(&path, &text).unwrap();
+    }
+    assert_eq!(text, std::fs::read_to_string(&path).unwrap());
+}
