@@ -5,9 +5,8 @@
 //! themselves. A window that stands still says nothing, and 250 ms later everything stands.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::Duration;
 
-use crate::device::hiperdrive::dead_man::{Effort, Ended, Lock, Motive, Permit, Phase, Wish};
+use crate::device::hiperdrive::dead_man::{Effort, Ended, HEARD, Lock, Motive, Permit, Phase, Wish};
 use crate::device::hiperdrive::{DriveLimits, LimitsSeen};
 use crate::protocol::hiperdrive::{Actual, Direction, DriveNumber, Setpoint, State};
 use crate::units::Moment;
@@ -59,9 +58,6 @@ enum Kind {
     /// Every picture.
     Other,
 }
-
-/// So long packets have to come before what they say of a drive is its position (`U`: a hub first asks all its drives).
-const HEARD: Duration = Duration::from_millis(250);
 
 impl Default for Moves {
     fn default() -> Self {

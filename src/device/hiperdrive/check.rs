@@ -4,6 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use super::identify::{drive_status, identify, of, own};
+use super::limits::ends_by_itself;
 use super::network::network;
 use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
 use crate::device::check;
@@ -126,7 +127,7 @@ pub enum Finding {
     LineWord(u16),
     /// Parameter 186: tenths of a second.
     Timeout(i64),
-    /// Parameter 186 is 255: a drive that is left alone goes on.
+    /// Parameter 186 is no time: a drive that is left alone goes on.
     NoTimeout,
     /// Where it is in the state machine.
     State(State),
@@ -193,8 +194,6 @@ const LOOKS: u32 = 20;
 const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;
 /// Degrees that a device or a drive stands (`U`: the manual contradicts itself, reference 8.9).
 const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
-/// Parameter 186: no time-out.
-const NEVER: i64 = 255;
 
 /// Carries out the check. It ends early only when the device fails.
 ///
@@ -286,8 +285,8 @@ fn check_drive(master: &mut Master<'_>, identity: &Identity, drive: &DriveIdenti
         other => (Verdict::Bad, Finding::LineWord(other)),
     };
     let timeout = match master.read_number(of(186, number)?)? {
-        NEVER => (Verdict::Bad, Finding::NoTimeout),
-        tenths => (Verdict::Good, Finding::Timeout(tenths)),
+        tenths if ends_by_itself(tenths) => (Verdict::Good, Finding::Timeout(tenths)),
+        _ => (Verdict::Bad, Finding::NoTimeout),
     };
     let temperature = in_range(status.temperature, &TEMPERATURES, Finding::Temperature);
     Ok(vec![

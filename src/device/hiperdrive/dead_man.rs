@@ -38,6 +38,8 @@ use watch::Watch;
 pub struct DeadMan {
     drive: DriveNumber,
     heard: Option<(Moment, Actual)>,
+    /// When it was heard first.
+    first: Option<Moment>,
     /// How often something was heard.
     reports: u64,
     sent: Setpoint,
@@ -85,6 +87,8 @@ const START: Duration = Duration::from_secs(1);
 const DEAF: Duration = Duration::from_millis(350);
 /// What a report may be late behind what it reports, between a hub and its drives (`U`).
 pub const SETTLE: Duration = Duration::from_millis(100);
+/// So long positions have to come before they are the drive's (`U`: a hub first asks all its drives).
+pub const HEARD: Duration = Duration::from_millis(250);
 /// It stands without having arrived.
 const SHORT: Duration = Duration::from_millis(500);
 
@@ -94,6 +98,7 @@ impl DeadMan {
         DeadMan {
             drive,
             heard: None,
+            first: None,
             reports: 0,
             sent: NONE,
             stage: Stage::Rest { moves: None },
@@ -202,6 +207,7 @@ impl DeadMan {
         self.reports += 1;
         self.deaf = false;
         self.heard = Some((now, actual));
+        self.first = self.first.or(Some(now));
         let below = Goal::of_word(self.sent.control) < Goal::Operational;
         let forgotten = |bit| !actual.status.has(bit);
         if below && forgotten(StatusBit::Operational) && forgotten(StatusBit::SetpointAcknowledged) {
@@ -233,7 +239,10 @@ impl DeadMan {
     /// A new act is taken where there is one, and where the last one has come to its end.
     fn take(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
         self.forget_what_is_void(now, intent);
-        let waits = self.act.is_some() || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));
+        // A step counts from where the drive is.
+        let is_heard = self.first.is_some_and(|first| now.since(first) >= HEARD);
+        let has_place = is_heard || !matches!(intent.wish, Wish::Step { .. });
+        let waits = self.act.is_some() || !has_place || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));
         if intent.drive != self.drive || intent.number <= self.spent || waits {
             return;
         }

@@ -38,6 +38,12 @@ const VALID: Duration = Duration::from_secs(4);
 /// Parameter 186: a drive that hears nothing goes on.
 const NEVER: i64 = 255;
 
+/// A drive with this parameter 186 stops where it hears nothing any more: what the manual does not know proves nothing.
+pub(super) fn ends_by_itself(timeout: i64) -> bool {
+    let row = ParameterNumber::new(186).and_then(ParameterNumber::row);
+    timeout != NEVER && row.is_some_and(|row| row.range.holds(timeout))
+}
+
 impl DriveLimits {
     /// The limits of a drive whose parameters were all read at this moment.
     pub fn of(rules: Rules, (topology, variant): (Topology, Variant), at: Moment) -> Self {
@@ -68,8 +74,9 @@ impl DriveLimits {
 
     /// The parameters have to be read before the next motion begins: somebody else may have changed them. A motion that is
     /// under way goes on for as long as the last reading is valid.
-    pub const fn doubt(&mut self, now: Moment) {
-        self.doubted = Some(now);
+    pub fn doubt(&mut self, now: Moment) {
+        // Who doubts reads the clock first: of two threads the later doubt may come first.
+        self.doubted = self.doubted.max(Some(now));
     }
 
     /// Nothing is known of the parameters any more. Limits that have to be confirmed stay so.
@@ -101,10 +108,11 @@ impl DriveLimits {
         Some(LimitsSeen { scale: self.rules.scale?, limits: self.rules.limits? })
     }
 
-    /// Parameters 158 and 160, in steps as scaled; `None` where they were not read.
+    /// Parameters 158 and 160, in steps as scaled; `None` where they were not read, or make no range.
     pub fn limits(&self) -> Option<(i32, i32)> {
         let (lower, upper) = self.rules.limits?;
-        Some((i32::try_from(lower).ok()?, i32::try_from(upper).ok()?))
+        let limits = (i32::try_from(lower).ok()?, i32::try_from(upper).ok()?);
+        (limits.0 < limits.1).then_some(limits)
     }
 
     /// Parameters 154 and 156; `None` where they were not read, or make no scale.
@@ -129,12 +137,13 @@ impl DriveLimits {
 
     /// Why nothing may move, the weightiest reason first.
     pub fn locks(&self) -> Vec<Lock> {
-        let Rules { requested, scale, limits, timeout, .. } = self.rules;
-        let unread = requested.is_none() || scale.is_none() || limits.is_none() || timeout.is_none();
+        let Rules { requested, timeout, .. } = self.rules;
+        // Numbers that make no scale and no range say no more than none.
+        let unread = requested.is_none() || self.scale().is_none() || self.limits().is_none() || timeout.is_none();
         [
             (Lock::Unread, unread),
-            (Lock::NotRequested, requested == Some(0)),
-            (Lock::NoTimeout, timeout == Some(NEVER)),
+            (Lock::NotRequested, requested.is_some_and(|value| value != 1)),
+            (Lock::NoTimeout, timeout.is_some_and(|value| !ends_by_itself(value))),
             (Lock::LimitsUnconfirmed, self.unconfirmed),
         ]
         .into_iter()
@@ -226,6 +235,42 @@ mod tests {
         }
         let other = DriveLimits::of(rules(&[]), (Topology::Adapter, Variant::OTHER), at(0));
         assert!(!other.allows_endless(), "its factory values are not known");
+    }
+
+    /// Issue 21.3: numbers that make no scale, no range or no time-out are as good as unread. Type and range are the manual's:
+    /// 152 is 0 or 1, 160 is above 158, 186 is 1 to 100, 255 for never (reference 4).
+    #[test]
+    fn numbers_that_mean_nothing_permit_nothing() {
+        type Case<'c> = (&'c [(u16, Option<i64>)], Lock);
+        let cases: [Case<'_>; 8] = [
+            (&[(154, Some(0))], Lock::Unread),
+            (&[(156, Some(0))], Lock::Unread),
+            (&[(154, Some(65_536))], Lock::Unread),
+            (&[(158, Some(1000)), (160, Some(1000))], Lock::Unread),
+            (&[(158, Some(1000)), (160, Some(-1000))], Lock::Unread),
+            (&[(152, Some(2))], Lock::NotRequested),
+            (&[(186, Some(0))], Lock::NoTimeout),
+            (&[(186, Some(101))], Lock::NoTimeout),
+        ];
+        for (changed, lock) in cases {
+            let limits = DriveLimits::of(rules(changed), HDA30A, at(0));
+            assert_eq!(limits.permit(at(0), true).locks, [lock], "{changed:?}");
+        }
+        for tenths in [1, 100] {
+            assert_eq!(DriveLimits::of(rules(&[(186, Some(tenths))]), HDA30A, at(0)).locks(), [], "{tenths}");
+        }
+    }
+
+    /// Issue 21.3: of two doubts the later one counts, in whichever order they come.
+    #[test]
+    fn an_earlier_doubt_takes_no_later_one_back() {
+        let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
+        limits.doubt(at(100));
+        limits.doubt(at(50));
+        limits.take(rules(&[]), HDA30A, [at(70); GROUPS]);
+        assert!(!limits.is_valid(at(100)), "read before the later one");
+        limits.take(rules(&[]), HDA30A, [at(100); GROUPS]);
+        assert!(limits.is_valid(at(100)));
     }
 
     /// Issue 21.3: the time of reading belongs to the same value, and the dead-man sees it.

@@ -109,11 +109,11 @@ pub struct Permit {
 pub enum Lock {
     /// Its parameters were not read.
     Unread,
-    /// Parameter 186 is 255: a drive that hears nothing any more would go on.
+    /// Parameter 186 is 255, or no time: a drive that hears nothing any more could go on.
     NoTimeout,
     /// The scaling has changed, and the limits with it; nobody has looked at them yet.
     LimitsUnconfirmed,
-    /// Parameter 152 is 0.
+    /// Parameter 152 is not 1.
     NotRequested,
     /// Its parameters were read too long ago: another master may have changed them since.
     Outdated,

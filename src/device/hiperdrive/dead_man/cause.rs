@@ -1,6 +1,6 @@
 //! Why what is under way ends before its time.
 
-use super::{DEAF, DeadMan, Ended, Intent, Motive, Permit, Refusal, Stage, Wish};
+use super::{DEAF, DeadMan, Ended, Intent, Lock, Motive, Permit, Refusal, Stage, Wish};
 use crate::protocol::hiperdrive::{Actual, StatusBit};
 use crate::units::Moment;
 
@@ -36,7 +36,7 @@ impl DeadMan {
                 (act.number, act.said) = (intent.number, intent.wish);
                 self.stage = Stage::Paused { since: mark, acknowledged };
             }
-            (Stage::Paused { acknowledged, .. }, Wish::Resume) if permit.locks.is_empty() => {
+            (Stage::Paused { acknowledged, .. }, Wish::Resume) if permit.locks.is_empty() && !permit.doubted => {
                 (act.number, act.said) = (intent.number, intent.wish);
                 self.stage = Stage::Go { since: mark, acknowledged, stands: None };
             }
@@ -61,7 +61,7 @@ impl DeadMan {
         if deaf {
             return Some(Ended::Deaf);
         }
-        if let Some(how) = self.overtaken(act.number, act.said, intent) {
+        if let Some(how) = self.overtaken(act.number, act.said, intent, permit) {
             return Some(how);
         }
         if intent.is_stale(now) && !down {
@@ -85,10 +85,12 @@ impl DeadMan {
     }
 
     /// What is wanted is not this act any more.
-    fn overtaken(&self, number: u64, said: Wish, intent: &Intent) -> Option<Ended> {
+    fn overtaken(&self, number: u64, said: Wish, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let rests = matches!(intent.wish, Wish::Rest | Wish::Stop | Wish::Pause | Wish::Resume);
         if intent.drive == self.drive && intent.number == number && intent.wish == said {
             None
+        } else if intent.wish == Wish::Resume && permit.doubted {
+            Some(Ended::Refused(Refusal::Locked(Lock::Outdated)))
         } else if rests || intent.number < number {
             Some(Ended::Stopped)
         } else {

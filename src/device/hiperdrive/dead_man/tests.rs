@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 
-use super::{DeadMan, Effort, Ended, Goal, Intent, Lock, Permit, RUNG, Wish};
+use super::{DeadMan, Effort, Ended, Goal, Intent, Lock, Outside, Permit, Phase, RUNG, Refusal, Side, Wish};
 use crate::protocol::hiperdrive::{
     Actual, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
 };
@@ -145,18 +145,132 @@ fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
         for status in [0x2A37, 0x2A37, 0x2A37, 0x1A37, 0x1A37] {
             look(&mut man, 1, job, status);
         }
-        assert!(matches!(man.phase(), super::Phase::Moving(_)), "{:?}", man.phase());
+        assert!(matches!(man.phase(), Phase::Moving(_)), "{:?}", man.phase());
         let mut number = 1;
         if waits {
             number = 2;
             look(&mut man, number, Wish::Pause, 0x1A37);
-            assert!(matches!(man.phase(), super::Phase::Paused { .. }));
+            assert!(matches!(man.phase(), Phase::Paused { .. }));
         }
         // The one between them was a stop.
         let word = look(&mut man, number + 2, next, 0x1A37);
-        assert!(word.is_standing() && matches!(man.phase(), super::Phase::Stopping(_)), "{:?}", man.phase());
+        assert!(word.is_standing() && matches!(man.phase(), Phase::Stopping(_)), "{:?}", man.phase());
         assert_eq!(man.ended(), Some((number, Ended::Stopped)));
     }
+}
+
+/// A drive that answers as it is told to, ten milliseconds a look; somebody says all the time that it is still wanted.
+struct Looks {
+    man: DeadMan,
+    now: Moment,
+    intent: Intent,
+    permit: Permit,
+}
+
+impl Looks {
+    fn new() -> Self {
+        let intent = Intent::rest(DriveNumber::FIRST, 0, Moment::START);
+        let man = DeadMan::new(DriveNumber::FIRST, 0);
+        Looks { man, now: Moment::START, intent, permit: Permit::within(-1000, 1000) }
+    }
+
+    fn act(&mut self, wish: Wish) {
+        self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
+    }
+
+    /// So many looks at a drive that says this.
+    fn look(&mut self, times: u32, status: u16, position: i32) -> Setpoint {
+        for _ in 0..times {
+            self.now = self.now + Duration::from_millis(10);
+            self.intent.refreshed = self.now;
+            self.man.next(self.now, heard(Some((status, position))), &self.intent, &self.permit);
+        }
+        self.man.sent()
+    }
+}
+
+const CLOCKWISE: Wish = Wish::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
+
+/// Issue 21.3: parameters that somebody doubts while a drive is still led to where it may move are read before it does; what
+/// moves goes on, and what waits does not begin again.
+#[test]
+fn a_doubt_keeps_a_motion_from_its_beginning() {
+    let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
+    for wish in [CLOCKWISE, Wish::Move { target: 500, effort: FULL }] {
+        let mut looks = Looks::new();
+        looks.look(3, 0x2A31, 0);
+        looks.act(wish);
+        looks.look(1, 0x2A31, 0);
+        assert_eq!(looks.man.phase(), Phase::Leading(Goal::Enabled));
+        looks.permit.doubted = true;
+        looks.look(1, 0x2A33, 0);
+        assert_eq!(looks.man.ended(), Some((1, doubted)), "{wish:?}");
+        assert!(looks.look(100, 0x2A37, 0).control.is_standing());
+    }
+    let mut looks = Looks::new();
+    looks.act(Wish::Move { target: 500, effort: FULL });
+    looks.look(5, 0x2A37, 0);
+    looks.look(5, 0x1A37, 100);
+    looks.permit.doubted = true;
+    looks.look(5, 0x1A37, 200);
+    assert!(matches!(looks.man.phase(), Phase::Moving(_)), "{:?}", looks.man.ended());
+    looks.act(Wish::Pause);
+    looks.look(3, 0x3A37, 200);
+    assert!(matches!(looks.man.phase(), Phase::Paused { .. }), "{:?}", looks.man.ended());
+    looks.act(Wish::Resume);
+    assert!(looks.look(1, 0x3A37, 200).control.is_standing());
+    assert_eq!(looks.man.ended(), Some((2, doubted)));
+}
+
+/// Issue 21.4: limits that another master writes, or a shaft that is pushed, between the last word on the way up and the first
+/// of the motion: a drive that is outside then did not begin there, and goes no further out.
+#[test]
+fn a_drive_that_gets_outside_before_it_moves_does_not_begin() {
+    for (wish, direction) in [
+        (CLOCKWISE, Direction::Clockwise),
+        (
+            Wish::Jog { direction: Direction::Counterclockwise, effort: FULL, outward: false },
+            Direction::Counterclockwise,
+        ),
+    ] {
+        let position = if direction == Direction::Clockwise { 700 } else { -700 };
+        let mut looks = Looks::new();
+        looks.look(3, 0x2A37, position);
+        looks.act(wish);
+        let mut count = 0;
+        while !matches!(looks.man.phase(), Phase::Starting(_)) {
+            looks.look(1, 0x2A37, position);
+            count += 1;
+            assert!(count < 100);
+        }
+        looks.permit = Permit::within(-100, 100);
+        assert!(looks.look(1, 0x2A37, position).control.is_standing());
+        let refused = Ended::Refused(Refusal::Outward { position, low: -100, high: 100 });
+        assert_eq!(looks.man.ended(), Some((1, refused)));
+    }
+}
+
+/// Issue 21.4: status bit 15 between limits that are both within a degree does not tell at which of them the drive is.
+#[test]
+fn near_both_limits_bit_15_does_not_tell_the_way_in() {
+    let at = |position| Permit::within(-150, 150).outside(heard(Some((0xAA37, position))).unwrap());
+    assert_eq!((at(-20), at(0), at(20)), (Some(Outside::Unclear), Some(Outside::Unclear), Some(Outside::Unclear)));
+    assert_eq!((at(-34), at(34)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
+    assert_eq!((at(-151), at(151)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
+}
+
+/// Issue 21.6b: the first packets of a connection are no position (a hub first asks all its drives), so that a step from there
+/// would lead somewhere else. It begins once positions have come for 250 ms.
+#[test]
+fn a_step_is_not_counted_from_the_first_packets() {
+    let mut looks = Looks::new();
+    looks.permit = Permit::within(-100_000, 100_000);
+    looks.act(Wish::Step { by: 100, effort: FULL });
+    looks.look(24, 0x2A37, 0);
+    assert_eq!(looks.man.phase(), Phase::Idle);
+    let sent = looks.look(20, 0x2A37, 50_000);
+    assert_eq!((sent.target, looks.man.ended()), (50_100, None));
+    assert!(matches!(looks.man.phase(), Phase::Starting(_)));
 }
 
 proptest! {
@@ -216,7 +330,7 @@ proptest! {
             let leaves = before.control.has(ControlBit::SpeedMode) && !word.has(ControlBit::SpeedMode);
             prop_assert!(!leaves || !word.has(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
             // A drive that does not stand goes up the ladder to its end.
-            unmet = if matches!(man.phase(), super::Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
+            unmet = if matches!(man.phase(), Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
             prop_assert!(unmet < RUNG * 3 + Duration::from_millis(240) || man.gives_up());
             before = sent;
         }

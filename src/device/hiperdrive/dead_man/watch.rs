@@ -6,13 +6,13 @@
 //! | endless run | an expert's run without an end is held against its direction alone: there is no limit that it obeys |
 //! | unread limits | nothing moves, and what moves is stopped: the permit says so |
 //! | already outside | the way back in is free; further out only where that was freed for this press |
-//! | outside by status bit 15 alone, more than a degree inside | nothing moves but what was freed for this press: the way in is not known |
+//! | outside by status bit 15 alone, more than a degree inside or near both limits | nothing moves but what was freed for this press: the way in is not known |
 //! | overrun while braking | a stop that is under way goes on; its reason stays |
 //!
 //! Within one degree beyond a limit the motion ended at the end of its range: a drive repeats a position no better than
 //! ±1° (manual, technical data; reference 5).
 
-use super::{DeadMan, Ended, Motion, Motive, Permit, Refusal, SHORT, Stage, Wish};
+use super::{DeadMan, Ended, Lock, Motion, Motive, Permit, Refusal, SHORT, Stage, Wish};
 use crate::protocol::hiperdrive::{Actual, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
 
@@ -30,7 +30,7 @@ pub enum Side {
 pub enum Outside {
     /// On this side.
     At(Side),
-    /// The drive says so by status bit 15, and its position is more than a degree inside both limits.
+    /// The drive says so by status bit 15, and its position is more than a degree inside both limits, or near both.
     Unclear,
 }
 
@@ -63,19 +63,20 @@ impl Outside {
 }
 
 impl Permit {
-    /// Where a drive is beyond its limits: by its position, or else by status bit 15, at a limit that is within a degree then.
+    /// Where a drive is beyond its limits: by its position, or else by status bit 15, at the one limit that is within a degree then.
     /// `None` inside, and where no limits are known.
     pub fn outside(&self, actual: Actual) -> Option<Outside> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
-            let (side, beyond) = [Side::Below, Side::Above]
-                .map(|side| (side, side.beyond(actual.position, limits)))
-                .into_iter()
-                .max_by_key(|(_, beyond)| *beyond)?;
-            Some(if beyond >= -degree { Outside::At(side) } else { Outside::Unclear })
+            // Of a range so narrow that both limits are within a degree it may be either.
+            match [Side::Below, Side::Above].map(|side| side.beyond(actual.position, limits) >= -degree) {
+                [true, false] => Outside::At(Side::Below),
+                [false, true] => Outside::At(Side::Above),
+                _ => Outside::Unclear,
+            }
         };
         let beyond = side(actual.position, limits).map(Outside::At);
-        beyond.or_else(|| actual.status.has(StatusBit::PositionLimit).then(by_status)?)
+        beyond.or_else(|| actual.status.has(StatusBit::PositionLimit).then(by_status))
     }
 }
 
@@ -215,11 +216,17 @@ impl DeadMan {
         let act = self.act.as_mut()?;
         let motion = act.motion.as_ref()?;
         if !self.stage.has_motion() {
-            // Before it begins.
             act.watch = None;
-            return permit.check_place(motion.wish, actual).err().map(Ended::Refused);
         }
-        let watch = act.watch.get_or_insert_with(|| Watch::begin(motion, actual, permit));
+        let Some(watch) = &mut act.watch else {
+            // Before it begins, with the first report behind the way up as well: what holds at the beginning holds there.
+            let doubted = permit.doubted.then_some(Refusal::Locked(Lock::Outdated));
+            let refusal = doubted.or_else(|| permit.check_place(motion.wish, actual).err());
+            if refusal.is_none() && self.stage.has_motion() {
+                act.watch = Some(Watch::begin(motion, actual, permit));
+            }
+            return refusal.map(Ended::Refused);
+        };
         let has_braked = matches!(self.stage, Stage::Paused { since, .. } if mark.is_past(since, SHORT));
         let waits = watch.wait(has_braked, actual, permit);
         watch.look(motion, actual, permit).or(waits)
