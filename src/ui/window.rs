@@ -356,6 +356,11 @@ impl Window {
         let moves = self.studio.moves_by_hand();
         let goes_down = stopping::escape_goes_down(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        if !is_pressed && goes_down && moves {
+            // With Ctrl or Alt it closes nothing, and stops all the same.
+            stopping::means_motion(ctx, true, ctx.input(|input| input.time));
+            actions.push(Action::StopMotion);
+        }
         if !is_pressed || (in_use || !goes_down) && !moves {
             return;
         }

@@ -175,6 +175,52 @@ fn a_click_behind_the_stop_of_the_page_ends_nothing_else() {
     assert!(is_watched(&screen));
 }
 
+/// A pause turns its button into the one that goes on: whoever presses twice in a fright has not asked for that. Later it is
+/// meant.
+#[test]
+fn a_second_click_on_pause_in_a_fright_does_not_go_on() {
+    let mut screen = moving();
+    let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
+    let phase = || motion.view().drives[0].phase;
+    screen.until("it can be paused", |studio| {
+        matches!(studio.hiperdrive().unwrap().moves.phase(ONE), Some(Phase::Moving(_)))
+    });
+    // Beside *Go*: recordings have a pause as well.
+    let row = places(&screen, "hd_move.go")[0].y;
+    let place = places(&screen, "hd_move.pause").into_iter().find(|own| (own.y - row).abs() < 2.0).unwrap();
+    screen.harness.hover_at(place);
+    screen.harness.step();
+    pointer(&mut screen, place, true);
+    pointer(&mut screen, place, false);
+    let began = Instant::now();
+    while !matches!(phase(), Phase::Paused { .. }) {
+        assert!(began.elapsed() < LONG, "{:?}", phase());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    for pressed in [true, false] {
+        pointer(&mut screen, place, pressed);
+    }
+    std::thread::sleep(Duration::from_millis(50));
+    assert!(matches!(phase(), Phase::Paused { .. }), "{:?}", phase());
+    screen.steps();
+    screen.click("hd_move.resume");
+    screen
+        .until("it goes on", |studio| matches!(studio.hiperdrive().unwrap().moves.phase(ONE), Some(Phase::Moving(_))));
+}
+
+/// Esc with a modifier is Esc all the same while something moves.
+#[test]
+fn escape_with_a_modifier_stops_as_well() {
+    for modifiers in [Modifiers::CTRL, Modifiers::ALT, Modifiers::SHIFT] {
+        let mut screen = moving();
+        screen.harness.key_press_modifiers(modifiers, Key::Escape);
+        screen.harness.step();
+        until_it_stands(&screen);
+        let ended = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().view().drives[0].ended;
+        assert!(matches!(ended, Some((_, Ended::Stopped))), "{modifiers:?}: {ended:?}");
+    }
+}
+
 /// Somebody has Esc down already when the machine starts: the system says again and again that it is.
 #[test]
 fn escape_that_is_held_stops_what_begins_meanwhile() {

@@ -12,6 +12,7 @@ use crate::ui::controls::{
     allowed_button, card, card_with, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry,
     two_columns,
 };
+use crate::ui::stopping::{goes_down, means_motion, pressed_at};
 use crate::ui::widgets::{StateMachine, state_machine};
 use crate::ui::{Skin, icons};
 
@@ -205,13 +206,17 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
         }
         match unit.moves.phase(drive) {
             Some(Phase::Paused { .. }) => {
-                if allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &skin.say("hd_move.resume")).clicked() {
+                let response = allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &skin.say("hd_move.resume"));
+                let pressed = goes_down(ui, &response);
+                // It stands where the pause was: a second click in a fright is meant for that.
+                if response.clicked() && !means_motion(ui.ctx(), false, pressed_at(ui, pressed)) {
                     motor(actions, id, Motor::Resume);
                 }
             }
             phase => {
                 let on_its_way = matches!(phase, Some(Phase::Moving(Motive::Job { .. })));
                 if enabled_button(ui, on_its_way, icons::PAUSE, &skin.say("hd_move.pause")).clicked() {
+                    means_motion(ui.ctx(), true, ui.input(|input| input.time));
                     motor(actions, id, Motor::Pause);
                 }
             }
