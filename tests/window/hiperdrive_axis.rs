@@ -97,6 +97,8 @@ fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
 #[test]
 fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
     let mut desk = confirmed();
+    // The settings are read on a thread, and a press before that is refused.
+    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(DriveNumber::FIRST).is_ok());
     act(&mut desk, Hiperdrive::Drive(Motor::JogPress { direction: Direction::Clockwise, repeated: false }));
     // Held, however long the computer takes for the way up to motion.
     held_until(&mut desk, "it moves", Unit::is_moving);
