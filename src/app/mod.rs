@@ -28,6 +28,8 @@ mod opening;
 mod picture;
 mod press;
 mod question;
+#[cfg(test)]
+pub(crate) mod recorded;
 pub mod recorder;
 pub mod review;
 mod services;

@@ -180,3 +180,20 @@ impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
         self.edited = true;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Settings;
+    use crate::app::recorded::SETTINGS;
+
+    /// Names of panels stand in people's settings.
+    #[test]
+    fn panels_stand_as_recorded() {
+        let layout = Settings::parse(SETTINGS).unwrap().layout.unwrap();
+        let tree: Tree<Pane> = ron::from_str(&layout).unwrap();
+        assert!(is_complete(&tree));
+        let again: Tree<Pane> = ron::from_str(&ron::to_string(&tree).unwrap()).unwrap();
+        assert_eq!(again, tree);
+    }
+}
