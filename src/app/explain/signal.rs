@@ -49,6 +49,10 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
             text("signal.no_values").with("left_out", left_out).with("rows", rows).with("row", row)
         }
         CaptureError::NoSampleClock { row } => text("signal.no_sample_clock").with("row", row),
+        CaptureError::NotASampleNumber { row, column, text: found } => {
+            text("signal.no_sample_number").with("row", row).with("column", column).with("text", found)
+        }
+        CaptureError::OpenQuote { row } => text("signal.open_quote").with("row", row),
     }
 }
 

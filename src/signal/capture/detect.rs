@@ -4,7 +4,7 @@
 use super::CaptureError;
 use super::encoding::decode_head;
 use super::header::{Columns, TimeUnit, VoltUnit, is_unit, unit_of};
-use super::import::{Number, number, whole};
+use super::import::{Number, is_no_value, number, whole};
 
 /// So many bytes from the beginning are looked at.
 pub const HEAD: usize = 64 << 10;
@@ -106,11 +106,15 @@ impl Layout {
         let first = lines.iter().position(|line| is_data(line, usual, decimal_comma)).ok_or(CaptureError::NoNumbers)?;
         let (before, data) = lines.split_at(first);
         let width = data.first().map_or(0, |line| filled(&line.fields));
-        let first_row = data.first().map_or(1, |line| line.row);
+        // Rows without a value stand between the names and the first row with all of them.
+        let gaps = before.iter().rev().take_while(|line| is_gap(line, width, decimal_comma)).count();
+        let (before, rows) = lines.split_at(first - gaps);
+        let first_row = rows.first().map_or(1, |line| line.row);
         let clock = sample_clock(before, decimal_comma)?;
         let header = header(before, width);
         let names = header.first().cloned().unwrap_or_default();
         let named = Columns::named(&names).map(|columns| fitting(columns, data.first(), decimal_comma));
+        let named = named.map(|columns| if clock.is_some() { columns.counted() } else { columns });
         let columns = match (wishes.columns, named) {
             (Some(columns), _) | (None, Some(columns)) => columns,
             (None, None) if width >= 3 => Columns::PLAIN,
@@ -225,6 +229,14 @@ fn decimal_comma(lines: &[Line]) -> bool {
 fn is_data(line: &Line, usual: usize, decimal_comma: bool) -> bool {
     let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
+}
+
+/// A row of a time and of fields without a value.
+fn is_gap(line: &Line, width: usize, decimal_comma: bool) -> bool {
+    let is_text = |field: &Vec<u8>| matches!(number(field, decimal_comma), Number::Text);
+    line.fields.len() >= width
+        && line.fields.iter().any(|field| !is_text(field))
+        && line.fields.iter().all(|field| !is_text(field) || is_no_value(field))
 }
 
 fn numbers(line: &Line, decimal_comma: bool) -> usize {

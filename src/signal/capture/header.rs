@@ -56,6 +56,14 @@ impl Columns {
         [self.sine, self.cosine, refsin, refcos].into_iter().chain(others).max().unwrap_or_default()
     }
 
+    /// The same for a table that counts its samples in the first column, whatever name that has.
+    pub(super) fn counted(self) -> Columns {
+        let others = [Some(self.sine), Some(self.cosine), self.reference_angle, self.absolute];
+        let (refsin, refcos) = self.references.unzip();
+        let is_taken = others.into_iter().chain([refsin, refcos]).any(|column| column == Some(1));
+        Columns { time: self.time.or((!is_taken).then_some(1)), ..self }
+    }
+
     /// The columns that names tell; `None` where sine or cosine is not among them.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let find = |known: &[&str]| {

@@ -34,6 +34,8 @@ struct Taken {
     seconds: (f64, f64),
     volts: f64,
     comma: bool,
+    /// The time column counts samples.
+    counts: bool,
 }
 
 /// What a field is.
@@ -73,6 +75,7 @@ impl Import {
             },
             volts: layout.volts_per_unit,
             comma: layout.decimal_comma,
+            counts: layout.clock.is_some(),
         };
         let capture = Capture {
             wires: layout.columns.references.map(|_| Wires::default()),
@@ -124,6 +127,10 @@ impl Import {
     /// # Errors
     /// Where no row had numbers, or most of them had none.
     pub fn finish(mut self) -> Result<(Layout, Capture), CaptureError> {
+        // A quotation mark that is not closed makes one row of all that follows: nothing of that was cut off.
+        if self.last != Some(b'"') && self.lines_in_row() > 0 {
+            return Err(self.open_quote());
+        }
         // No more bytes: a row without an end of line ends here, and may be cut off.
         if let Err(error) = self.step(&[]) {
             self.leave_out(self.reader.line(), error);
@@ -135,6 +142,16 @@ impl Import {
             _ if taken == 0 => Err(CaptureError::NoNumbers),
             _ => Ok((self.layout, self.capture)),
         }
+    }
+
+    /// Line breaks in the row that is not at its end yet: they stand between quotation marks.
+    fn lines_in_row(&self) -> usize {
+        let row = self.row.get(..self.written).unwrap_or_default();
+        row.iter().filter(|byte| **byte == b'\n').count()
+    }
+
+    fn open_quote(&self) -> CaptureError {
+        CaptureError::OpenQuote { row: self.reader.line().saturating_sub(self.lines_in_row() as u64) }
     }
 
     fn leave_out(&mut self, row: u64, why: CaptureError) {
@@ -157,6 +174,7 @@ impl Import {
             ReadRecordResult::OutputEndsFull if self.ends.len() < LONGEST_ROW => {
                 self.ends.resize(self.ends.len() * 2, 0);
             }
+            ReadRecordResult::OutputFull if self.lines_in_row() > 0 => return Err(self.open_quote()),
             ReadRecordResult::OutputFull | ReadRecordResult::OutputEndsFull => return Err(CaptureError::NoNumbers),
             ReadRecordResult::Record => {
                 let ends = self.ends.get(..self.ended).unwrap_or_default();
@@ -237,6 +255,9 @@ impl Taken {
     fn time(&self, row: &[u8], ends: &[usize], line: u64, column: usize) -> Result<f64, CaptureError> {
         let field = self.field(row, ends, line, column)?;
         match number(field, self.comma) {
+            Number::Finite(value) if self.counts && whole(value).is_none() => {
+                Err(CaptureError::NotASampleNumber { row: line, column, text: shown(field) })
+            }
             Number::Finite(value) => Ok(value),
             Number::NotFinite => Err(CaptureError::NotFinite { row: line, column, text: shown(field) }),
             Number::Text => Err(CaptureError::NotANumber { row: line, column, text: shown(field) }),
@@ -272,7 +293,7 @@ impl Taken {
 }
 
 /// What instruments write where they have no value: nothing, dashes, or that their input was overloaded.
-fn is_no_value(field: &[u8]) -> bool {
+pub(super) fn is_no_value(field: &[u8]) -> bool {
     const WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
     let text = String::from_utf8_lossy(field).to_lowercase();
@@ -285,6 +306,9 @@ pub(super) fn whole(value: f64) -> Option<i64> {
     (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)
 }
 
+/// What SCPI instruments send for an overload (9.9E37) or where they have no number (9.91E37): SCPI-99, 7.2.1.
+const NO_VALUE: f64 = 9.9e37;
+
 /// Reads a field without spaces around it.
 pub(super) fn number(field: &[u8], comma: bool) -> Number {
     let field = field.strip_prefix(b"+").filter(|rest| rest.first() != Some(&b'-')).unwrap_or(field);
@@ -293,7 +317,7 @@ pub(super) fn number(field: &[u8], comma: bool) -> Number {
         _ => fast_float2::parse::<f64, _>(field).ok(),
     };
     match parsed {
-        Some(value) if value.is_finite() => Number::Finite(value),
+        Some(value) if value.abs() < NO_VALUE => Number::Finite(value),
         Some(_) => Number::NotFinite,
         None => Number::Text,
     }

@@ -116,4 +116,20 @@ pub enum CaptureError {
         /// The line in the file, from 1.
         row: u64,
     },
+    /// The header names a start and an increment of the time, and the column of sample numbers has something else.
+    #[error("row {row}, column {column}: {text} is no sample number, though the header names Start and Increment")]
+    NotASampleNumber {
+        /// The line in the file, from 1.
+        row: u64,
+        /// The column, from 1.
+        column: usize,
+        /// What stands there, shortened.
+        text: String,
+    },
+    /// A quotation mark is not closed, so that all that follows belongs to one field.
+    #[error("row {row} has a quotation mark that is not closed")]
+    OpenQuote {
+        /// The line in the file, from 1.
+        row: u64,
+    },
 }

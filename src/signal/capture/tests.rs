@@ -241,3 +241,53 @@ fn encodings_and_rows_of_units_do_not_reject_a_table() {
         assert_eq!((capture.sine_v, capture.cosine_v), (vec![0.25, -0.3], vec![0.5, 0.4]), "{head}");
     }
 }
+
+/// Issue 22.13: rows without a value before the first that has all of them do not hide the names and units of the columns.
+#[test]
+fn rows_without_a_value_at_the_beginning_leave_the_header_as_it_is() {
+    let rows = "2,3,4\n3,4,5\n4,5,6\n5,6,7\n6,7,8\n7,8,9\n";
+    for gap in ["1,,", "1,OVERLOAD,OVERLOAD", "1,---,---", "1, , "] {
+        let (layout, capture) = read(format!("t [ms],cos,sin [mV]\n0,,\n{gap}\n{rows}")).unwrap();
+        assert_eq!((layout.columns.sine, layout.columns.cosine, layout.first_row), (3, 2, 2), "{gap}");
+        assert_eq!((capture.time_s[0], capture.sine_v[0], capture.left_out), (0.002, 0.004, 2), "{gap}");
+    }
+    let (layout, capture) = read(format!("0,,\n1,OL,OL\n{rows}")).unwrap();
+    assert_eq!((layout.names, capture.left_out, capture.sine_v.len()), (Vec::new(), 2, 6), "without names");
+}
+
+/// Issue 22.13: a last line that is cut off is one line; what follows an open quotation mark is no such line.
+#[test]
+fn an_open_quotation_mark_swallows_no_rows() {
+    let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
+    for (open, column) in [("6,\"3,4", "in a value"), ("6,3,4,\"24 V", "in a note")] {
+        let text = format!("t,sin,cos,note\n{six}{open}\n7,8,9\n8,9,1\n");
+        assert_eq!(read(text).unwrap_err(), CaptureError::OpenQuote { row: 8 }, "{column}");
+    }
+    let long = format!("t,sin,cos\n{six}6,3,4,\"{}", "7,8,9\n".repeat(400_000));
+    assert_eq!(read_in(4096, long.as_bytes(), &Wishes::default()).unwrap_err(), CaptureError::OpenQuote { row: 8 });
+    // Closed at the end of the file, over two lines.
+    let (_, capture) = read(format!("t,sin,cos,note\n{six}6,7,8,\"two\nlines\"")).unwrap();
+    assert_eq!((capture.sine_v.len(), capture.left_out), (7, 0));
+}
+
+/// Issue 22.13: an oscilloscope's sample numbers have a time whatever the channels are called, and are whole numbers.
+#[test]
+fn sample_numbers_are_whole_and_in_the_first_column() {
+    let (layout, capture) = read("X,sin,cos,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n1,3,4,,\n").unwrap();
+    assert_eq!((layout.columns.time, capture.time_s), (Some(1), vec![1.0, 1.5]));
+    let times = "X,CH1,CH2,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n0.5,3,4,,\n";
+    let expected = CaptureError::NotASampleNumber { row: 4, column: 1, text: "0.5".to_owned() };
+    assert_eq!(read(times).unwrap_err(), expected);
+    let wishes = Wishes { time_unit: Some(TimeUnit::Seconds), ..Wishes::default() };
+    assert_eq!(read_in(99, times.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 0.5]);
+}
+
+/// Issue 22.13: 9.9E37 and 9.91E37 are how SCPI instruments write an overload and a value that they do not have.
+#[test]
+fn what_scpi_instruments_send_for_no_value_is_none() {
+    let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
+    for gap in ["6,9.9E+37,3", "6,2,-9.9E37", "6,9.91E+37,3"] {
+        let (_, capture) = read(format!("t,sin,cos\n{six}{gap}\n7,8,9\n")).unwrap();
+        assert_eq!((capture.left_out, capture.sine_v.len(), capture.sine_v[6]), (1, 7, 8.0), "{gap}");
+    }
+}
