@@ -260,7 +260,7 @@ pub(super) struct Restore {
     /// The profile may be of another serial number.
     #[arg(long)]
     pub(super) allow_other_device: bool,
-    /// hiperface: the profile may be of another type of encoder.
+    /// hiperface, biss: the profile may be of another type of encoder.
     #[arg(long)]
     pub(super) allow_other_type: bool,
     /// hiperface: copy the bytes of unknown meaning of this data field onto another serial number; repeatable.

@@ -13,7 +13,7 @@ use super::plan::{NOTHING, Shown, Spent};
 use super::runner::failed;
 use super::{Done, Failure, Result};
 use crate::app::{explain, review};
-use crate::profile::{Body, Comparison, Document};
+use crate::profile::{Body, Comparison, Document, RestoreOptions};
 use crate::store::{read_text, write_atomically};
 
 /// Reads a profile of any kind, to look at it or to compare it.
@@ -83,6 +83,18 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
     let profile = load_to_write(&restore.file)?;
     (kind::of_profile(&profile).restore)(common, output, restore, profile)
+}
+
+/// What the command line allows of a restore, for devices without data fields.
+pub(super) fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
+    if !restore.copy.is_empty() || !restore.leave.is_empty() {
+        return Err(Failure::Usage("--copy and --leave are for data fields; this device has none".to_owned()));
+    }
+    Ok(RestoreOptions {
+        allow_other_device: restore.allow_other_device,
+        allow_other_type: restore.allow_other_type,
+        with_mounting: restore.with_mounting,
+    })
 }
 
 fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Result {

@@ -3,8 +3,10 @@
 /// What a restore may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RestoreOptions {
-    /// The profile may go onto a device with another serial number, or of another kind, as far as its kind allows that.
+    /// The profile may go onto a device with another serial number.
     pub allow_other_device: bool,
+    /// The profile may go onto a device of another type, where types are told apart by more than what both have.
+    pub allow_other_type: bool,
     /// Values of the mounting may go onto another device.
     pub with_mounting: bool,
 }

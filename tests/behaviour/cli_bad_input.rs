@@ -128,6 +128,42 @@ fn a_search_without_a_terminal_needs_the_word_that_no_drive_is_there() {
     bench.run(&["identify", "biss", "--only-master", "--link", "sim:"]).fails(2, &["--only-master"]);
 }
 
+/// A ready-made profile.
+fn ready_made(kind: &str, name: &str) -> String {
+    format!("{}/profiles/{kind}/{name}.ron", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Issue 22.8: answers about data fields are refused where there are none, before anything is opened.
+#[test]
+fn answers_about_data_fields_are_for_devices_that_have_them() {
+    let bench = Bench::new();
+    let profiles = [
+        ready_made("biss", "dynamic-filter"),
+        ready_made("interbus", "scaled-encoder"),
+        ready_made("hiperdrive", "gentle-commissioning"),
+    ];
+    for file in &profiles {
+        for answer in ["--copy", "--leave"] {
+            let restore = ["restore", file, "--dry-run", answer, "field:0", "--link", "sim:"];
+            bench.run(&restore).fails(2, &["--copy and --leave", "data fields"]);
+        }
+    }
+}
+
+/// Issue 22.9: another kind of BiSS encoder is named, and refused without a permit of its own.
+#[test]
+fn a_profile_of_another_kind_of_biss_encoder_needs_a_permit_of_its_own() {
+    let bench = Bench::new();
+    let text = fs::read_to_string(ready_made("biss", "dynamic-filter")).unwrap();
+    let other = text.replace("device_id: \"01 01", "device_id: \"02 01");
+    assert_ne!(other, text);
+    let file = bench.write("other.ron", other);
+    let restore = ["restore", &file, "--dry-run", "--allow-other-device", "--link", "sim:", "--json"];
+    bench.run(&restore).fails(1, &["--allow-other-type", "nothing was written"]);
+    let allowed = bench.run(&[&restore[..], &["--allow-other-type"]].concat());
+    assert!(allowed.status == Some(0) && allowed.err.contains("may have another meaning"), "{allowed:?}");
+}
+
 /// Issue 22.9: another type is named, and refused without a permit of its own.
 #[test]
 fn a_profile_of_another_type_needs_a_permit_of_its_own() {

@@ -33,7 +33,8 @@ impl Reviewed for Biss {
         match permit {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
             Permit::Mounting => Some(&mut options.with_mounting),
-            Permit::OtherType | Permit::Recreate | Permit::Copy(_) => None,
+            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Recreate | Permit::Copy(_) => None,
         }
     }
 
@@ -55,6 +56,7 @@ impl Reviewed for Biss {
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
+        warnings.extend(explain::biss::other_type(prepared));
         warnings.extend(explain::biss::wear(prepared));
         if prepared.plan.ops.contains(&Op::Calibrate) {
             warnings.push(Text::new("biss_review.table"));

@@ -105,6 +105,11 @@ impl WithMemory for Encoder {
         check_device(profile, &own.profile()).is_err()
     }
 
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        profile.identity.kind() != own.profile().kind()
+    }
+
     fn is_of_another(&self, prepared: &Prepared) -> bool {
         self.is_another(&prepared.identity)
     }

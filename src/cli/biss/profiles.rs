@@ -8,10 +8,10 @@ use crate::app::explain;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
+use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Result};
-use crate::profile::biss::{self, BissProfile, ProfileIdentity, RestoreOptions};
+use crate::profile::biss::{self, BissProfile, ProfileIdentity};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::protocol::biss::DeviceMode;
 use crate::worker::biss::{BissJob, BissOutput, Change};
@@ -58,13 +58,15 @@ fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
     let profile = profile.into_biss().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
-    let options =
-        RestoreOptions { allow_other_device: restore.allow_other_device, with_mounting: restore.with_mounting };
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
+    if let Some(words) = explain::biss::other_type(&prepared) {
+        output.remark(&words.terminal());
+    }
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: the encoder does not have it"));
     }

@@ -8,10 +8,10 @@ use crate::app::explain;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
+use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Result};
-use crate::profile::hiperdrive::{self, HiperdriveProfile, Item, RestoreOptions};
+use crate::profile::hiperdrive::{self, HiperdriveProfile, Item};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::worker::hiperdrive::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 
@@ -67,11 +67,10 @@ fn absent(prepared: &Prepared) -> Vec<String> {
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
     let profile = profile.into_hiperdrive().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
-    let options =
-        RestoreOptions { allow_other_device: restore.allow_other_device, with_mounting: restore.with_mounting };
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
     for words in absent(&prepared) {

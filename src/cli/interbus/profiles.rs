@@ -9,10 +9,10 @@ use crate::app::explain;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
+use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Result};
-use crate::profile::interbus::{self, Image, InterbusProfile, Recorded, RestoreOptions, programs_needed};
+use crate::profile::interbus::{self, Image, InterbusProfile, Recorded, programs_needed};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::worker::interbus::{Change, InterbusJob, InterbusOutput};
 
@@ -77,11 +77,10 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
     let profile = profile.into_interbus().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
-    let options =
-        RestoreOptions { allow_other_device: restore.allow_other_device, with_mounting: restore.with_mounting };
     let mut runner = Runner::open(common)?;
     let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
     disturbs.begin(common, output, Some(&restore.consent))?;

@@ -129,9 +129,7 @@ pub fn plan_restore(
     device: &DeviceState,
     options: RestoreOptions,
 ) -> Result<Restore, PlanError> {
-    if !options.allow_other_device {
-        check_device(profile, &device.identity)?;
-    }
+    check_allowed(profile, &device.identity, options)?;
     let same_device = is_same_device(profile, &device.identity);
     let mounting = if same_device { Mounting::Own } else { Mounting::of_another(options) };
     let mut planner = Planner::new(profile, device, mounting);
@@ -161,18 +159,38 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
     if of_profile != of_device {
         return Err(PlanError::OtherKind { profile: Box::new(of_profile), device: Box::new(of_device) });
     }
-    if is_same_device(profile, device) {
-        return Ok(());
+    if is_same_device(profile, device) { Ok(()) } else { Err(other_device(profile, device)) }
+}
+
+/// Refuses an encoder that the profile was not read from, as far as that is not allowed. Registers of another kind of encoder
+/// may mean something else, so that a permit for another serial number is none for that.
+///
+/// # Errors
+/// [`PlanError::OtherKind`], [`PlanError::OtherDevice`].
+pub fn check_allowed(
+    profile: &BissProfile,
+    device: &ProfileIdentity,
+    options: RestoreOptions,
+) -> Result<(), PlanError> {
+    match check_device(profile, device) {
+        Err(error @ PlanError::OtherKind { .. }) if !options.allow_other_type => Err(error),
+        Err(PlanError::OtherKind { .. }) if options.allow_other_device || has_same_number(profile, device) => Ok(()),
+        Err(PlanError::OtherKind { .. }) => Err(other_device(profile, device)),
+        Err(PlanError::OtherDevice { .. }) if options.allow_other_device => Ok(()),
+        checked => checked,
     }
-    Err(PlanError::OtherDevice {
-        profile: profile.identity.serial_number.clone(),
-        device: device.serial_number.clone(),
-    })
+}
+
+fn has_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
+    !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
 }
 
 fn is_same_device(profile: &BissProfile, device: &ProfileIdentity) -> bool {
-    let number = &device.serial_number;
-    !number.is_empty() && profile.identity.serial_number == *number && profile.identity.kind() == device.kind()
+    has_same_number(profile, device) && profile.identity.kind() == device.kind()
+}
+
+fn other_device(profile: &BissProfile, device: &ProfileIdentity) -> PlanError {
+    PlanError::OtherDevice { profile: profile.identity.serial_number.clone(), device: device.serial_number.clone() }
 }
 
 /// Refuses a preset value that the position cannot take.

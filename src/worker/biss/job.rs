@@ -139,6 +139,8 @@ pub struct Prepared {
     pub unsaved: Option<DeviceMode>,
     /// Values of the mounting of another device that are written: they have to be set up anew.
     pub mounting_written: Vec<RegisterRange>,
+    /// The kind of encoder that the profile was read from, where it is another one.
+    pub other_type: Option<crate::protocol::biss::Identity>,
 }
 
 impl Prepared {

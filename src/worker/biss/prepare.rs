@@ -6,7 +6,7 @@ use super::{Biss, Change, Doing, JobError, Prepared, device_key};
 use crate::device::biss::write::{read_bank, read_state};
 use crate::device::biss::{Error, Identity, Master, ensure_standstill, identify, write};
 use crate::profile::biss::{
-    Base, BissPlan, Place, RegisterRange, Restore, banks_needed, check_device, place, plan_edits, plan_filter,
+    Base, BissPlan, Place, RegisterRange, Restore, banks_needed, check_allowed, place, plan_edits, plan_filter,
     plan_mounting, plan_preset, plan_restore,
 };
 use crate::protocol::biss::{Area, RegisterAddress};
@@ -25,10 +25,8 @@ pub(super) fn prepare(
     let description = identity.description.clone();
     let plan = match change {
         Change::Restore { profile, options } => {
-            if !options.allow_other_device {
-                // Known before the banks are read.
-                check_device(profile, &identity.profile())?;
-            }
+            // Known before the banks are read.
+            check_allowed(profile, &identity.profile(), *options)?;
             let areas: Vec<Area> = description.areas().to_vec();
             let state = state(&mut master, &identity, &banks_needed(profile, &areas), tell)?;
             plan_restore(profile, &state, *options)?
@@ -53,6 +51,12 @@ pub(super) fn prepare(
         Change::Restore { profile, .. } => profile.recorded.device_mode,
         _ => None,
     };
+    let other_type = match change {
+        Change::Restore { profile, .. } => {
+            Some(profile.identity.kind()).filter(|kind| *kind != identity.profile().kind())
+        }
+        _ => None,
+    };
     Ok(Prepared {
         kind: change.kind(),
         plan,
@@ -63,6 +67,7 @@ pub(super) fn prepare(
         mounting_left,
         mounting_written,
         unsaved,
+        other_type,
     })
 }
 

@@ -174,7 +174,7 @@ fn a_restore_writes_what_differs_and_leaves_the_mounting_of_another() {
     let refused = other
         .run(InterbusJob::Prepare(Change::Restore { profile: profile.clone(), options: RestoreOptions::default() }));
     assert!(matches!(refused, Err(JobError::Plan(_))), "{refused:?}");
-    let options = RestoreOptions { allow_other_device: true, with_mounting: false };
+    let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let prepared = other.prepare(Change::Restore { profile: profile.clone(), options });
     assert_eq!(prepared.mounting_left, [Item::Preset]);
     other.commit(prepared).unwrap();

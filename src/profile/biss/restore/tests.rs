@@ -124,6 +124,37 @@ fn a_bank_that_the_profile_calls_empty_is_emptied() {
     assert_eq!(banks_needed(&partial, &areas()), [0x25]);
 }
 
+/// Issue 22.9: another kind of encoder needs a permit of its own; the one for another serial number is not enough.
+#[test]
+fn another_kind_needs_a_permit_of_its_own() {
+    let mut wanted = profile("1");
+    with_bytes(&mut wanted, 0x24, &[(0, 1)]);
+    let now = device(&profile("2"));
+    let kind_refused = |profile: &BissProfile| {
+        let (profile, device) = (Box::new(profile.identity.kind()), Box::new(now.identity.kind()));
+        Err(PlanError::OtherKind { profile, device })
+    };
+    let number_refused = Err(PlanError::OtherDevice { profile: "1".to_owned(), device: "2".to_owned() });
+    let mut other = wanted.clone();
+    other.identity.device_id[0] ^= 1;
+    let mut same_number = other.clone();
+    same_number.identity.serial_number = "2".to_owned();
+    let planned = Ok(vec!["OEM data 0x24:0x00:00>01 (1)".to_owned()]);
+    let cases = [
+        ("nothing", &other, false, false, kind_refused(&other)),
+        ("another serial number", &other, true, false, kind_refused(&other)),
+        ("another type", &other, false, true, number_refused.clone()),
+        ("both", &other, true, true, planned.clone()),
+        ("another type with the same number", &same_number, false, true, planned.clone()),
+        ("the same kind", &wanted, true, false, planned),
+        ("the same kind and another type", &wanted, false, true, number_refused),
+    ];
+    for (label, profile, allow_other_device, allow_other_type, expected) in cases {
+        let options = RestoreOptions { allow_other_device, allow_other_type, with_mounting: false };
+        assert_eq!(plan_restore(profile, &now, options).map(|restore| ops(&restore)), expected, "{label}");
+    }
+}
+
 #[test]
 fn another_encoder_keeps_its_mounting() {
     let mut wanted = profile("1");

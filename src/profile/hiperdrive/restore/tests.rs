@@ -10,9 +10,11 @@ fn device() -> DeviceState {
     DeviceState { identity: profile.identity, image: profile.image, positions: Positions::new() }
 }
 
-const NONE: RestoreOptions = RestoreOptions { allow_other_device: false, with_mounting: false };
-const OTHER: RestoreOptions = RestoreOptions { allow_other_device: true, with_mounting: false };
-const ALL: RestoreOptions = RestoreOptions { allow_other_device: true, with_mounting: true };
+const NONE: RestoreOptions =
+    RestoreOptions { allow_other_device: false, allow_other_type: false, with_mounting: false };
+const OTHER: RestoreOptions =
+    RestoreOptions { allow_other_device: true, allow_other_type: false, with_mounting: false };
+const ALL: RestoreOptions = RestoreOptions { allow_other_device: true, allow_other_type: false, with_mounting: true };
 
 fn written(restore: &Restore) -> Vec<u16> {
     let write = |op: &Op| match op {

@@ -43,7 +43,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     let other = device("7654321", &[("preset", Number(7)), ("zero-shift", Number(9)), ("cam-mask:1", Mask(0))]);
     let refused = PlanError::OtherDevice { profile: MINE.to_owned(), device: "7654321".to_owned() };
     assert_eq!(plan_restore(&of, &other, RestoreOptions::default()), Err(refused));
-    let allowed = RestoreOptions { allow_other_device: true, with_mounting: false };
+    let allowed = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let restore = plan_restore(&of, &other, allowed).unwrap();
     assert_eq!(operations(&restore), ["cam-mask:1: 0x00 → 0xFF"]);
     assert_eq!(restore.mounting_left, [Item::Preset, Item::ZeroShift]);
@@ -65,7 +65,7 @@ fn marks_are_what_belongs_to_the_mounting() {
         mark.item = "cam:1:1".parse().unwrap();
     }
     let other = device("7654321", &[("preset", Number(7)), ("cam:1:1", Cam(edges(0, 1)))]);
-    let options = RestoreOptions { allow_other_device: true, with_mounting: false };
+    let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let restore = plan_restore(&of, &other, options).unwrap();
     assert_eq!((operations(&restore), restore.mounting_left.len()), (vec!["preset: 7 → 500".to_owned()], 1));
 }
@@ -81,7 +81,7 @@ fn a_profile_of_no_encoder_is_refused_by_none() {
 #[test]
 fn a_preset_that_is_left_has_to_fit() {
     let other = device("7654321", &[("steps", Number(8192)), ("preset", Number(5000))]);
-    let options = RestoreOptions { allow_other_device: true, with_mounting: false };
+    let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };
     assert_eq!(plan_restore(&profile(MINE), &other, options), Err(left));
     assert!(plan_restore(&profile(MINE), &other, RestoreOptions { with_mounting: true, ..options }).is_ok());
