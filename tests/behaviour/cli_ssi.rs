@@ -150,7 +150,9 @@ fn any_frame_is_written_in_one_word() {
     let ahm36 = "frame,clocks=27,mt=12,st=14,code=gray,area=26,err=27";
     assert_eq!(decoded(ahm36, "0x0D93EEC")["position"], 4_778_587);
     assert_eq!(decoded(&format!("{ahm36},inverted=1"), "0x726C113")["position"], 4_778_587);
-    bench.run(&["ssi", "decode", "--layout", "frame,clock=3", "0"]).fails(2, &["clock=3", "clocks, mt, st"]);
+    bench
+        .run(&["ssi", "decode", "--layout", "frame,clock=3", "0"])
+        .fails(2, &["there is no \"clock\"", "clocks, mt, st"]);
     bench.run(&["ssi", "decode", "--layout", "frame,clocks=3,st=4", "000"]).fails(1, &["3"]);
 }
 

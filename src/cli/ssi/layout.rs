@@ -10,9 +10,7 @@ use crate::cli::profiles::load;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::profile::ssi::SsiProfile;
-use crate::protocol::ssi::{
-    Descriptor, Families, Family, FrameSpecError, Layout, Resolved, Settings, Times, from_linuxcnc,
-};
+use crate::protocol::ssi::{Descriptor, Families, Family, Layout, Resolved, Settings, SpecError, Times, from_linuxcnc};
 use crate::store::Store;
 
 /// A layout to work with.
@@ -61,7 +59,7 @@ fn is_file(spec: &str, families: &Families) -> bool {
 }
 
 /// Any frame in one word.
-fn of_frame(spec: &str, frame: std::result::Result<Descriptor, FrameSpecError>) -> Result<Chosen> {
+fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Result<Chosen> {
     let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
     let profile = SsiProfile::new(layout.descriptor().clone());

@@ -9,7 +9,6 @@ mod tests;
 mod text;
 
 pub use settings::{Advice, Resolved, Settings, SettingsError};
-pub use text::TextError;
 
 use serde::Deserialize;
 

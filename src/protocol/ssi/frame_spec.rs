@@ -4,35 +4,12 @@
 use super::code::Code;
 use super::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
 use super::range::{Fraction, Range};
+use super::spec::{Setting, SpecError};
 
 /// What a frame in one word begins with.
 const KEY: &str = "frame";
 
-/// Why a text is no frame.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum FrameSpecError {
-    /// No `name=value`, or a name that is none.
-    #[error("\"{word}\" is not NAME=VALUE; names: {names}", names = NAMES.join(", "))]
-    Name {
-        /// What stands there.
-        word: String,
-    },
-    /// A value that is none.
-    #[error("{name} must be {expected}, not \"{value}\"")]
-    Value {
-        /// Of which name.
-        name: String,
-        /// What it may be.
-        expected: &'static str,
-        /// What it is.
-        value: String,
-    },
-    /// The same twice.
-    #[error("{0} is given twice")]
-    Twice(String),
-}
-
-const NAMES: [&str; 20] = [
+const NAMES: &[&str] = &[
     "clocks",
     "mt",
     "st",
@@ -65,8 +42,8 @@ impl Descriptor {
     /// clocks as the position has bits.
     ///
     /// # Errors
-    /// [`FrameSpecError`], with what may stand there.
-    pub fn parse(text: &str) -> Option<Result<Self, FrameSpecError>> {
+    /// [`SpecError`], with what may stand there.
+    pub fn parse(text: &str) -> Option<Result<Self, SpecError>> {
         let mut words = text.split(',').map(str::trim);
         words.next().is_some_and(|key| key.eq_ignore_ascii_case(KEY)).then(|| parse(words))
     }
@@ -116,47 +93,34 @@ impl Descriptor {
     }
 }
 
-fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Descriptor, FrameSpecError> {
+fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Descriptor, SpecError> {
     let mut frame = Descriptor { code: Code::Binary, coded: Coded::Position, ..Descriptor::plain(0, 0) };
     let (mut bits, mut steps, mut length) = ((None, None), (None, None, None), (None, None));
     let (mut clocks, mut area) = (None, None);
-    let mut seen: Vec<String> = Vec::new();
-    for word in words.filter(|word| !word.is_empty()) {
-        let wrong_name = || FrameSpecError::Name { word: word.to_owned() };
-        let (name, value) = word.split_once('=').ok_or_else(wrong_name)?;
-        let (name, value) = (name.trim(), value.trim());
-        if seen.iter().any(|known| known == name) {
-            return Err(FrameSpecError::Twice(name.to_owned()));
-        }
-        seen.push(name.to_owned());
-        let wrong = |expected| FrameSpecError::Value { name: name.to_owned(), expected, value: value.to_owned() };
-        let small = || value.parse::<u8>().map_err(|_| wrong("a number from 0 to 255"));
-        let number = || value.parse::<u32>().map_err(|_| wrong("a whole number"));
-        let switch = || match value {
-            "0" => Ok(false),
-            "1" => Ok(true),
-            _ => Err(wrong("0 or 1")),
-        };
-        match name {
-            "clocks" => clocks = Some(small()?),
-            "mt" => bits.0 = Some(small()?),
-            "st" => bits.1 = Some(small()?),
-            "steps" => steps.0 = Some(number()?),
-            "turns" => steps.1 = Some(number()?),
+    for setting in Setting::all(words, NAMES)? {
+        let value = setting.value;
+        let wrong = |expected| setting.wrong(expected);
+        match setting.name {
+            "clocks" => clocks = Some(setting.small()?),
+            "mt" => bits.0 = Some(setting.small()?),
+            "st" => bits.1 = Some(setting.small()?),
+            "steps" => steps.0 = Some(setting.number()?),
+            "turns" => steps.1 = Some(setting.number()?),
             "revolutions" => steps.2 = Some(value.parse::<Fraction>().map_err(wrong)?),
-            "bits" => length.0 = Some(small()?),
-            "step" => length.1 = Some(number()?),
+            "bits" => length.0 = Some(setting.small()?),
+            "step" => length.1 = Some(setting.number()?),
             "code" => frame.code = value.parse().map_err(wrong)?,
             "over" => frame.coded = value.parse().map_err(wrong)?,
-            "area" => area = Some(small()?),
-            "lead" => frame.lead = small()?,
-            "between" => frame.between = small()?,
-            "shift" => frame.shift_right = switch()?,
-            "inverted" => frame.inverted = switch()?,
+            "area" => area = Some(setting.small()?),
+            "lead" => frame.lead = setting.small()?,
+            "between" => frame.between = setting.small()?,
+            "shift" => frame.shift_right = setting.switch()?,
+            "inverted" => frame.inverted = setting.switch()?,
             "parity" => frame.parity = Some(parity(value).ok_or_else(|| wrong("even@CLOCK or odd@CLOCK"))?),
             "repeat" => frame.repeat = Some(repeat(value).ok_or_else(|| wrong("BITS+ZEROS, as 25+1"))?),
             _ => {
-                let (_, called, active_low) = LISTS.iter().find(|(list, ..)| *list == name).ok_or_else(wrong_name)?;
+                let (_, called, active_low) =
+                    LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown())?;
                 for clock in value.split('+') {
                     let clock = clock.parse().map_err(|_| wrong("clocks, as 1+26"))?;
                     frame.errors.push(ErrorBit {
@@ -242,7 +206,7 @@ mod tests {
     fn what_is_no_frame_says_why() {
         assert_eq!(Descriptor::parse("ahm36,code=gray"), None);
         let said = |text: &str| Descriptor::parse(text).unwrap().unwrap_err().to_string();
-        assert!(said("frame,clock=3").contains("names: clocks, mt, st"));
+        assert!(said("frame,clock=3").starts_with("there is no \"clock\"; names: clocks, mt, st"));
         assert!(said("frame,st").contains("NAME=VALUE"));
         assert!(said("frame,st=300").contains("0 to 255"));
         assert!(said("frame,parity=3").contains("even@CLOCK"));

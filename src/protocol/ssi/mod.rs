@@ -13,6 +13,7 @@ mod frame_spec;
 mod frame_text;
 mod layout;
 mod range;
+mod spec;
 mod tally;
 mod timing;
 
@@ -27,14 +28,14 @@ pub use export::{
 };
 pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, Frame, Resolved, Settings, SettingsError, Signal,
-    StepLimits, TextError,
+    StepLimits,
 };
 pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
-pub use frame_spec::FrameSpecError;
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
 pub use layout::{Flags, Layout, LayoutError, Reading};
 pub use range::{Direction, Fraction, Place, Range, RangeError};
+pub use spec::SpecError;
 pub use tally::{Noted, Tally};
 pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};

@@ -7,32 +7,9 @@ use super::{Align, ErrorPlace, Settings};
 use crate::protocol::ssi::code::Code;
 use crate::protocol::ssi::descriptor::{Coded, Meaning};
 use crate::protocol::ssi::range::Direction;
+use crate::protocol::ssi::spec::{Setting, SpecError};
 
-/// Why a text is no layout.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TextError {
-    /// No `name=value`.
-    #[error("\"{0}\" is not NAME=VALUE; names: {names}", names = NAMES.join(", "))]
-    Form(String),
-    /// A name that is none.
-    #[error("there is no \"{0}\"; names: {names}", names = NAMES.join(", "))]
-    Name(String),
-    /// A value that is none.
-    #[error("{name} must be {expected}, not \"{value}\"")]
-    Value {
-        /// Of which name.
-        name: String,
-        /// What it may be.
-        expected: &'static str,
-        /// What it is.
-        value: String,
-    },
-    /// The same twice.
-    #[error("{0} is given twice")]
-    Twice(String),
-}
-
-const NAMES: [&str; 14] = [
+const NAMES: &[&str] = &[
     "code",
     "over",
     "mt",
@@ -53,20 +30,13 @@ impl Settings {
     /// Splits `ahm36,code=gray,st=12` into the family's key and its settings.
     ///
     /// # Errors
-    /// [`TextError`], with what may stand there.
-    pub fn parse(text: &str) -> Result<(String, Self), TextError> {
+    /// [`SpecError`], with what may stand there.
+    pub fn parse(text: &str) -> Result<(String, Self), SpecError> {
         let mut words = text.split(',').map(str::trim);
         let key = words.next().unwrap_or_default().to_ascii_lowercase();
         let mut settings = Settings::default();
-        let mut seen: Vec<&str> = Vec::new();
-        for word in words.filter(|word| !word.is_empty()) {
-            let (name, value) = word.split_once('=').ok_or_else(|| TextError::Form(word.to_owned()))?;
-            let (name, value) = (name.trim(), value.trim());
-            if seen.contains(&name) {
-                return Err(TextError::Twice(name.to_owned()));
-            }
-            seen.push(name);
-            settings.set(name, value)?;
+        for setting in Setting::all(words, NAMES)? {
+            settings.set(setting)?;
         }
         Ok((key, settings))
     }
@@ -96,32 +66,25 @@ impl Settings {
         key.to_owned() + &named.collect::<String>()
     }
 
-    fn set(&mut self, name: &str, value: &str) -> Result<(), TextError> {
-        let wrong = |expected| TextError::Value { name: name.to_owned(), expected, value: value.to_owned() };
-        let small = || value.parse::<u8>().map_err(|_| wrong("a number from 0 to 255"));
-        let number = || value.parse::<u32>().map_err(|_| wrong("a whole number"));
-        match name {
+    fn set(&mut self, setting: Setting<'_>) -> Result<(), SpecError> {
+        let value = setting.value;
+        let wrong = |expected| setting.wrong(expected);
+        match setting.name {
             "code" => self.code = Some(value.parse().map_err(wrong)?),
             "over" => self.coded = Some(value.parse().map_err(wrong)?),
-            "mt" => self.multiturn = Some(small()?),
-            "st" => self.singleturn = Some(small()?),
-            "steps" => self.steps = Some(number()?),
-            "turns" => self.turns = Some(number()?),
+            "mt" => self.multiturn = Some(setting.small()?),
+            "st" => self.singleturn = Some(setting.small()?),
+            "steps" => self.steps = Some(setting.number()?),
+            "turns" => self.turns = Some(setting.number()?),
             "revolutions" => self.revolutions = Some(value.parse().map_err(wrong)?),
-            "clocks" => self.clocks = Some(small()?),
+            "clocks" => self.clocks = Some(setting.small()?),
             "align" => self.align = Some(value.parse().map_err(wrong)?),
-            "shift" => {
-                self.shift = match value {
-                    "0" => false,
-                    "1" => true,
-                    _ => return Err(wrong("0 or 1")),
-                };
-            }
+            "shift" => self.shift = setting.switch()?,
             "err" => self.errors = Some(value.parse().map_err(wrong)?),
-            "step" => self.step_nanometres = Some(number()?),
+            "step" => self.step_nanometres = Some(setting.number()?),
             "direction" => self.direction = Some(value.parse().map_err(wrong)?),
             "preset" => self.preset = Some(value.parse().map_err(|_| wrong("a whole number"))?),
-            _ => return Err(TextError::Name(name.to_owned())),
+            _ => return Err(setting.unknown()),
         }
         Ok(())
     }

@@ -1,0 +1,91 @@
+//! Layouts in one word, `KEY,name=value,…`: what a family's settings and a free frame have in common.
+
+/// Why a text is no layout.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SpecError {
+    /// No `name=value`.
+    #[error("\"{word}\" is not NAME=VALUE; names: {names}", names = names.join(", "))]
+    Form {
+        /// What stands there.
+        word: String,
+        /// Names that there are.
+        names: &'static [&'static str],
+    },
+    /// A name that is none.
+    #[error("there is no \"{name}\"; names: {names}", names = names.join(", "))]
+    Name {
+        /// What stands there.
+        name: String,
+        /// Names that there are.
+        names: &'static [&'static str],
+    },
+    /// A value that is none.
+    #[error("{name} must be {expected}, not \"{value}\"")]
+    Value {
+        /// Of which name.
+        name: String,
+        /// What it may be.
+        expected: &'static str,
+        /// What it is.
+        value: String,
+    },
+    /// The same twice.
+    #[error("{0} is given twice")]
+    Twice(String),
+}
+
+/// One `name=value`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setting<'t> {
+    pub(super) name: &'t str,
+    pub(super) value: &'t str,
+    names: &'static [&'static str],
+}
+
+impl<'t> Setting<'t> {
+    /// Reads words of `name=value`; empty ones do not count.
+    ///
+    /// # Errors
+    /// [`SpecError::Form`], [`SpecError::Twice`].
+    pub(super) fn all(
+        words: impl Iterator<Item = &'t str>,
+        names: &'static [&'static str],
+    ) -> Result<Vec<Self>, SpecError> {
+        let mut settings: Vec<Self> = Vec::new();
+        for word in words.filter(|word| !word.is_empty()) {
+            let (name, value) = word.split_once('=').ok_or_else(|| SpecError::Form { word: word.to_owned(), names })?;
+            let (name, value) = (name.trim(), value.trim());
+            if settings.iter().any(|known| known.name == name) {
+                return Err(SpecError::Twice(name.to_owned()));
+            }
+            settings.push(Setting { name, value, names });
+        }
+        Ok(settings)
+    }
+
+    pub(super) fn small(self) -> Result<u8, SpecError> {
+        self.value.parse().map_err(|_| self.wrong("a number from 0 to 255"))
+    }
+
+    pub(super) fn number(self) -> Result<u32, SpecError> {
+        self.value.parse().map_err(|_| self.wrong("a whole number"))
+    }
+
+    pub(super) fn switch(self) -> Result<bool, SpecError> {
+        match self.value {
+            "0" => Ok(false),
+            "1" => Ok(true),
+            _ => Err(self.wrong("0 or 1")),
+        }
+    }
+
+    /// The value is none of what may stand there.
+    pub(super) fn wrong(self, expected: &'static str) -> SpecError {
+        SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
+    }
+
+    /// There is no such name.
+    pub(super) fn unknown(self) -> SpecError {
+        SpecError::Name { name: self.name.to_owned(), names: self.names }
+    }
+}
