@@ -18,23 +18,35 @@ pub(super) fn show(output: &Output, lines: &[CheckLine]) -> Result {
 pub(super) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
-    let mut list = Vec::new();
+    let (mut list, mut told) = (Vec::new(), Vec::new());
     let mut text = Lines::default();
     for line in lines {
-        let (step, verdict) = (line.step.terminal(), verdict(line.verdict).terminal());
+        let (step, word) = (line.step.terminal(), word(line.verdict));
+        let verdict = verdict(line.verdict).terminal();
         let found = findings(line);
         // A sentence ends with the line, and not in the middle of it.
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();
-        let words = format!("{verdict:9}  {}", found.join("; "));
-        text.add(&step, words.trim_end());
+        let found = found.join("; ");
+        text.add(&step, format!("{verdict:9}  {found}").trim_end());
+        told.push(json!({"name": step, "verdict": word, "text": found}));
         list.push(json!({"step": step, "verdict": verdict, "findings": findings(line)}));
     }
-    let mut json = json!({"done": "check", "ok": good, "steps": list});
+    let mut json = json!({"done": "check", "ok": good, "lines": told, "steps": list});
     if let (Some(quality), Some(object)) = (quality, json.as_object_mut()) {
         object.insert("line_quality".to_owned(), line_quality(quality));
     }
     output.show(&json, &text.text())?;
     if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found faults, named above.".to_owned()])) }
+}
+
+/// The word for a verdict that scripts rely on.
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Skipped => "skipped",
+        Verdict::Good => "good",
+        Verdict::Attention => "warning",
+        Verdict::Bad => "bad",
+    }
 }
 
 fn line_quality(quality: &LineQuality) -> Json {

@@ -99,6 +99,16 @@ fn the_check_gives_a_verdict_a_line() {
         {"step": "data fields", "verdict": "good", "findings": ["0: 32 bytes, writable, code 0, code required"]},
     ]);
     assert_eq!((&good["ok"], &good["steps"]), (&json!(true), &steps));
+    // Issue 22.11: the keys that CLI.md names.
+    let lines = json!([
+        {"name": "status", "verdict": "good", "text": ""},
+        {"name": "identity", "verdict": "good", "text": "SKM36; GB0450179"},
+        {"name": "position", "verdict": "good", "text": "turn 224, 116.807°"},
+        {"name": "data fields", "verdict": "good", "text": "0: 32 bytes, writable, code 0, code required"},
+    ]);
+    assert_eq!(good["lines"], lines);
+    let hot = bench.run(&[&check[..], &["sim:?temperature=200", "--json"]].concat()).json();
+    assert_eq!((&hot["lines"][0]["name"], &hot["lines"][0]["verdict"]), (&json!("status"), &json!("warning")));
     // Issue 22.11: how good the line was.
     let quality = &good["line_quality"];
     assert!(quality["requests"].as_u64().is_some_and(|count| count > 5), "{quality}");
