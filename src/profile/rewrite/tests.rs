@@ -228,3 +228,81 @@ fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
         }
     }
 }
+
+/// A text with other blanks between its words: those of `picks` in turn. Comments are numbered.
+fn spaced(text: &str, picks: &[usize]) -> (String, usize) {
+    const WAYS: usize = 9;
+    let (mut out, mut comments, mut at, mut pick) = (String::new(), 0, 0, picks.iter().cycle());
+    let mut quoted = false;
+    let letters: Vec<char> = text.chars().collect();
+    while at < letters.len() {
+        let letter = letters[at];
+        let between = !quoted && (letter.is_whitespace() || "([{,".contains(letter));
+        if quoted && letter == '\\' {
+            out.extend([letter, letters[at + 1]]);
+            at += 2;
+            continue;
+        }
+        if letter == '"' {
+            quoted = !quoted;
+        }
+        if !quoted && letters[at..].starts_with(&['/', '/']) {
+            at += letters[at..].iter().position(|own| *own == '\n').unwrap_or(letters.len() - at);
+            continue;
+        }
+        if !letter.is_whitespace() || quoted {
+            out.push(letter);
+        }
+        at += 1;
+        if !between {
+            continue;
+        }
+        let own = format!("own {comments}.");
+        let blank = match pick.next().unwrap() % WAYS {
+            0 => " ".to_owned(),
+            1 => "\n".to_owned(),
+            2 => "\t\r\n  ".to_owned(),
+            3 => format!(" // {own}\n"),
+            4 => format!("// {own}\r\n"),
+            5 => format!(" /* {own} */ "),
+            6 => format!("/* {own} */"),
+            7 => format!("\n/* \"( /* ,[ */ {{\n{own} */\n"),
+            _ => format!(" // \u{1F527} ü\" ( , {own}\n"),
+        };
+        comments += usize::from(blank.contains(&own));
+        out.push_str(&blank);
+    }
+    (out, comments)
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::test_runner::Config { cases: 256, ..Default::default() })]
+
+    /// Issue 22.26: wherever a person puts comments and line ends, and whatever is saved over that.
+    #[test]
+    fn comments_between_any_words_stay_or_are_named(
+        from in 0_usize..100,
+        to in 0_usize..100,
+        picks in proptest::collection::vec(0_usize..9, 1..200),
+    ) {
+        let mut all = ready_made();
+        all.extend([(Body::KINDS[0], HIPERFACE), (Body::KINDS[1], BISS), (Body::KINDS[2], SSI)].map(|(kind, text)| (kind, text.to_owned())));
+        all.extend([(Body::KINDS[3], INTERBUS), (Body::KINDS[4], HIPERDRIVE)].map(|(kind, text)| (kind, text.to_owned())));
+        let (kind, text) = &all[from % all.len()];
+        let others: Vec<&String> = all.iter().filter(|(own, _)| own == kind).map(|(_, text)| text).collect();
+        let document = Document::parse(others[to % others.len()]).unwrap();
+        let (spaced, comments) = spaced(text, &picks);
+        let before = Document::parse(&spaced).unwrap();
+        proptest::prop_assert_eq!(before.emit(), Document::parse(text).unwrap().emit());
+        let same = before.emit_over(&spaced);
+        proptest::prop_assert_eq!(same, Carried { text: spaced.clone(), lost: Vec::new() });
+        let carried = document.emit_over(&spaced);
+        proptest::prop_assert_eq!(Document::parse(&carried.text).unwrap().emit(), document.emit());
+        for at in 0..comments {
+            let own = format!("own {at}.");
+            let stays = carried.text.contains(&own);
+            let is_named = carried.lost.iter().any(|lost| lost.contains(&own));
+            proptest::prop_assert!(stays != is_named, "{own}\n{spaced}\n----\n{}", carried.text);
+        }
+    }
+}
