@@ -272,14 +272,8 @@ impl Body {
 mod tests {
     use super::*;
     use crate::profile::hiperface::{FieldImage, FieldRange};
+    use crate::profile::tests::SHORT;
     use crate::protocol::hiperface::DataFieldStatus;
-
-    const SHORT: &str = r#"(
-        schema: 1, device: "hiperface",
-        identity: (serial_number: "A1", encoder_type: 0x37),
-        interface: (address: 0x40, settings: 0xE4),
-        fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")],
-    )"#;
 
     fn profile(text: &str) -> HiperfaceProfile {
         Document::parse(text).unwrap().body.hiperface().unwrap().clone()
@@ -331,7 +325,7 @@ mod tests {
     fn a_wrong_profile_is_told_where() {
         let cases = [
             ("", "", "line 1, column 1: "),
-            ("schema: 1,", "schema: 1,,", "line 2, column 19: "),
+            ("schema: 1,", "schema: 1,,", "line 2, column 15: "),
             ("schema: 1,", "", "schema is missing"),
             ("schema: 1,", "schema: 0,", "schema 0; this program knows schema 1 to 1"),
             ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\", \"biss\", \"ssi\","),
@@ -341,7 +335,7 @@ mod tests {
             ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes where the status says 32"),
             ("00 01", "0G 01", "fields[0].bytes: 'G' is not a hexadecimal digit"),
             ("00 01", "00 1", "fields[0].bytes: \"1\" has an odd number of hexadecimal digits"),
-            ("bytes:", "byts:", "line 5, column 44: fields[0].byts is not known, and bytes is missing"),
+            ("bytes:", "byts:", "line 5, column 40: fields[0].byts is not known, and bytes is missing"),
             (
                 "bytes: \"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"",
                 "",

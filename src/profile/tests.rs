@@ -85,7 +85,8 @@ fn profiles_of_schema_1_open() {
     }
 }
 
-const SHORT: &str = r#"(
+/// A profile as a person may write it.
+pub(super) const SHORT: &str = r#"(
     schema: 1, device: "hiperface",
     identity: (serial_number: "A1", encoder_type: 0x37),
     interface: (address: 0x40, settings: 0xE4),

@@ -176,19 +176,7 @@ fn a_profile_is_not_protected_by_what_it_says_about_protection() {
 #[test]
 fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
     let (mut desk, path) = saved();
-    desk.open(&format!("serial:{OTHER_PORT}"));
-    desk.until_read();
-    let other = desk.encoder().session.id;
-    open(&mut desk, &path);
-    desk.put(0, 0, b"X");
-    desk.ask(Hiperface::WriteInto(other));
-    desk.until("it is refused", |studio| {
-        crate::support::is_review(studio, |state| {
-            matches!(state, encoder_studio::app::hiperface::ReviewState::Failed { .. })
-        })
-    });
-    assert_eq!(desk.encoder().session.id, other);
-    desk.until_ready();
+    refused_by_another(&mut desk, &path, &[(0, b"X")]);
     let mut options = desk.review().options().unwrap();
     (options.allow_other_device, options.allow_other_type) = (true, true);
     options.copy.insert(0, true);
@@ -205,17 +193,28 @@ fn sheet(desk: &Desk) -> Sheet {
     desk.studio.shown().unwrap().sheet().unwrap()
 }
 
-/// A profile with a commutation offset beside the review for another encoder, where every permit is given.
-fn onto_another(desk: &mut Desk, path: &std::path::Path) {
+/// A profile with these edits, refused by another encoder because that is of another serial number.
+fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, &[u8])]) {
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();
     let other = desk.encoder().session.id;
     open(desk, path);
-    desk.put(0, 0, b"CO1");
-    desk.put(0, 20, b"?");
+    for (address, bytes) in edits {
+        desk.put(0, *address, bytes);
+    }
     desk.ask(Hiperface::WriteInto(other));
+    until_refused(desk);
+    assert_eq!(desk.encoder().session.id, other);
+}
+
+fn until_refused(desk: &mut Desk) {
     desk.until("it is refused", |studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. })));
     desk.until_ready();
+}
+
+/// A profile with a commutation offset beside the review for another encoder, where every permit is given.
+fn onto_another(desk: &mut Desk, path: &std::path::Path) {
+    refused_by_another(desk, path, &[(0, b"CO1"), (20, b"?")]);
     allow_another(desk);
     desk.until_planned();
 }
@@ -223,8 +222,7 @@ fn onto_another(desk: &mut Desk, path: &std::path::Path) {
 /// Allows another serial number, then another type: it is an SKS36.
 fn allow_another(desk: &mut Desk) {
     desk.toggle(Permit::OtherDevice);
-    desk.until("it is refused", |studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. })));
-    desk.until_ready();
+    until_refused(desk);
     desk.toggle(Permit::OtherType);
 }
 
@@ -288,18 +286,9 @@ fn bytes_of_unknown_meaning_are_a_question_of_the_review() {
 #[test]
 fn another_type_of_encoder_needs_a_permit_of_its_own() {
     let (mut desk, path) = saved();
-    desk.open(&format!("serial:{OTHER_PORT}"));
-    desk.until_read();
-    let other = desk.encoder().session.id;
-    open(&mut desk, &path);
-    desk.put(0, 0, b"X");
-    desk.ask(Hiperface::WriteInto(other));
-    let refused = |studio: &Studio| is_review(studio, |state| matches!(state, ReviewState::Failed { .. }));
-    desk.until("it is refused", refused);
-    desk.until_ready();
+    refused_by_another(&mut desk, &path, &[(0, b"X")]);
     desk.toggle(Permit::OtherDevice);
-    desk.until("it is refused all the same", refused);
-    desk.until_ready();
+    until_refused(&mut desk);
     let ReviewState::Failed { texts, .. } = &desk.review().state else { panic!() };
     assert_eq!(texts[0].id(), "plan.other_type");
     desk.toggle(Permit::OtherType);

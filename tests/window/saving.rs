@@ -24,9 +24,14 @@ fn opened(text: &str) -> (Desk, PathBuf) {
     let path = desk.outside.path("own.ron");
     fs::write(&path, text).unwrap();
     desk.studio.begin(None, Some(path.clone()));
-    desk.until("it is open", |studio| studio.hiperface().is_some());
+    desk.until("it is open", is_open);
     desk.settle();
     (desk, path)
+}
+
+/// The profile of a file is shown.
+fn is_open(studio: &Studio) -> bool {
+    studio.shown().is_some_and(|own| *own.phase() == Phase::Offline)
 }
 
 fn says(path: &Path) -> String {
@@ -295,13 +300,7 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
     ];
     for (text, make, (from, to), (was, is)) in cases {
         for crashes in [true, false] {
-            let mut desk = Desk::fresh("");
-            let path = desk.outside.path("own.ron");
-            fs::write(&path, text).unwrap();
-            let is_open = |studio: &Studio| studio.shown().is_some_and(|own| *own.phase() == Phase::Offline);
-            desk.studio.begin(None, Some(path.clone()));
-            desk.until("it is open", is_open);
-            desk.settle();
+            let (mut desk, path) = opened(text);
             let id = desk.studio.shown().unwrap().id();
             make(&mut desk, id);
             assert!(desk.studio.shown().unwrap().is_dirty(), "{text}");
@@ -331,14 +330,8 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
 #[test]
 fn a_draft_of_a_whole_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
-    let mut desk = Desk::fresh("");
-    let path = desk.outside.path("own.ron");
-    fs::write(&path, text).unwrap();
-    let is_open = |studio: &Studio| studio.shown().is_some_and(|own| *own.phase() == Phase::Offline);
-    desk.studio.begin(None, Some(path.clone()));
-    desk.until("it is open", is_open);
+    let (mut desk, path) = opened(text);
     let id = desk.studio.shown().unwrap().id();
-    desk.settle();
     desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
     until_kept(&mut desk);
     let folder = desk.outside.path("data/drafts/ssi-files");
