@@ -307,7 +307,7 @@ pub(super) fn whole(value: f64) -> Option<i64> {
 }
 
 /// What SCPI instruments send for an overload (9.9E37) or where they have no number (9.91E37): SCPI-99, 7.2.1.
-const NO_VALUE: f64 = 9.9e37;
+const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 
 /// Reads a field without spaces around it.
 pub(super) fn number(field: &[u8], comma: bool) -> Number {
@@ -317,7 +317,7 @@ pub(super) fn number(field: &[u8], comma: bool) -> Number {
         _ => fast_float2::parse::<f64, _>(field).ok(),
     };
     match parsed {
-        Some(value) if value.abs() < NO_VALUE => Number::Finite(value),
+        Some(value) if value.is_finite() && !NO_VALUE.contains(&value.abs()) => Number::Finite(value),
         Some(_) => Number::NotFinite,
         None => Number::Text,
     }
