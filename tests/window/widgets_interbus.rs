@@ -136,10 +136,14 @@ fn what_clashes_and_what_lies_beyond_the_range_is_marked_in_its_lane() {
     let (own, _) = screen.cam(1);
     screen.edit_cams(Edit::Cam { program: program(), cam: cam(1), start: own, stop: start, on: true });
     assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses of one track and meet at {start}.")));
+    screen.edit_cams(Edit::Steps(3200));
+    assert!(screen.shows("Program 1: cam 7 is beyond the measuring range, which ends at 3199."));
+    // Issue 22.28: the cams of a program that are beyond it in one line, so that the chart stays in sight.
     screen.edit_cams(Edit::Steps(3000));
-    assert!(screen.shows("Program 1: cam 7 is beyond the measuring range, which ends at 2999."));
+    assert!(screen.shows("Program 1: cams 6, 7 are beyond the measuring range, which ends at 2999."));
+    assert!(!screen.shows("Program 1: cam 7"));
     screen.act(Action::SetLanguage(Language::German));
-    assert!(screen.shows("Programm 1: Nocken 7 liegt jenseits des Messbereichs"));
+    assert!(screen.shows("Programm 1: Nocken 6, 7 liegen jenseits des Messbereichs (bis 2999)."));
     screen.check_language();
 }
 

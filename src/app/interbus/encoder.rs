@@ -115,7 +115,7 @@ impl Encoder {
     pub fn marks_beside(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let other = |mark: &Mark| program.is_none() || mark.program() != program;
         let marks: Vec<Mark> = self.marks().into_iter().filter(other).collect();
-        some(&marks, cams::words::mark)
+        some(&cams::words::marks(&marks), Text::clone)
     }
 
     /// The profile, where this is one.

@@ -99,7 +99,7 @@ impl Saved for Encoder {
     }
 
     fn remarks(&self) -> Vec<Text> {
-        some(&self.marks(), words::mark)
+        some(&words::marks(&self.marks()), Text::clone)
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

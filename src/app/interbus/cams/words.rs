@@ -80,8 +80,37 @@ pub fn lamp(lamp: Lamp) -> Text {
     }
 }
 
-/// Something that a person should look at.
-pub fn mark(mark: &Mark) -> Text {
+/// What a person should look at; the cams of a program that are beyond the measuring range in one.
+pub fn marks(marks: &[Mark]) -> Vec<Text> {
+    let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
+    let mut told = Vec::new();
+    let mut texts = Vec::new();
+    for own in marks {
+        let Some(program) = beyond_in(own) else {
+            texts.push(mark(own));
+            continue;
+        };
+        if told.contains(&program) {
+            continue;
+        }
+        told.push(program);
+        let cams = marks.iter().filter_map(|other| match *other {
+            Mark::Beyond { program: its, cam, .. } if its == program => Some(cam.get().to_string()),
+            _ => None,
+        });
+        let cams: Vec<String> = cams.collect();
+        texts.push(match *own {
+            Mark::Beyond { last, .. } if cams.len() > 1 => {
+                let text = Text::new("cams.mark_beyond_several").with("program", program.get());
+                text.with("cams", cams.join(", ")).with("last", last)
+            }
+            _ => mark(own),
+        });
+    }
+    texts
+}
+
+fn mark(mark: &Mark) -> Text {
     let program = |id, program: ProgramNumber| Text::new(id).with("program", program.get());
     match *mark {
         Mark::Gear(error) => gear(&error),

@@ -48,10 +48,11 @@ pub(super) fn bar_ui(
         }
         tables(ui, skin, encoder, program, actions);
     });
-    for mark in marks.iter().filter(|mark| mark.program() == Some(program)) {
+    let own: Vec<_> = marks.into_iter().filter(|mark| mark.program() == Some(program)).collect();
+    for words in words::marks(&own) {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-            paragraph(ui, skin.words(&words::mark(mark)));
+            paragraph(ui, skin.words(&words));
         });
     }
     problem(ui, skin, encoder.refusal.as_ref());
