@@ -73,7 +73,7 @@ fn backups(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
                         actions.push(Action::Open(backup.path.clone()));
                     }
                     let name = backup.path.display().to_string();
-                    ui.add(egui::Label::new(skin.caption(&name)).truncate()).on_hover_text(&name);
+                    ui.add(egui::Label::new(skin.caption(&name)).truncate());
                 });
             }
         }
@@ -105,7 +105,7 @@ fn statuses(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
         for status in device.statuses() {
             ui.horizontal(|ui| {
                 ui.label(skin.mono(time(status.at)));
-                ui.add(egui::Label::new(&status.codes).truncate()).on_hover_text(&status.codes);
+                ui.add(egui::Label::new(&status.codes).truncate());
             });
         }
     });
@@ -130,6 +130,6 @@ fn write_ui(ui: &mut Ui, skin: &Skin, write: &Entry) {
         let cycles = write.conclusion.as_ref().map_or(write.planned_cycles, |end| end.cycles_spent);
         let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", cycles);
         ui.label(skin.label(skin.words(&cycles)));
-        ui.add(egui::Label::new(skin.mono(&write.what)).truncate()).on_hover_text(&write.what);
+        ui.add(egui::Label::new(skin.mono(&write.what)).truncate());
     });
 }

@@ -114,6 +114,11 @@ pub(in crate::ui) fn plot_ui(
     }
 }
 
+/// A word on the position beside it, cut where the panel ends: it must not make the panel wider than the window.
+fn mark(ui: &mut Ui, skin: &Skin, word: &'static str, ink: Rgb) {
+    ui.add(egui::Label::new(RichText::new(skin.say(word)).color(ink)).truncate());
+}
+
 fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let record = &encoder.record;
     let reading = record.last();
@@ -131,9 +136,9 @@ fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
         ui.label(skin.label(unit));
         if record.refused() {
-            ui.label(RichText::new(skin.say("live.refused")).color(skin.palette.bad));
+            mark(ui, skin, "live.refused", skin.palette.bad);
         } else if reading.is_some_and(|reading| !reading.valid) {
-            ui.label(RichText::new(skin.say("live.invalid")).color(skin.palette.bad));
+            mark(ui, skin, "live.invalid", skin.palette.bad);
         }
     });
     let Some(reading) = reading else { return };

@@ -52,11 +52,11 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views:
                     ui.label(skin.mono(arrow).color(palette.accent));
                 });
                 row.col(|ui| {
-                    ui.label(skin.mono(&line.bytes).color(colour)).on_hover_text(skin.mono(&line.bytes));
+                    ui.label(skin.mono(&line.bytes).color(colour));
                 });
                 let meaning = line.words(skin.language);
                 row.col(|ui| {
-                    ui.label(RichText::new(&meaning).color(colour)).on_hover_text(&meaning);
+                    ui.label(RichText::new(&meaning).color(colour));
                 });
             });
         });

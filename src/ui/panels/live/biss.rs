@@ -25,7 +25,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
                 Mark::Invalid => ("live.invalid", palette.bad),
                 Mark::Warned => ("live.warning", palette.warn),
             };
-            ui.label(RichText::new(skin.say(word)).color(ink));
+            super::mark(ui, skin, word, ink);
         }
     });
     let Some(reading) = reading else { return };

@@ -3,9 +3,9 @@
 use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 
 use super::LOW;
-use crate::app::Rgb;
 use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::{Measure, Unit};
+use crate::app::{Rgb, Text};
 use crate::protocol::hiperdrive::{State, turns};
 use crate::ui::Skin;
 use crate::ui::controls::row;
@@ -46,7 +46,9 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
         State::NotReady | State::Ready | State::Operational => palette.muted,
     };
     let word = skin.words(&explain::state(state));
-    let word = if is_told_below { format!("{} · {word}", skin.say("hd_outside.short")) } else { word };
+    // Short enough for one line beside the widest state: the rows below stay where they are.
+    let told_below = Text::new("hd_outside.beside_state").with("state", &word);
+    let word = if is_told_below { skin.words(&told_below) } else { word };
     let rpm = skin.number(unit.speed_scale(drive).rpm(actual.speed), 1);
     let speed = format!("{rpm} {}", skin.say("unit.revolutions_per_minute"));
     if ui.available_height() < LOW {

@@ -27,9 +27,9 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
         ui.label(skin.label(unit));
         if last.is_some_and(|reading| !reading.is_valid()) {
-            ui.label(RichText::new(skin.say("live.invalid")).color(palette.bad));
+            super::mark(ui, skin, "live.invalid", palette.bad);
         } else if last.is_some_and(|reading| reading.stray() != 0) {
-            ui.label(RichText::new(skin.say("live.warning")).color(palette.warn));
+            super::mark(ui, skin, "live.warning", palette.warn);
         }
     });
     let Some(reading) = last else { return };

@@ -30,7 +30,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
             (true, false) => None,
         };
         if let Some((word, ink)) = mark {
-            ui.label(RichText::new(skin.say(word)).color(ink));
+            super::mark(ui, skin, word, ink);
         }
     });
     let Some(seen) = last else { return };
