@@ -307,7 +307,7 @@ impl AnyDevice {
         each_with_memory!(self, own => {
             let running = own.session.line().and_then(|line| line.running());
             let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
-            own.review.as_ref().map(|review| review.sheet(usize::try_from(done).unwrap_or(usize::MAX)))
+            own.sheet(usize::try_from(done).unwrap_or(usize::MAX))
         }, None)
     }
 

@@ -393,6 +393,11 @@ pub fn redo(items: Vec<Text>) -> Option<Text> {
 impl<K: Reviewed> Review<K> {
     /// The review as a person sees it; `done` operations have been carried out.
     pub fn sheet(&self, done: usize) -> Sheet {
+        self.sheet_with(done, K::op)
+    }
+
+    /// The same with the words that the device on the desk has for an operation.
+    pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &K::Op) -> OpWords) -> Sheet {
         let prepared = self.prepared();
         let cut_off = match &self.state {
             ReviewState::Failed { cut_off: Some((prepared, done)), .. } => Some((&**prepared, *done)),
@@ -417,7 +422,7 @@ impl<K: Reviewed> Review<K> {
         let shown = prepared.filter(|_| !is_over);
         let costs = shown.filter(|_| plan.is_some());
         let uncounted = |own: &K::Prepared| is_uncounted(K::cycles_seen(own), K::plan(own).write_cycles());
-        let lines = |own| K::plan(own).ops.iter().map(|op| K::op(own, op)).collect();
+        let lines = |own| K::plan(own).ops.iter().map(|own_op| op(own, own_op)).collect();
         Sheet {
             what: self.what.clone(),
             stage,

@@ -142,12 +142,12 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     assert_eq!(wanted.scale(own.drive()).unwrap().steps_per_turn(), 400.0);
     assert_eq!(wanted.limits(own.drive()), Some((-204_400, 204_400)));
     let id = own.session.id;
-    // The review says it in turns, each under its own scale, old and new on one line.
+    // The review says it in millimetres, each under its own scale, old and new on one line.
     screen.act(Action::Hiperdrive(id, Hiperdrive::Review));
     screen.until("there is a plan", |studio| {
         studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
-    assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -511 turns  →  -204400 · -511 turns"));
+    assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -2044.0000 mm  →  -204400 · -2044.00 mm"));
     screen.act(Action::Review(id, ReviewAction::Close));
     // As numbers they lie 164 times further.
     screen.act(Action::Hiperdrive(id, Hiperdrive::Undo));

@@ -1,7 +1,8 @@
 //! The review of a write into a HIPERDRIVE: what its plan needs, warns of and costs.
 
+use super::axis::words::millimetres;
 use super::network::PowerUp;
-use super::ruler::Measure;
+use super::ruler::{Measure, Ruler};
 use super::words;
 use crate::app::number::decimals_of;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
@@ -9,7 +10,7 @@ use crate::app::{Text, explain};
 use crate::device::hiperdrive::write::Written;
 use crate::profile::Plan;
 use crate::profile::hiperdrive::{self, Base, Image, Op, Service, warnings};
-use crate::protocol::hiperdrive::{AddressSwitch, ParameterNumber};
+use crate::protocol::hiperdrive::{AddressSwitch, DriveNumber, Length, ParameterNumber};
 use crate::worker::hiperdrive::{Change, Hiperdrive, Prepared};
 
 /// A write on its way.
@@ -42,20 +43,7 @@ impl Reviewed for Hiperdrive {
     }
 
     fn op(prepared: &Prepared, op: &Op) -> OpWords {
-        let mut words = explain::hiperdrive::op(op);
-        if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
-            let now = prepared.plan.base.image();
-            let then = now.with(&hiperdrive::written(&prepared.plan));
-            let meant = |text: &mut Text, value, image| {
-                if let Some(meaning) = meaning(*number, value, image) {
-                    let value = text.clone();
-                    *text = Text::new("hd_op.meant").with_text("value", value).with_text("meaning", meaning);
-                }
-            };
-            old.iter().for_each(|old| meant(&mut change.old, *old, &now));
-            meant(&mut change.new, *new, &then);
-        }
-        words
+        op_words(prepared, op, |_| None)
     }
 
     fn leaves_mounting(prepared: &Prepared) -> bool {
@@ -119,11 +107,34 @@ impl Reviewed for Hiperdrive {
     }
 }
 
-/// What a value means that the number alone does not say: places in turns, under the scale of then.
-fn meaning(number: ParameterNumber, value: i64, image: &Image) -> Option<Text> {
+/// An operation in words, places in millimetres where the pitch of the drive's spindle is known.
+pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OpWords {
+    let mut words = explain::hiperdrive::op(op);
+    if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
+        let now = prepared.plan.base.image();
+        let then = now.with(&hiperdrive::written(&prepared.plan));
+        let pitch = number.drive().and_then(pitch);
+        let meant = |text: &mut Text, value, image| {
+            if let Some(meaning) = meaning(*number, value, image, pitch) {
+                let value = text.clone();
+                *text = Text::new("hd_op.meant").with_text("value", value).with_text("meaning", meaning);
+            }
+        };
+        old.iter().for_each(|old| meant(&mut change.old, *old, &now));
+        meant(&mut change.new, *new, &then);
+    }
+    words
+}
+
+/// What a value means that the number alone does not say: places in millimetres, else in turns, under the scale of then.
+fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.base(), number.drive()) {
         (158 | 160 | 170 | 176 | 198, Some(drive)) => {
-            let turns = value as f64 / image.scale(drive)?.steps_per_turn();
+            let scale = image.scale(drive)?;
+            if pitch.is_some() {
+                return Some(millimetres(Some(Ruler { scale, pitch }), value));
+            }
+            let turns = value as f64 / scale.steps_per_turn();
             let text = Text::new("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
             Some(text.with_text("unit", Text::new(Measure::Turns.unit())))
         }

@@ -1,12 +1,13 @@
 //! What is written into a device: the edits or a profile as a wish, and its jobs.
 
-use super::review::Review;
+use super::review::{Review, op_words};
 use super::unit::Unit;
 use super::words;
+use crate::app::review::OpWords;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Saved, WithMemory, some};
 use crate::app::{Severity, Text};
-use crate::profile::hiperdrive::{HiperdriveProfile, RestoreOptions, check_device};
+use crate::profile::hiperdrive::{HiperdriveProfile, Op, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker::hiperdrive::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
@@ -34,6 +35,10 @@ impl WithMemory for Unit {
 
     fn review_mut(&mut self) -> &mut Option<Review> {
         &mut self.review
+    }
+
+    fn op(&self, prepared: &Prepared, op: &Op) -> OpWords {
+        op_words(prepared, op, |drive| self.pitch(drive))
     }
 
     fn is_for_another(&self, change: &Change) -> bool {

@@ -2,7 +2,7 @@
 //! that carries it out, and what came of it. A kind says what its changes, plans and jobs are, and what else hangs on them.
 
 use super::{Cut, Kind, OnDesk, OnLine};
-use crate::app::review::{Permit, Review, ReviewState, Reviewed, told};
+use crate::app::review::{OpWords, Permit, Review, ReviewState, Reviewed, Sheet, told};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
@@ -11,6 +11,7 @@ use crate::worker::{self, Device};
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 type Error<T> = <<T as OnDesk>::Device as Device>::Error;
 type Change<T> = <<T as OnDesk>::Device as Reviewed>::Change;
+type Op<T> = <<T as OnDesk>::Device as Reviewed>::Op;
 type Prepared<T> = <<T as OnDesk>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Written>;
 
@@ -31,6 +32,16 @@ pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
 
     /// The same, to be changed.
     fn review_mut(&mut self) -> &mut Option<Review<Self::Device>>;
+
+    /// An operation of a plan, in words.
+    fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OpWords {
+        Self::Device::op(prepared, op)
+    }
+
+    /// The review as a person sees it; `done` operations have been carried out.
+    fn sheet(&self, done: usize) -> Option<Sheet> {
+        self.review().map(|review| review.sheet_with(done, |prepared, op| self.op(prepared, op)))
+    }
 
     /// What is wanted was made for another device than this one.
     fn is_for_another(&self, change: &Change<Self>) -> bool;
