@@ -179,6 +179,11 @@ impl Text {
     }
 }
 
+/// A number in digits with the language's decimal sign.
+pub(in crate::app) fn signed(number: &str, language: Language) -> String {
+    Argument::Number(number.to_owned()).said(Place::Window(language))
+}
+
 /// A number of so many decimals with the language's decimal sign.
 pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
     Argument::Number(format!("{value:.decimals$}")).said(Place::Window(language))

@@ -19,10 +19,9 @@ use crate::ui::controls::{
 use crate::ui::widgets::{Step as Line, StepState, Steps, steps};
 use crate::ui::{Skin, icons};
 
-/// What is typed: kept while it is typed, told with every change.
+/// What the page remembers from one picture to the next.
 #[derive(Default)]
 pub(super) struct View {
-    entries: Option<Entries>,
     /// Which step is drawn, and since when on the window's clock.
     since: Option<(Step, f64)>,
 }
@@ -87,7 +86,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
     if ui.available_width() < BESIDE {
         // Nothing stands beside the step; at the end the list is the result.
         if goes_on {
-            step_ui(ui, skin, &shown, (view, age), actions);
+            step_ui(ui, skin, &shown, age, actions);
         } else {
             card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown));
         }
@@ -99,11 +98,11 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         ui,
         skin,
         (0.36, BESIDE),
-        (view, actions),
+        actions,
         |ui, _| card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown)),
-        |ui, (view, actions)| {
+        |ui, actions| {
             if goes_on {
-                step_ui(ui, skin, &shown, (view, age), actions);
+                step_ui(ui, skin, &shown, age, actions);
                 ui.add_space(skin.space.groups);
             }
             notes(ui, skin);
@@ -168,7 +167,7 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
 }
 
 /// The step that counts.
-fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, (view, age): (&mut View, f64), actions: &mut Vec<Action>) {
+fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, age: f64, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
     if age == 0.0 {
@@ -190,9 +189,9 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, (view, age): (&mut View,
         ui.add_space(skin.space.between);
         live(ui, skin, shown);
         ui.add_space(skin.space.between);
-        let mut entries = view.entries.take().unwrap_or_else(|| axis.entries().clone());
+        let mut entries = axis.entries().shown(skin.language);
         content::content_ui(ui, skin, shown, &mut entries, actions);
-        if entries != *axis.entries() {
+        if entries != axis.entries().shown(skin.language) {
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
         ui.add_space(skin.space.groups);

@@ -1,9 +1,10 @@
 //! What is typed in the set-up of an axis: pitch and resolution, the position of a place, both limits; and what comes of it.
 
 use super::{Seen, words};
-use crate::app::Text;
 use crate::app::hiperdrive::ruler::{Beyond, Measure, Ruler};
 use crate::app::number::within;
+use crate::app::texts::signed;
+use crate::app::{Language, Text};
 use crate::protocol::hiperdrive::{Family, Length, PositionScale, nearest_reference};
 
 /// What is typed, in millimetres.
@@ -54,6 +55,18 @@ impl Entries {
         let resolution = step.and_then(|(_, own)| own.of(1, Measure::Millimetres)).map(trimmed);
         let resolution = resolution.unwrap_or_else(|| "0.01".to_owned());
         Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
+    }
+
+    /// The same with the language's decimal sign, in which numbers are shown beside them.
+    pub fn shown(&self, language: Language) -> Self {
+        let shown = |text: &String| signed(text, language);
+        Entries {
+            pitch: shown(&self.pitch),
+            resolution: shown(&self.resolution),
+            reference: shown(&self.reference),
+            lower: shown(&self.lower),
+            upper: shown(&self.upper),
+        }
     }
 
     /// Of the spindle.

@@ -108,6 +108,26 @@ fn confirm_spindle(axis: &mut Axis, seen: &mut Seen) {
     axis.look(seen);
 }
 
+/// A step that is proposed reads as the numbers beside it do, and is taken in either language.
+#[test]
+fn what_is_proposed_has_the_decimal_sign_of_the_language() {
+    for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
+        let shown = run().entries().shown(language);
+        assert_eq!(shown.resolution, step);
+        let preview = Entries { pitch: "4".to_owned(), ..shown }.preview(&fresh()).unwrap();
+        assert_eq!((preview.scale.numerator(), preview.scale.denominator()), (400, 256));
+    }
+}
+
+/// A limit that was written twice is told once, as the drive has it.
+#[test]
+fn what_was_written_again_is_told_as_it_is_now() {
+    let mut axis = run();
+    axis.changes = vec![Change::Parameter(158, 9), Change::Parameter(160, 10_050), Change::Parameter(160, 250)];
+    let said = words::changes(&axis).words(Language::English);
+    assert_eq!(said, "Written: 158 = 9, 160 = 250.");
+}
+
 /// From the beginning to the step with the slow jog: 4 mm a turn, a step 0.01 mm.
 fn until_jog() -> (Axis, Seen) {
     let (mut axis, mut seen) = (run(), fresh());

@@ -227,9 +227,16 @@ pub fn place(place: Place) -> Text {
     })
 }
 
-/// All that was changed, where something was.
+/// All that was changed, where something was: of a parameter that was written again what it has now.
 pub fn changes(axis: &Axis) -> Text {
-    Text::new("hd_axis.was_written").with_list("changes", axis.changes().iter().map(change))
+    let number = |own: &Change| match own {
+        Change::Parameter(number, _) => *number,
+        Change::Position(_) => super::differences::REFERENCE,
+    };
+    let all = axis.changes();
+    let is_last = |(at, own): &(usize, &Change)| !all.iter().skip(at + 1).any(|later| number(later) == number(own));
+    let last = all.iter().enumerate().filter(is_last);
+    Text::new("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
 }
 
 /// As the number that was written: the scale may be another by now.
