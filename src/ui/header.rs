@@ -8,7 +8,7 @@ use super::stopping::{goes_down, means_motion, pressed_at};
 use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::hiperdrive::Unit;
-use crate::app::session::Phase;
+use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme};
 
 /// Width of STOP while nothing moves.
@@ -170,6 +170,7 @@ fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
         Phase::Opening => ("shell.opening", palette.accent),
         Phase::Lost(_) => ("shell.lost", palette.bad),
         Phase::Silent(_) => ("shell.silent", palette.bad),
+        Phase::Offline if is_read_only(device) => ("shell.read_only", palette.warn),
         Phase::Offline => ("shell.offline", palette.muted),
     };
     let moving = device.hiperdrive().filter(|unit| id == "shell.moving" && unit.drives().len() > 1);
@@ -180,6 +181,11 @@ fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
         skin.words(&Text::new("shell.moving_drives").with("drives", drives.join(", ")))
     };
     ui.label(RichText::new(words).color(colour));
+}
+
+/// A profile of a newer schema, which is neither saved nor written.
+fn is_read_only(device: &AnyDevice) -> bool {
+    matches!(device.source(), Source::File { document, .. } if document.is_newer())
 }
 
 fn moving_drives(unit: &Unit) -> Vec<String> {

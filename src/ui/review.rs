@@ -38,8 +38,14 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
         }
         Stage::Nothing => {
             ui.horizontal(|ui| {
-                ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
-                ui.label(skin.say("review.nothing"));
+                // What was answered with *leave* differs still.
+                let (icon, colour, words) = if sheet.questions.is_empty() {
+                    (icons::CHECK_CIRCLE, skin.palette.good, "review.nothing")
+                } else {
+                    (icons::INFO, skin.palette.accent, "review.nothing_so")
+                };
+                ui.label(RichText::new(icon).color(colour));
+                ui.label(skin.say(words));
             });
             remarks(ui, skin, sheet);
             options(ui, skin, device, sheet, actions);

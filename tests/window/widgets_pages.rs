@@ -7,10 +7,10 @@ use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::interbus::Action as Interbus;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::ssi::{Action as Ssi, Edit, Field, Input};
-use encoder_studio::app::{Action, FileQuestion, Language, Tab, Theme};
+use encoder_studio::app::{Action, FileQuestion, Language, Studio, Tab, Theme};
 
 use crate::screen::Screen;
-use crate::support::{GATE, HANGING, Outside, PORT};
+use crate::support::{GATE, HANGING, KIT, Outside, PORT};
 
 const LARGE: [f32; 2] = [1280.0, 800.0];
 const SMALL: [f32; 2] = [1024.0, 640.0];
@@ -59,6 +59,42 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
         });
         look_at_everything(&mut screen, size);
     }
+}
+
+/// Issue 22.15: what was entered in mode 04 and never saved is told above the registers and above the data, with the way back
+/// to operation.
+#[test]
+fn registers_that_were_never_saved_are_told_with_the_way_back() {
+    let outside = Outside::new("");
+    outside.wire(KIT).enter(&[("0x6B", 0x2A), ("0x6A", 0x04), ("0x00:0x1A", 0x02), ("0x24:0x10", 0x5A)]);
+    let mut studio = outside.studio();
+    studio.settings.tab = Tab::Biss;
+    studio.begin(Some(format!("serial:{KIT}").parse().unwrap()), None);
+    let mut screen = Screen::of(outside, studio, SMALL);
+    let is_read = |studio: &Studio| studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some());
+    screen.until("the encoder is read", is_read);
+    for page in ["page.registers", "page.data"] {
+        screen.click(page);
+        assert!(screen.shows("The encoder is in device mode 0x04"), "{page}");
+        assert!(screen.is_enabled("lead_back_card.button"), "{page}");
+    }
+    screen.act(Action::SetLanguage(Language::German));
+    assert!(screen.shows("Der Geber ist im Gerätemodus 0x04"));
+    screen.check_language();
+    screen.click("lead_back_card.button");
+    screen.until("it is back", |studio| is_read(studio) && studio.biss().unwrap().unsaved().is_none());
+    assert!(!screen.shows("Gerätemodus 0x04") && !screen.has_button("lead_back_card.button"));
+}
+
+/// An encoder that refuses its position says so in the panel Live, which stays within a small window.
+#[test]
+fn a_position_that_is_refused_leaves_the_panel_within_the_window() {
+    let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);
+    screen.until("the encoder is read", |studio| studio.hiperface().is_some_and(|own| own.record.refused()));
+    screen.act(Action::SetLanguage(Language::German));
+    let large = screen.button("recorder.large").rect();
+    let window = Rect::from_min_size(egui::Pos2::ZERO, Vec2::from(SMALL));
+    assert!(window.contains_rect(large), "{large:?}");
 }
 
 #[test]

@@ -128,6 +128,15 @@ impl Wire {
         bus.lock().unwrap()
     }
 
+    /// Writes registers of a BiSS encoder behind the window's back.
+    pub(crate) fn enter(&self, entries: &[(&str, u8)]) {
+        let End::Pin(port) = &self.end else { panic!("{} leads to no configuration pin", self.target) };
+        let (now, mut port) = (self.clock.now(), port.lock().unwrap());
+        for (place, value) in entries {
+            assert!(port.encoder_mut().write(now, place.parse().unwrap(), *value), "{place}");
+        }
+    }
+
     /// Other encoders from now on.
     pub(crate) fn exchange(&self, query: &str) {
         match &self.end {

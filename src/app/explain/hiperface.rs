@@ -30,7 +30,7 @@ use crate::app::Text;
 use crate::device::hiperface::Error;
 use crate::device::hiperface::write::{Interrupted, Written};
 use crate::profile::hiperface::{PlanError, Redo, UnknownField};
-use crate::protocol::hiperface::StatusCode;
+use crate::protocol::hiperface::{EncoderTypes, StatusCode};
 use crate::worker::hiperface::{ChangeKind, JobError, OtherType};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
@@ -165,8 +165,16 @@ pub fn created_left(fields: &[u8]) -> Option<Text> {
 
 /// A profile that goes onto another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
-    let name = |byte: u8| format!("{byte:02X}h");
-    Text::new("review.other_type").with("profile", name(types.profile)).with("device", name(types.device))
+    let OtherType { profile, device } = types;
+    Text::new("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
+}
+
+/// A type by its name, where the table that ships has one, and its code.
+fn type_name(code: u8) -> String {
+    match EncoderTypes::built_in().find(code) {
+        Some(own) => format!("{} ({code:02X}h)", own.name),
+        None => format!("{code:02X}h"),
+    }
 }
 
 /// A plan that cannot be made.
@@ -176,9 +184,9 @@ pub fn plan(error: &PlanError) -> Text {
             let named = |number: &str| if number.is_empty() { "–".to_owned() } else { number.to_owned() };
             Text::new("plan.other_device").with("profile", named(profile)).with("device", named(device))
         }
-        PlanError::OtherType { profile, device } => Text::new("plan.other_type")
-            .with("profile", format!("{profile:02X}h"))
-            .with("device", format!("{device:02X}h")),
+        PlanError::OtherType { profile, device } => {
+            Text::new("plan.other_type").with("profile", type_name(*profile)).with("device", type_name(*device))
+        }
         PlanError::SizeFixed { field, profile, device } => {
             Text::new("plan.size_fixed").with("field", field).with("profile", profile).with("device", device)
         }

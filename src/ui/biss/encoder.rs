@@ -92,7 +92,7 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
         FrameSource::Checksum => "biss_card.from_checksum",
         FrameSource::Assumed => "biss_card.assumed",
     };
-    ui.label(skin.caption(skin.say(source)));
+    row(ui, skin, "", skin.caption(skin.say(source)));
     if !identity.source.is_told() {
         paragraph(ui, skin.caption(skin.say("biss_card.give_frame")));
     }
