@@ -25,7 +25,7 @@ use crate::device::biss::{
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::profile::biss::RegisterRange;
 use crate::protocol::biss::{Descriptions, DeviceMode, RegisterAddress};
-use crate::sim::biss::Motor;
+use crate::sim::Motor;
 use crate::store::{Store, StoreError};
 
 /// A BiSS encoder at the end of its wire.

@@ -62,22 +62,19 @@ impl Hiperface {
     }
 
     /// Keeps the status codes that were read, before they are shown. An encoder that is not known yet is asked who it is:
-    /// its logbook is to have them. One that answers no more is not: the job has waited for it already.
+    /// its logbook is to have them.
     fn keep_codes(&mut self, desk: &mut Desk, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
         }
-        let mut codes = codes.to_vec();
-        if self.identified.is_none() && !self.station.line.is_troubled() {
+        if self.identified.is_none() {
             let types = self.types.clone();
             if let Ok(identity) = identify(&mut self.master(desk), &types) {
                 self.identified(desk, &identity);
             }
-            // What it has told meanwhile.
-            codes.extend(self.station.take_codes_read());
         }
         let device = self.identified.clone().unwrap_or_else(|| status::unknown_device(desk.is_virtual));
-        status::keep(&desk.store, &device, &codes);
+        status::keep(&desk.store, &device, codes);
     }
 
     /// The same for what is sampled, where a code that stays comes with each sample.

@@ -14,7 +14,7 @@ use super::{Desk, Device, Progress, Session, Tell, Watched};
 use crate::device::ssi::{Asking, Error, Identity, Master, Station, Words, check};
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::protocol::ssi::Layout;
-use crate::sim::biss::Motor;
+use crate::sim::Motor;
 use crate::store::Store;
 
 /// An SSI encoder behind its adapter.

@@ -1,12 +1,9 @@
 //! Everything there is to see of an encoder, in one job; and access codes that the user names later.
 
-use std::time::Duration;
-
 use encoder_studio::device::check::Verdict;
 use encoder_studio::device::hiperface::check::{Finding, Line, Step};
-use encoder_studio::device::hiperface::{Error, Sample, Station, Survey};
-use encoder_studio::link::Clock;
-use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DataFieldStatus, LineSettings, StatusCode};
+use encoder_studio::device::hiperface::{Error, Sample, Survey};
+use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DataFieldStatus, StatusCode};
 use encoder_studio::store::{DeviceKey, Logbook, Store};
 use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
@@ -128,15 +125,11 @@ fn an_encoder_that_falls_silent_ends_the_survey() {
 
 /// Codes that the logbook has of the virtual encoder, the newest reading first.
 fn noted(desk: &Desk) -> Vec<String> {
-    noted_of(desk, "37h", "GB0450179")
-}
-
-fn noted_of(desk: &Desk, device_type: &str, serial_number: &str) -> Vec<String> {
     let path = Store::at(desk.folder.path()).logbook_path();
     let key = DeviceKey {
         kind: "hiperface".to_owned(),
-        device_type: device_type.to_owned(),
-        serial_number: serial_number.to_owned(),
+        device_type: "37h".to_owned(),
+        serial_number: "GB0450179".to_owned(),
         is_virtual: true,
     };
     match path.exists() {
@@ -173,23 +166,4 @@ fn a_status_code_that_was_read_is_in_the_logbook() {
         desk.session.sample().unwrap();
     }
     assert_eq!(noted(&desk)[..2], ["1Eh critical encoder temperature", "20h singleturn position unreliable"]);
-}
-
-/// Issue 22.10: whose the codes are is asked only on a line that answers: a command on another one ends within ten seconds.
-#[test]
-fn codes_of_an_encoder_that_went_away_are_kept_without_asking_who_it_was() {
-    // At 600 baud behind a slow device server each try takes longest.
-    let mut station = Station::new(Duration::from_millis(300));
-    station.format = LineSettings::from_byte(0xE0).format().unwrap();
-    let mut desk = Desk::with_station("settings=0xE0", station);
-    for code in [StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW] {
-        desk.bus().encoder_mut(0).unwrap().report(code);
-    }
-    // 52h, with which the echo is learned, and one 50h are answered.
-    desk.tap().mute_from = Some(2);
-    let begun = desk.clock.now();
-    assert!(desk.run(HiperfaceJob::Status).is_err());
-    let took = desk.clock.now().since(begun);
-    assert!(took < Duration::from_secs(10), "{took:?}");
-    assert_eq!(noted_of(&desk, "", ""), ["1Eh critical encoder temperature"]);
 }

@@ -19,7 +19,7 @@ use crate::link::LinkUrl;
 use crate::profile::biss::{BissProfile, ProfileIdentity};
 use crate::profile::{Body, Document};
 use crate::protocol::biss::{Description, Descriptions, DeviceMode, Eds, EdsBank, EdsError};
-use crate::sim::biss::Motor;
+use crate::sim::Motor;
 use crate::worker::biss::Biss;
 
 /// A BiSS encoder, or a profile of one.

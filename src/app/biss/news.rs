@@ -11,7 +11,7 @@ use crate::app::{Severity, Text, explain};
 use crate::device::biss::{Error, Sample};
 use crate::link::TraceEntry;
 use crate::protocol::biss::KIND;
-use crate::sim::biss::Motor;
+use crate::sim::Motor;
 use crate::worker::Session;
 use crate::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError, Remark};
 

@@ -18,7 +18,7 @@ use crate::link::LinkUrl;
 use crate::profile::ssi::SsiProfile;
 use crate::profile::{Body, Document};
 use crate::protocol::ssi::{Families, Layout, Reads};
-use crate::sim::biss::Motor;
+use crate::sim::Motor;
 use crate::worker::ssi::Ssi;
 
 /// An SSI encoder, or a layout of one.

@@ -13,7 +13,7 @@ use crate::device::bridge::AdapterError;
 use crate::device::ssi::{Identity, Words};
 use crate::link::TraceEntry;
 use crate::protocol::ssi::KIND;
-use crate::sim::biss::Motor;
+use crate::sim::Motor;
 use crate::worker::ssi::{JobError, Ssi, SsiJob, SsiOutput};
 use crate::worker::{JobId, Session};
 

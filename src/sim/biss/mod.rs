@@ -29,5 +29,3 @@ pub use config::Config;
 pub use encoder::Encoder;
 pub use flash::Flash;
 pub use ubicom::Port;
-
-pub use super::Motor;

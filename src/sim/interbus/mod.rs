@@ -26,5 +26,3 @@ pub use config::Config;
 pub use encoder::Encoder;
 pub use gateway::Gateway;
 pub use memory::Memory;
-
-pub use super::Motor;

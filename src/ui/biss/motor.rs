@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::biss::{Action as Biss, Encoder};
 use crate::app::{Action, Text};
-use crate::sim::biss::Motor;
+use crate::sim::Motor;
 use crate::ui::controls::{card, enabled_button, paragraph};
 use crate::ui::{Skin, icons};
 

@@ -8,7 +8,7 @@ use encoder_studio::device::biss::write::{Interrupted, Left};
 use encoder_studio::profile::Consent;
 use encoder_studio::profile::biss::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
 use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
-use encoder_studio::sim::biss::Motor;
+use encoder_studio::sim::Motor;
 use encoder_studio::worker::biss::{Attendance, BissJob, BissOutput, Change, Commit, Committed, JobError, Prepared};
 
 use super::support::{Bench, at};

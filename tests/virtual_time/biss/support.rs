@@ -11,7 +11,8 @@ use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, Trace
 use encoder_studio::protocol::biss::{Descriptions, RegisterAddress};
 use encoder_studio::protocol::bridge::{Operation, Receiver};
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::biss::{Config, Encoder, Motor, Port};
+use encoder_studio::sim::Motor;
+use encoder_studio::sim::biss::{Config, Encoder, Port};
 use encoder_studio::sim::bridge::{self, Adapter};
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;

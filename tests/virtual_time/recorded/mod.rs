@@ -44,11 +44,8 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, Cancel) {
     (lines, cancel)
 }
 
-/// Ends a write at a frame.
-type End = fn(&mut Tap, &Cancel, usize);
-
 /// How a write ends early, at a frame of ours.
-const EARLY: [(&str, End); 3] = [
+const EARLY: [(&str, fn(&mut Tap, &Cancel, usize)); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
     ("mute", |tap, _, at| tap.mute_from = Some(at)),
