@@ -257,10 +257,14 @@ pub(super) struct Restore {
     pub(super) dry_run: bool,
     #[command(flatten)]
     pub(super) consent: Consenting,
-    /// The profile may be of another serial number.
+    /// The profile may be of another serial number of the same type.
     #[arg(long)]
     pub(super) allow_other_device: bool,
-    /// hiperface, biss: the profile may be of another type of encoder.
+    /// The profile may be of another type of device.
+    ///
+    /// hiperface: another type byte. biss: another profile ID, manufacturer or device ID, or another number of bits of turns
+    /// or steps. interbus: single turn instead of multiturn, or steps counted less one. hiperdrive: an adapter, a hub with
+    /// four or with eight places instead of another one, or another variant of drive at a place.
     #[arg(long)]
     pub(super) allow_other_type: bool,
     /// hiperface: copy the bytes of unknown meaning of this data field onto another serial number; repeatable.

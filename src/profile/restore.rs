@@ -5,7 +5,7 @@
 pub struct RestoreOptions {
     /// The profile may go onto a device with another serial number.
     pub allow_other_device: bool,
-    /// The profile may go onto a device of another type, where types are told apart by more than what both have.
+    /// The profile may go onto a device of another type.
     pub allow_other_type: bool,
     /// Values of the mounting may go onto another device.
     pub with_mounting: bool,

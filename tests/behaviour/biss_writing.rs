@@ -135,13 +135,20 @@ fn the_mounting_of_another_encoder_is_left_alone() {
     assert_eq!(value["value"], json!(PRESET));
 }
 
+/// Issue 22.9: another type is named, and refused without a permit of its own.
 #[test]
-fn an_encoder_of_another_kind_is_refused() {
+fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
     let bench = Bench::new();
-    let Some(encoder) = bench.kit(&["--device-id", "010168110002"]) else { return };
-    let file = bench.write("p.ron", PROFILE);
-    ask(&bench, &encoder, &["restore", &file, "--yes"]).fails(1, &["01 01 68 11 00 01", "01 01 68 11 00 02"]);
-    assert_eq!(written(&encoder), [""; 0]);
+    let Some(encoder) = bench.kit(&[]) else { return };
+    let types = ["01 01 68 11 00 01", "01 01 68 11 00 02"];
+    let file = bench.write("p.ron", PROFILE.replace(types[0], types[1]));
+    for consent in ["--yes", "--dry-run"] {
+        let ran = ask(&bench, &encoder, &["restore", &file, consent, "--allow-other-device"]);
+        ran.fails(1, &[types[0], types[1], "--allow-other-type"]);
+    }
+    let dry = ask(&bench, &encoder, &["restore", &file, "--dry-run", "--allow-other-type"]);
+    assert!(types.iter().all(|own| dry.err.contains(own)), "{dry:?}");
+    assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
     let other = bench.file("hiperface.ron");
     assert_eq!(bench.run(&["save", "hiperface", "--link", "sim:", "-o", &other]).status, Some(0));
     // The kind of device is in the file: a HIPERFACE encoder is looked for, and does not answer.

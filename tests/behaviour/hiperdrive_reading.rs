@@ -72,16 +72,23 @@ fn errors_of_now_are_errors_and_those_of_before_are_notes() {
     assert_eq!(notes, told["earlier"].as_array().unwrap().len(), "{text:?}");
 }
 
-/// Restored onto a device with the same serial number that is of another kind.
+/// Issue 22.9: restored onto a device with the same serial number that is of another type, as a whole or in its drive: named,
+/// and refused without a permit of its own.
 #[test]
-fn a_profile_of_another_kind_of_device_is_refused() {
+fn a_profile_of_another_type_needs_a_permit_of_its_own() {
     let bench = Bench::new();
     let file = bench.file("single.ron");
     ask(&bench, "sim:?serial=77&requested=1", &["save", "hiperdrive", "-o", &file]).json();
     let (hub, other) = ("sim:?serial=77&requested=1&hub=4&speed=200", "sim:?serial=77&requested=1&variant=13");
-    ask(&bench, hub, &["restore", &file, "--yes"]).fails(1, &["HIPERDRIVE SINGLE", "HIPERDRIVE HUB-4"]);
-    ask(&bench, other, &["restore", &file, "--yes"]).fails(1, &["HDA30A", "HDA70", "--allow-other-device"]);
-    let told = ask(&bench, hub, &["restore", &file, "--yes", "--allow-other-device"]).json();
+    for (device, types) in [(hub, ["HIPERDRIVE SINGLE", "HIPERDRIVE HUB-4"]), (other, ["HDA30A", "HDA70"])] {
+        for consent in ["--yes", "--dry-run"] {
+            let ran = ask(&bench, device, &["restore", &file, consent, "--allow-other-device"]);
+            ran.fails(1, &[types[0], types[1], "--allow-other-type"]);
+        }
+        let dry = ask(&bench, device, &["restore", &file, "--dry-run", "--allow-other-type"]);
+        assert!(types.iter().all(|own| dry.err.contains(own)), "{dry:?}");
+    }
+    let told = ask(&bench, hub, &["restore", &file, "--yes", "--allow-other-type"]).json();
     assert_eq!(told["written"], json!(1), "{told}");
 }
 

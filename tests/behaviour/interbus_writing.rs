@@ -182,6 +182,30 @@ fn the_default_is_experimental() {
     assert_eq!(written(&encoder)[..1], ["W 0E000000"]);
 }
 
+/// Issue 22.9: a profile of a multiturn encoder, for one that counts no turns: named, and refused without a permit of its own.
+#[test]
+fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
+    let bench = Bench::new();
+    let parameters = r#"steps: 3600, revolutions: 1, direction: "ccw", preset: 9, zero_shift: 3"#;
+    let text = profile("4000", parameters, "").replace(r#""4000")"#, r#""4000", flags: 2)"#);
+    let file = bench.write("p.ron", text);
+    let Some(encoder) = bench.gateway(&["--steps=3600", "--flags=0"]) else { return };
+    for consent in ["--yes", "--dry-run"] {
+        let ran = ask(&bench, &encoder, &["restore", &file, consent, "--allow-other-device"]);
+        ran.fails(1, &["multiturn", "single turn", "--allow-other-type"]);
+    }
+    let restore = ["restore", &file, "--allow-other-type"];
+    let dry = ask(&bench, &encoder, &[&restore[..], &["--dry-run"]].concat());
+    assert!(dry.err.contains("multiturn") && dry.err.contains("single turn"), "{dry:?}");
+    assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
+    // `verify` says it, too.
+    let ran = ask(&bench, &encoder, &["verify", &file]);
+    assert!(ran.err.contains("single turn"), "{ran:?}");
+    // It keeps its mounting.
+    assert_eq!(ask(&bench, &encoder, &[&restore[..], &["--yes"]].concat()).json()["written"], json!(1));
+    assert_eq!(written(&encoder), ["W 06000004", "STORE parameters"]);
+}
+
 #[test]
 fn nothing_is_written_without_consent_or_into_another_encoder() {
     let bench = Bench::new();

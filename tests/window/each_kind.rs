@@ -1,14 +1,16 @@
 //! What holds for every kind of device on the desk, with the same words for all: edits are kept, writes end before anything
 //! closes, and every link that the connection dialog takes leads to its device.
 
+use std::path::Path;
+
 use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as Set};
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::interbus::{Action as Interbus, Edit};
-use encoder_studio::app::review::Stage;
+use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, AnyDevice, JobEnd, ReviewAction, Severity, Studio, Tab, Wish};
+use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
 use encoder_studio::profile::PlanId;
 use encoder_studio::protocol::hiperdrive::ParameterNumber;
 
@@ -121,6 +123,32 @@ impl Case {
             _ => desk.act(Action::Hiperface(id, Hiperface::Put { field: 0, address: 0, bytes: bytes.to_vec() })),
         }
         assert_eq!(shown(&desk.studio).unwrap().edits(), bytes.len());
+    }
+}
+
+impl Case {
+    /// Saves what the device keeps, as a profile.
+    fn save(&self, desk: &mut Desk, path: &Path) {
+        let id = shown(&desk.studio).unwrap().id();
+        let path_of = || path.to_path_buf();
+        wish(desk, Wish::AskSave);
+        desk.act(match self.tab {
+            Tab::Biss => Action::Biss(id, Biss::Save(path_of())),
+            Tab::Interbus => Action::Interbus(id, Interbus::Save(path_of())),
+            Tab::Hiperdrive => Action::Hiperdrive(id, Hiperdrive::Save(path_of())),
+            _ => Action::Hiperface(id, Hiperface::Save(path_of())),
+        });
+        desk.until("it is saved", |_| path.exists());
+    }
+
+    /// An entry of a profile by which its device is of another type.
+    fn other_type(&self) -> (&'static str, &'static str) {
+        match self.tab {
+            Tab::Biss => ("device_id", "\"09 09 09 09 09 09\""),
+            Tab::Interbus => ("flags", "0"),
+            Tab::Hiperdrive => ("category", "\"HIPERDRIVE HUB-4\""),
+            _ => ("encoder_type", "0x32"),
+        }
     }
 }
 
@@ -380,5 +408,34 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
             desk.act(Action::CloseSession(id));
         }
         assert!(desk.told(Severity::Warning).is_empty(), "{link}");
+    }
+}
+
+/// Issue 22.9: a profile of another type with the same serial number is refused; a permit of its own is offered, and with it the
+/// types stand in the review.
+#[test]
+fn another_type_of_device_needs_a_permit_of_its_own() {
+    for case in CASES {
+        let mut desk = case.desk();
+        let path = desk.outside.path("own.ron");
+        case.save(&mut desk, &path);
+        until_ready(&mut desk);
+        let (entry, value) = case.other_type();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let old = text.lines().find(|line| line.trim().starts_with(&format!("{entry}: "))).unwrap();
+        std::fs::write(&path, text.replacen(old, &format!("        {entry}: {value},"), 1)).unwrap();
+        wish(&mut desk, Wish::Restore(path));
+        until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { .. }));
+        until_ready(&mut desk);
+        let sheet = shown(&desk.studio).unwrap().sheet().unwrap();
+        let Stage::Failed { texts, .. } = &sheet.stage else { panic!() };
+        assert!(texts[0].words(Language::English).contains("another type of device"), "{texts:?}");
+        assert!(sheet.toggles.iter().any(|own| own.permit == Permit::OtherType && !own.is_on));
+        review(&mut desk, ReviewAction::Toggle(Permit::OtherType));
+        until_stage(&mut desk, |stage| matches!(stage, Stage::Ready(_) | Stage::Nothing));
+        let warnings = shown(&desk.studio).unwrap().sheet().unwrap().warnings;
+        let named = ["review.other_type", "biss_review.other_kind", "ib_review.other_type", "hd_review.other_kind"];
+        let text = warnings.iter().find(|own| named.contains(&own.id())).unwrap();
+        crate::texts::check(text);
     }
 }

@@ -32,8 +32,8 @@ impl Reviewed for Biss {
         let Change::Restore { options, .. } = change else { return None };
         match permit {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
-            Permit::Mounting => Some(&mut options.with_mounting),
             Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Mounting => Some(&mut options.with_mounting),
             Permit::Recreate | Permit::Copy(_) => None,
         }
     }
@@ -56,7 +56,7 @@ impl Reviewed for Biss {
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
-        warnings.extend(explain::biss::other_type(prepared));
+        warnings.extend(prepared.other_type.as_ref().map(explain::biss::other_type));
         warnings.extend(explain::biss::wear(prepared));
         if prepared.plan.ops.contains(&Op::Calibrate) {
             warnings.push(Text::new("biss_review.table"));

@@ -12,7 +12,7 @@ use crate::app::{Severity, Text};
 use crate::device::biss::Error;
 use crate::device::biss::procedure::{Answer, Failure, Task, Unattended};
 use crate::device::biss::write::Left;
-use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions, check_device};
+use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions, check_device, other_type};
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker::biss::{Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key};
@@ -107,7 +107,7 @@ impl WithMemory for Encoder {
 
     fn is_for_another_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
-        profile.identity.kind() != own.profile().kind()
+        other_type(&profile.identity, &own.profile()).is_some()
     }
 
     fn is_of_another(&self, prepared: &Prepared) -> bool {

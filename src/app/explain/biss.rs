@@ -8,7 +8,7 @@ mod write;
 pub use check::check;
 pub use damage::damage;
 pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
-pub use write::{change, failure, op, plan, preset, wear, weight, written};
+pub use write::{change, failure, op, other_type, plan, preset, wear, weight, written};
 
 use super::{adapter, link, not_begun, store};
 use crate::app::Text;
@@ -16,7 +16,7 @@ use crate::device::biss::{Asked, Error};
 use crate::link::LinkError;
 use crate::profile::biss::BissProfile;
 use crate::protocol::biss::{DeviceMode, Mismatch};
-use crate::worker::biss::{Doing, JobError, Prepared, Remark};
+use crate::worker::biss::{Doing, JobError, Remark};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
@@ -107,13 +107,6 @@ pub fn saved_unsaved(profile: &BissProfile) -> Option<Text> {
 /// A profile that was read in a device mode; `None` where the encoder was in operation.
 pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(profile_unsaved_in)
-}
-
-/// That the profile is of another kind of encoder, where that was allowed.
-pub fn other_type(prepared: &Prepared) -> Option<Text> {
-    let profile = prepared.other_type.as_ref()?;
-    let device = prepared.identity.profile().kind();
-    Some(Text::new("biss_review.other_kind").with("profile", profile).with("device", device))
 }
 
 /// A profile that was read in this device mode.

@@ -7,7 +7,7 @@ mod write;
 
 pub use check::check;
 pub use item::{direction, parameter, read_out, startup};
-pub use write::{change, op, plan, wear, weight, written};
+pub use write::{change, op, other_type, plan, wear, weight, written};
 
 use super::{link, plain};
 use crate::app::Text;

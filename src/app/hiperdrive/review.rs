@@ -33,8 +33,9 @@ impl Reviewed for Hiperdrive {
         let Change::Restore { options, .. } = change else { return None };
         match permit {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::OtherType => Some(&mut options.allow_other_type),
             Permit::Mounting => Some(&mut options.with_mounting),
-            Permit::OtherType | Permit::Recreate | Permit::Copy(_) => None,
+            Permit::Recreate | Permit::Copy(_) => None,
         }
     }
 
@@ -55,7 +56,8 @@ impl Reviewed for Hiperdrive {
     }
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
-        let mut texts: Vec<Text> = warnings(&prepared.plan).iter().map(explain::hiperdrive::warning).collect();
+        let mut texts: Vec<Text> = prepared.other_types.iter().map(explain::hiperdrive::other_type).collect();
+        texts.extend(warnings(&prepared.plan).iter().map(explain::hiperdrive::warning));
         texts.extend(prepared.wear().map(|after| Text::new("hd_review.wear").with("after", after)));
         if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
             texts.push(Text::new("hd_review.factory_all"));

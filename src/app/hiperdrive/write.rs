@@ -7,7 +7,7 @@ use crate::app::review::OpWords;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Saved, WithMemory, some};
 use crate::app::{Severity, Text};
-use crate::profile::hiperdrive::{HiperdriveProfile, Op, RestoreOptions, check_device};
+use crate::profile::hiperdrive::{HiperdriveProfile, Op, RestoreOptions, check_device, other_types};
 use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker::hiperdrive::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
@@ -44,6 +44,11 @@ impl WithMemory for Unit {
     fn is_for_another(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         check_device(profile, &own.profile()).is_err()
+    }
+
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        !other_types(&profile.identity, &own.profile()).is_empty()
     }
 
     fn is_of_another(&self, prepared: &Prepared) -> bool {

@@ -27,8 +27,9 @@ impl Reviewed for Interbus {
         let Change::Restore { options, .. } = change else { return None };
         match permit {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::OtherType => Some(&mut options.allow_other_type),
             Permit::Mounting => Some(&mut options.with_mounting),
-            Permit::OtherType | Permit::Recreate | Permit::Copy(_) => None,
+            Permit::Recreate | Permit::Copy(_) => None,
         }
     }
 
@@ -50,6 +51,7 @@ impl Reviewed for Interbus {
 
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut warnings = Vec::new();
+        warnings.extend(prepared.other_type.map(explain::interbus::other_type));
         warnings.extend(explain::interbus::wear(prepared));
         if prepared.plan.ops.contains(&Op::Default) {
             warnings.push(Text::new("ib_review.experimental"));

@@ -6,7 +6,7 @@ use super::review::Review;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Saved, WithMemory, some};
 use crate::app::{Severity, Text};
-use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device};
+use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device, other_type};
 use crate::profile::{Body, ProfileError};
 use crate::protocol::interbus::ProgramNumber;
 use crate::store::DeviceKey;
@@ -55,6 +55,11 @@ impl WithMemory for Encoder {
     fn is_for_another(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         check_device(profile, &own.profile()).is_err()
+    }
+
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        other_type(&profile.identity, &own.profile()).is_some()
     }
 
     fn is_of_another(&self, prepared: &Prepared) -> bool {

@@ -64,8 +64,8 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
-    if let Some(words) = explain::biss::other_type(&prepared) {
-        output.remark(&words.terminal());
+    if let Some(types) = &prepared.other_type {
+        output.remark(&explain::biss::other_type(types).terminal());
     }
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: the encoder does not have it"));

@@ -73,6 +73,9 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+    for types in &prepared.other_types {
+        output.remark(&explain::hiperdrive::other_type(types).terminal());
+    }
     for words in absent(&prepared) {
         output.remark(&words);
     }

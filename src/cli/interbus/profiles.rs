@@ -12,7 +12,7 @@ use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Result};
-use crate::profile::interbus::{self, Image, InterbusProfile, Recorded, programs_needed};
+use crate::profile::interbus::{self, Image, InterbusProfile, PlanError, Recorded, programs_needed};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::worker::interbus::{Change, InterbusJob, InterbusOutput};
 
@@ -70,9 +70,14 @@ pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparis
 
 /// That two profiles are not of the same encoder. One without a serial number is of none.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let (profile, device) = (&profile.interbus()?.identity.serial_number, &device.interbus()?.identity.serial_number);
-    (!profile.is_empty() && profile != device)
-        .then(|| format!("The profile is of serial number {profile}, the encoder has {device}."))
+    let error = interbus::check_device(profile.interbus()?, &device.interbus()?.identity).err()?;
+    Some(match error {
+        PlanError::OtherType(types) => explain::interbus::other_type(types).terminal(),
+        PlanError::OtherDevice { profile, device } => {
+            format!("The profile is of serial number {profile}, the encoder has {device}.")
+        }
+        other => format!("{other}."),
+    })
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
@@ -85,6 +90,9 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
     disturbs.begin(common, output, Some(&restore.consent))?;
     let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+    if let Some(types) = prepared.other_type {
+        output.remark(&explain::interbus::other_type(types).terminal());
+    }
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: the encoder does not have it"));
     }

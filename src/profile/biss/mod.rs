@@ -4,6 +4,7 @@ mod compare;
 mod edit;
 mod item;
 mod note;
+mod other_type;
 mod plan;
 mod record;
 mod restore;
@@ -16,6 +17,7 @@ pub use edit::{
     MotorSource, MountingRun, Place, place, plan_edits, plan_filter, plan_mounting, plan_preset, procedure,
 };
 pub use item::{ItemError, RegisterRange};
+pub use other_type::{OtherType, Width, other_type};
 pub use plan::{Base, BissPlan, Op, PresetParts, RegisterChange};
 pub use record::{
     Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,

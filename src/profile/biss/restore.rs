@@ -3,8 +3,9 @@
 
 pub use crate::profile::RestoreOptions;
 
+use super::other_type::{OtherType, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
-use crate::protocol::biss::{Area, Filter, Firmware, Identity, PresetValue, ProcedureKind, RegisterAddress};
+use crate::protocol::biss::{Area, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress};
 
 /// An encoder as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,14 +36,9 @@ pub enum PlanError {
         /// In the encoder.
         device: String,
     },
-    /// The profile is of another kind of encoder.
-    #[error("the profile is of {profile}, the encoder says {device}")]
-    OtherKind {
-        /// In the profile.
-        profile: Box<Identity>,
-        /// In the encoder.
-        device: Box<Identity>,
-    },
+    /// The profile is of another type of encoder.
+    #[error(transparent)]
+    OtherType(#[from] OtherType),
     /// The encoder has no such bank of plain data, or it cannot be written.
     #[error("bank 0x{bank:02X} is no bank of plain data that can be written")]
     NoBank {
@@ -153,44 +149,39 @@ pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore,
 /// same one.
 ///
 /// # Errors
-/// [`PlanError::OtherKind`], [`PlanError::OtherDevice`].
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
 pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
-    let (of_profile, of_device) = (profile.identity.kind(), device.kind());
-    if of_profile != of_device {
-        return Err(PlanError::OtherKind { profile: Box::new(of_profile), device: Box::new(of_device) });
-    }
-    if is_same_device(profile, device) { Ok(()) } else { Err(other_device(profile, device)) }
+    check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Refuses an encoder that the profile was not read from, as far as that is not allowed. Registers of another kind of encoder
+/// Refuses an encoder that the profile was not read from, as far as that is not allowed. Registers of another type of encoder
 /// may mean something else, so that a permit for another serial number is none for that.
 ///
 /// # Errors
-/// [`PlanError::OtherKind`], [`PlanError::OtherDevice`].
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
 pub fn check_allowed(
     profile: &BissProfile,
     device: &ProfileIdentity,
     options: RestoreOptions,
 ) -> Result<(), PlanError> {
-    match check_device(profile, device) {
-        Err(error @ PlanError::OtherKind { .. }) if !options.allow_other_type => Err(error),
-        Err(PlanError::OtherKind { .. }) if options.allow_other_device || has_same_number(profile, device) => Ok(()),
-        Err(PlanError::OtherKind { .. }) => Err(other_device(profile, device)),
-        Err(PlanError::OtherDevice { .. }) if options.allow_other_device => Ok(()),
-        checked => checked,
+    if let Some(error) = other_type(&profile.identity, device).filter(|_| !options.allow_other_type) {
+        return Err(error.into());
     }
-}
-
-fn has_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
-    !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
+    if options.allow_other_device || is_same_number(profile, device) {
+        return Ok(());
+    }
+    Err(PlanError::OtherDevice {
+        profile: profile.identity.serial_number.clone(),
+        device: device.serial_number.clone(),
+    })
 }
 
 fn is_same_device(profile: &BissProfile, device: &ProfileIdentity) -> bool {
-    has_same_number(profile, device) && profile.identity.kind() == device.kind()
+    is_same_number(profile, device) && other_type(&profile.identity, device).is_none()
 }
 
-fn other_device(profile: &BissProfile, device: &ProfileIdentity) -> PlanError {
-    PlanError::OtherDevice { profile: profile.identity.serial_number.clone(), device: device.serial_number.clone() }
+fn is_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
+    !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
 }
 
 /// Refuses a preset value that the position cannot take.

@@ -4,6 +4,37 @@ use super::Item;
 use crate::protocol::ethernet_ip::AddressError;
 use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, Topology, Variant};
 
+/// A profile and a device of two types: as a whole (parameter 13), or in the drive at a place (parameter 120), whose variant
+/// tells its travel, speed and torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OtherType {
+    /// An adapter, and hubs with four and with eight places, are three types.
+    #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
+    Device {
+        /// In the profile.
+        profile: Topology,
+        /// What the device is.
+        device: Topology,
+    },
+    /// At a place there is a drive of another variant than the profile's.
+    #[error(
+        "drive {}: the profile is of variant {} ({}), the drive is of variant {} ({})",
+        drive.get(),
+        profile.number(),
+        profile.row().map_or("in no table", |row| row.name),
+        device.number(),
+        device.row().map_or("in no table", |row| row.name)
+    )]
+    Drive {
+        /// Which place.
+        drive: DriveNumber,
+        /// In the profile.
+        profile: Variant,
+        /// What the drive is.
+        device: Variant,
+    },
+}
+
 /// Why something cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
@@ -25,31 +56,9 @@ pub enum PlanError {
         /// In the drive.
         device: String,
     },
-    /// The profile was read from another kind of device.
-    #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
-    OtherKind {
-        /// In the profile.
-        profile: Topology,
-        /// What the device is.
-        device: Topology,
-    },
-    /// At a place there is a drive of another variant than the profile's.
-    #[error(
-        "drive {}: the profile is of variant {} ({}), the drive is of variant {} ({})",
-        drive.get(),
-        profile.number(),
-        profile.row().map_or("in no table", |row| row.name),
-        device.number(),
-        device.row().map_or("in no table", |row| row.name)
-    )]
-    OtherVariant {
-        /// Which place.
-        drive: DriveNumber,
-        /// In the profile.
-        profile: Variant,
-        /// What the drive is.
-        device: Variant,
-    },
+    /// The profile was read from another type of device or drive.
+    #[error(transparent)]
+    OtherType(#[from] OtherType),
     /// A number beyond what a parameter may be.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),

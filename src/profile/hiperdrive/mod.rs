@@ -17,11 +17,11 @@ mod warning;
 
 pub use compare::compare;
 pub use edit::{Positions, plan_edits, plan_service, plan_set_position};
-pub use error::PlanError;
+pub use error::{OtherType, PlanError};
 pub use image::Image;
 pub use item::{Item, ItemError};
 pub use network::{NetworkSettings, plan_network};
 pub use plan::{Base, HiperdrivePlan, Op, Service, written};
 pub use record::{HiperdriveProfile, Kept, MountingMark, ProfileDrive, ProfileIdentity};
-pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore};
+pub use restore::{DeviceState, Restore, RestoreOptions, check_device, other_types, plan_restore};
 pub use warning::{Warning, warnings};

@@ -5,7 +5,9 @@ pub use crate::profile::RestoreOptions;
 
 use super::plan_edits;
 use super::record::REFERENCE;
-use super::{HiperdrivePlan, HiperdriveProfile, Image, Item, PlanError, Positions, ProfileDrive, ProfileIdentity};
+use super::{
+    HiperdrivePlan, HiperdriveProfile, Image, Item, OtherType, PlanError, Positions, ProfileDrive, ProfileIdentity,
+};
 use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Travel};
 
 /// A device as it is, as far as a plan needs it.
@@ -40,9 +42,7 @@ pub fn plan_restore(
     device: &DeviceState,
     options: RestoreOptions,
 ) -> Result<Restore, PlanError> {
-    if !options.allow_other_device {
-        check_device(profile, &device.identity)?;
-    }
+    check_allowed(profile, &device.identity, options)?;
     let mut wanted = Image::default();
     let (mut unchanged, mut missing) = (0, Vec::new());
     let (mut mounting_left, mut mounting_written) = (Vec::new(), Vec::new());
@@ -68,12 +68,32 @@ pub fn plan_restore(
 /// say of its device fits any; so does a place at which there is no drive.
 ///
 /// # Errors
-/// [`PlanError::OtherKind`], [`PlanError::OtherDevice`], [`PlanError::OtherVariant`], [`PlanError::OtherDrive`].
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`], [`PlanError::OtherDrive`].
 pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
-    if let (Some(profile), Some(device)) = (profile.identity.topology, device.topology)
-        && profile != device
-    {
-        return Err(PlanError::OtherKind { profile, device });
+    check_allowed(profile, device, RestoreOptions::default())
+}
+
+/// What differs between the types of a profile and of a device: of the whole, then of each drive.
+pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
+    let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
+    let drives = profile.drives.iter().filter_map(|own| {
+        let (profile, device) = own.variant.zip(drive_at(device, own.number)?.variant)?;
+        (profile != device).then_some(OtherType::Drive { drive: own.number, profile, device })
+    });
+    whole.into_iter().map(|(profile, device)| OtherType::Device { profile, device }).chain(drives).collect()
+}
+
+/// Refuses a device that the profile was not read from, as far as that is not allowed.
+fn check_allowed(
+    profile: &HiperdriveProfile,
+    device: &ProfileIdentity,
+    options: RestoreOptions,
+) -> Result<(), PlanError> {
+    if let Some(first) = other_types(&profile.identity, device).first().filter(|_| !options.allow_other_type) {
+        return Err((*first).into());
+    }
+    if options.allow_other_device {
+        return Ok(());
     }
     let (of_profile, of_device) = (&profile.identity.serial_number, &device.serial_number);
     if !of_profile.is_empty() && of_profile != of_device {
@@ -81,11 +101,6 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
     }
     for own in &profile.identity.drives {
         let Some(there) = drive_at(device, own.number) else { continue };
-        if let (Some(profile), Some(device)) = (own.variant, there.variant)
-            && profile != device
-        {
-            return Err(PlanError::OtherVariant { drive: own.number, profile, device });
-        }
         if !own.serial_number.is_empty() && own.serial_number != there.serial_number {
             let (profile, device) = (own.serial_number.clone(), there.serial_number.clone());
             return Err(PlanError::OtherDrive { drive: own.number, profile, device });
@@ -106,6 +121,14 @@ fn is_of_another_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity,
 
 /// The profile was read from this very device, and the drive's parameter from this very drive.
 fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+    let types = other_types(&profile.identity, device);
+    let is_other = |own: &OtherType| match own {
+        OtherType::Device { .. } => true,
+        OtherType::Drive { drive, .. } => item.0.drive() == Some(*drive),
+    };
+    if types.iter().any(is_other) {
+        return false;
+    }
     let same = |one: &str, other: &str| !one.is_empty() && one == other;
     let serial = |drive: Option<&ProfileDrive>| drive.map_or_else(String::new, |drive| drive.serial_number.clone());
     same(&profile.identity.serial_number, &device.serial_number)

@@ -1,7 +1,18 @@
 //! Why something cannot be planned.
 
 use super::{Edge, Item};
-use crate::protocol::interbus::{GearError, OutOfRange};
+use crate::protocol::interbus::{Flags, GearError, OutOfRange};
+
+/// A profile and an encoder of two types, by their flags (manual, 10.2): one counts turns and the other does not, or one
+/// gives its steps less one, so that the same number is another gear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the profile is of a {} encoder, the encoder is a {} one", profile.type_name(), device.type_name())]
+pub struct OtherType {
+    /// In the profile.
+    pub profile: Flags,
+    /// In the encoder.
+    pub device: Flags,
+}
 
 /// Why something cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -14,12 +25,9 @@ pub enum PlanError {
         /// In the encoder.
         device: String,
     },
-    /// Steps mean something else: one of the two counts them less one.
-    #[error("steps are given less one by {} alone", if *profile { "the profile's encoder" } else { "this encoder" })]
-    OtherSteps {
-        /// It is the profile's.
-        profile: bool,
-    },
+    /// The profile is of another type of encoder.
+    #[error(transparent)]
+    OtherType(#[from] OtherType),
     /// Steps and turns are no gear.
     #[error(transparent)]
     Gear(#[from] GearError),

@@ -17,13 +17,15 @@ mod text;
 
 pub use compare::compare;
 pub use edit::{plan_default, plan_edits, plan_preset};
-pub use error::PlanError;
+pub use error::{OtherType, PlanError};
 pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};
 pub use note::Step;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
 pub use record::{InterbusProfile, Kept, MountingMark, Names, ProfileIdentity, Recorded};
-pub use restore::{DeviceState, Restore, RestoreOptions, check_device, plan_restore, programs_needed};
+pub use restore::{
+    DeviceState, Restore, RestoreOptions, check_allowed, check_device, other_type, plan_restore, programs_needed,
+};
 pub use scale::{Outside, Placed, Scale, ScaleError, Unit};
 pub use table::{
     CamTable, Column, Filled, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableRow, Wrong,

@@ -3,8 +3,8 @@
 
 pub use crate::profile::RestoreOptions;
 
-use super::{Image, InterbusPlan, InterbusProfile, Item, PlanError, ProfileIdentity, plan_edits};
-use crate::protocol::interbus::{OutOfRange, ProgramNumber};
+use super::{Image, InterbusPlan, InterbusProfile, Item, OtherType, PlanError, ProfileIdentity, plan_edits};
+use crate::protocol::interbus::{Flags, OutOfRange, ProgramNumber};
 
 /// An encoder as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,9 +38,7 @@ pub fn plan_restore(
     device: &DeviceState,
     options: RestoreOptions,
 ) -> Result<Restore, PlanError> {
-    if !options.allow_other_device {
-        check_device(profile, &device.identity)?;
-    }
+    check_allowed(profile, &device.identity, options)?;
     let is_other = !is_same_device(profile, &device.identity);
     let mut wanted = Image::of(device.image.parameters);
     let (mut unchanged, mut missing) = (0, Vec::new());
@@ -74,14 +72,32 @@ pub fn plan_restore(
 /// refused by none.
 ///
 /// # Errors
-/// [`PlanError::OtherSteps`], [`PlanError::OtherDevice`].
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
 pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
-    if let (Some(of_profile), Some(of_device)) = (profile.identity.flags, device.flags)
-        && of_profile.steps_minus_one() != of_device.steps_minus_one()
-    {
-        return Err(PlanError::OtherSteps { profile: of_profile.steps_minus_one() });
+    check_allowed(profile, device, RestoreOptions::default())
+}
+
+/// What differs between the types of a profile and of an encoder; `None` where they are the same, or one of them is not known.
+pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
+    let (profile, device) = profile.flags.zip(device.flags)?;
+    let what = |flags: Flags| (flags.multiturn(), flags.steps_minus_one());
+    (what(profile) != what(device)).then_some(OtherType { profile, device })
+}
+
+/// Refuses an encoder that the profile was not read from, as far as that is not allowed.
+///
+/// # Errors
+/// As [`check_device`].
+pub fn check_allowed(
+    profile: &InterbusProfile,
+    device: &ProfileIdentity,
+    options: RestoreOptions,
+) -> Result<(), PlanError> {
+    if let Some(error) = other_type(&profile.identity, device).filter(|_| !options.allow_other_type) {
+        return Err(error.into());
     }
-    if profile.identity.serial_number.is_empty() || is_same_device(profile, device) {
+    let is_of_none = profile.identity.serial_number.is_empty();
+    if options.allow_other_device || is_of_none || is_same_number(profile, device) {
         return Ok(());
     }
     Err(PlanError::OtherDevice {
@@ -91,6 +107,10 @@ pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Resu
 }
 
 fn is_same_device(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
+    is_same_number(profile, device) && other_type(&profile.identity, device).is_none()
+}
+
+fn is_same_number(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
     !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
 }
 

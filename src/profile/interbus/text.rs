@@ -107,9 +107,7 @@ impl ProfileIdentity {
         writer.open("identity", '(');
         writer.text("serial_number", &self.serial_number);
         if let Some(flags) = self.flags {
-            let turns = if flags.multiturn() { "multiturn" } else { "single turn" };
-            let steps = if flags.steps_minus_one() { ", steps less one" } else { "" };
-            number(writer, "flags", flags.value().get(), &format!("{turns}{steps}"));
+            number(writer, "flags", flags.value().get(), flags.type_name());
         }
         writer.unknown(&self.unknown);
         writer.close(')');

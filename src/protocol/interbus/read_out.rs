@@ -176,6 +176,16 @@ impl Flags {
         self.0.get() & 2 != 0
     }
 
+    /// The type of encoder that they make.
+    pub const fn type_name(self) -> &'static str {
+        match (self.multiturn(), self.steps_minus_one()) {
+            (true, false) => "multiturn",
+            (false, false) => "single turn",
+            (true, true) => "multiturn, steps less one",
+            (false, true) => "single turn, steps less one",
+        }
+    }
+
     /// The other bits, of which nothing is known.
     pub const fn unknown(self) -> u32 {
         self.0.get() & !3

@@ -10,7 +10,8 @@ use crate::device::biss::write::{Interrupted, Written};
 use crate::device::biss::{Error, PositionReading, Status, Survey};
 use crate::profile::Consent;
 use crate::profile::biss::{
-    Bank, BissPlan, BissProfile, MotorSource, MountingRun, PlanError, PresetParts, RegisterRange, RestoreOptions,
+    Bank, BissPlan, BissProfile, MotorSource, MountingRun, OtherType, PlanError, PresetParts, RegisterRange,
+    RestoreOptions,
 };
 use crate::protocol::biss::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
 use crate::store::{DeviceKey, StoreError};
@@ -137,10 +138,10 @@ pub struct Prepared {
     pub mounting_left: Vec<RegisterRange>,
     /// The device mode in which the profile was read that is restored, where it may hold what was never saved.
     pub unsaved: Option<DeviceMode>,
+    /// The profile is of another type of encoder.
+    pub other_type: Option<OtherType>,
     /// Values of the mounting of another device that are written: they have to be set up anew.
     pub mounting_written: Vec<RegisterRange>,
-    /// The kind of encoder that the profile was read from, where it is another one.
-    pub other_type: Option<crate::protocol::biss::Identity>,
 }
 
 impl Prepared {

@@ -6,8 +6,8 @@ use super::{Biss, Change, Doing, JobError, Prepared, device_key};
 use crate::device::biss::write::{read_bank, read_state};
 use crate::device::biss::{Error, Identity, Master, ensure_standstill, identify, write};
 use crate::profile::biss::{
-    Base, BissPlan, Place, RegisterRange, Restore, banks_needed, check_allowed, place, plan_edits, plan_filter,
-    plan_mounting, plan_preset, plan_restore,
+    Base, BissPlan, Place, RegisterRange, Restore, banks_needed, check_allowed, other_type, place, plan_edits,
+    plan_filter, plan_mounting, plan_preset, plan_restore,
 };
 use crate::protocol::biss::{Area, RegisterAddress};
 use crate::worker::commit::cycles_seen;
@@ -47,15 +47,11 @@ pub(super) fn prepare(
     };
     let cycles_seen = cycles_seen(&desk.store, &device_key(&identity, desk.is_virtual));
     let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
-    let unsaved = match change {
-        Change::Restore { profile, .. } => profile.recorded.device_mode,
-        _ => None,
-    };
-    let other_type = match change {
+    let (unsaved, other_type) = match change {
         Change::Restore { profile, .. } => {
-            Some(profile.identity.kind()).filter(|kind| *kind != identity.profile().kind())
+            (profile.recorded.device_mode, other_type(&profile.identity, &identity.profile()))
         }
-        _ => None,
+        _ => (None, None),
     };
     Ok(Prepared {
         kind: change.kind(),

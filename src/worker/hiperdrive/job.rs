@@ -7,7 +7,7 @@ use crate::device::hiperdrive::write::{Interrupted, Written};
 use crate::device::hiperdrive::{Error, Identity, Network, Reading, Status, Survey};
 use crate::profile::Consent;
 use crate::profile::hiperdrive::{
-    HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, PlanError, RestoreOptions, Service,
+    HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, OtherType, PlanError, RestoreOptions, Service,
 };
 use crate::protocol::hiperdrive::{DriveNumber, KIND, ParameterNumber, Value};
 use crate::store::DeviceKey;
@@ -129,6 +129,8 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
+    /// The profile is of another type of device or drive: each difference.
+    pub other_types: Vec<OtherType>,
     /// Values of the mounting of another device that are written: they have to be set up anew.
     pub mounting_written: Vec<Item>,
 }

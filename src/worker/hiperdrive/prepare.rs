@@ -4,7 +4,7 @@ use super::{Change, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
 use crate::device::hiperdrive::write::{Remedy, remedy};
 use crate::device::hiperdrive::{Error, Identity, Master, read_state, settings};
 use crate::profile::hiperdrive::{
-    HiperdrivePlan, Image, Op, Restore, Service, plan_edits, plan_network, plan_restore, plan_service,
+    HiperdrivePlan, Image, Op, Restore, Service, other_types, plan_edits, plan_network, plan_restore, plan_service,
     plan_set_position,
 };
 use crate::protocol::hiperdrive::ParameterNumber;
@@ -74,6 +74,10 @@ pub(super) fn prepare(
         }
     };
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
+    let other_types = match change {
+        Change::Restore { profile, .. } => other_types(&profile.identity, &identity.profile()),
+        _ => Vec::new(),
+    };
     let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
     Ok(Prepared {
         kind: change.kind(),
@@ -84,6 +88,7 @@ pub(super) fn prepare(
         unchanged,
         missing,
         mounting_left,
+        other_types,
         mounting_written,
     })
 }

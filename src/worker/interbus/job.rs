@@ -7,7 +7,7 @@ use crate::device::interbus::write::{Interrupted, Written};
 use crate::device::interbus::{Error, Handshake, Identity, Reading, Status, Survey};
 use crate::profile::Consent;
 use crate::profile::interbus::{
-    Image, InterbusPlan, InterbusProfile, Item, ItemValue, Parameters, PlanError, RestoreOptions,
+    Image, InterbusPlan, InterbusProfile, Item, ItemValue, OtherType, Parameters, PlanError, RestoreOptions,
 };
 use crate::protocol::interbus::{KIND, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift};
 use crate::store::DeviceKey;
@@ -127,6 +127,8 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
+    /// The profile is of another type of encoder.
+    pub other_type: Option<OtherType>,
     /// Values of the mounting of another device that are written: they have to be set up anew.
     pub mounting_written: Vec<Item>,
 }
@@ -285,6 +287,7 @@ mod tests {
                 unchanged: 0,
                 missing: Vec::new(),
                 mounting_left: Vec::new(),
+                other_type: None,
                 mounting_written: Vec::new(),
             };
             prepared.wear()

@@ -3,7 +3,7 @@
 use super::{Change, Doing, Interbus, JobError, Prepared, Remark, Told, device_key};
 use crate::device::interbus::{identify, read_state};
 use crate::profile::interbus::{
-    Image, InterbusPlan, Item, Restore, check_device, plan_default, plan_edits, plan_preset, plan_restore,
+    Image, InterbusPlan, Item, Restore, check_allowed, other_type, plan_default, plan_edits, plan_preset, plan_restore,
     programs_needed,
 };
 use crate::protocol::interbus::ProgramNumber;
@@ -27,10 +27,8 @@ pub(super) fn prepare(
     let device;
     let plan = match change {
         Change::Restore { profile, options } => {
-            if !options.allow_other_device {
-                // Known before programs are read.
-                check_device(profile, &identity.profile())?;
-            }
+            // Known before programs are read.
+            check_allowed(profile, &identity.profile(), *options)?;
             device = state(&programs_needed(profile))?;
             plan_restore(profile, &device, *options)?
         }
@@ -58,6 +56,10 @@ pub(super) fn prepare(
         }
     };
     let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
+    let other_type = match change {
+        Change::Restore { profile, .. } => other_type(&profile.identity, &identity.profile()),
+        _ => None,
+    };
     let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
     let parameters = device.image.parameters;
     Ok(Prepared {
@@ -69,6 +71,7 @@ pub(super) fn prepare(
         unchanged,
         missing,
         mounting_left,
+        other_type,
         mounting_written,
     })
 }

@@ -123,7 +123,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     let error = bench.prepare(restore_of(&profile)).unwrap_err();
     assert!(matches!(error, JobError::Plan(PlanError::OtherDevice { .. })), "{error}");
     let restore = |with_mounting| {
-        let options = RestoreOptions { allow_other_device: true, allow_other_type: false, with_mounting };
+        let options = RestoreOptions { allow_other_device: true, with_mounting, ..RestoreOptions::default() };
         Change::Restore { profile: Box::new(profile.clone()), options }
     };
     let prepared = bench.prepare(restore(false)).unwrap();

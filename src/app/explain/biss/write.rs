@@ -12,7 +12,7 @@ use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::device::biss::procedure::{Activity, Failure, Run, Standing};
 use crate::device::biss::write::{Interrupted, Left, Written};
-use crate::profile::biss::{Op, PlanError, PresetParts, RegisterChange, RegisterRange};
+use crate::profile::biss::{Op, OtherType, PlanError, PresetParts, RegisterChange, RegisterRange};
 use crate::protocol::biss::{CalibrationStatus, Layout, PresetValue, ProcedureKind, WiegandStatus};
 use crate::worker::biss::{Change, ChangeKind, Prepared, WEAR_LIMIT};
 
@@ -92,15 +92,25 @@ fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Te
         .with("multiturn", value.multiturn())
 }
 
+/// A profile that goes onto another type of encoder.
+pub fn other_type(types: &OtherType) -> Text {
+    of_types(types, "biss_review.other_kind", "biss_review.other_width")
+}
+
+fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text {
+    match types {
+        OtherType::Kind { profile, device } => Text::new(kind).with("profile", profile).with("device", device),
+        OtherType::Width { profile, device } => Text::new(width).with("profile", profile).with("device", device),
+    }
+}
+
 /// Why something cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
-        PlanError::OtherKind { profile, device } => {
-            Text::new("biss_plan.other_kind").with("profile", profile).with("device", device)
-        }
+        PlanError::OtherType(types) => of_types(types, "biss_plan.other_kind", "biss_plan.other_width"),
         PlanError::NoBank { bank } => Text::new("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
         PlanError::PresetTooWide { value, bits, .. } => {
             let last = (1u64 << bits.min(&63)) - 1;

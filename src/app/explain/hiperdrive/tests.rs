@@ -7,7 +7,7 @@ use crate::app::explain::plain;
 use crate::app::{Language, Severity, Text};
 use crate::device::hiperdrive::dead_man::{Ended, Lock, Refusal};
 use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal as Refused, WrongLength};
-use crate::profile::hiperdrive::{Item, PlanError, Warning};
+use crate::profile::hiperdrive::{Item, OtherType, PlanError, Warning};
 use crate::protocol::ethernet_ip::{AddressError, GeneralStatus, Service};
 use crate::protocol::hiperdrive::{
     DriveNumber, OutOfRange, ParameterNumber, Range, State, Topology, ValueError, Variant,
@@ -113,8 +113,8 @@ fn plans_and_ends_say_what_to_do() {
     let plans = [
         PlanError::OtherDevice { profile: profile(), device: here() },
         PlanError::OtherDrive { drive: ONE, profile: profile(), device: here() },
-        PlanError::OtherKind { profile: Topology::Hub8, device: Topology::Adapter },
-        PlanError::OtherVariant { drive: ONE, profile: Variant::new(7), device: Variant::OTHER },
+        OtherType::Device { profile: Topology::Hub8, device: Topology::Adapter }.into(),
+        OtherType::Drive { drive: ONE, profile: Variant::new(7), device: Variant::OTHER }.into(),
         PlanError::Moves { item },
         PlanError::Acts { item },
         PlanError::NotRead { item },

@@ -11,7 +11,7 @@ use crate::app::explain::plain;
 use crate::app::hiperdrive::network::refused;
 use crate::app::review::OpWords;
 use crate::device::hiperdrive::write::{Interrupted, Written};
-use crate::profile::hiperdrive::{Item, NetworkSettings, Op, PlanError, Service, Warning};
+use crate::profile::hiperdrive::{Item, NetworkSettings, Op, OtherType, PlanError, Service, Warning};
 use crate::worker::hiperdrive::{Change, ChangeKind};
 
 /// A change in words.
@@ -78,6 +78,23 @@ pub fn item(item: Item) -> Text {
     Text::new("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
+/// A profile that goes onto another type of device or drive.
+pub fn other_type(types: &OtherType) -> Text {
+    of_types(types, "hd_review.other_kind", "hd_review.other_variant")
+}
+
+fn of_types(types: &OtherType, whole: &'static str, of_drive: &'static str) -> Text {
+    match types {
+        OtherType::Device { profile, device } => {
+            Text::new(whole).with("profile", profile.category()).with("device", device.category())
+        }
+        OtherType::Drive { drive, profile, device } => Text::new(of_drive)
+            .with("drive", drive.get())
+            .with_text("profile", variant(*profile))
+            .with_text("device", variant(*device)),
+    }
+}
+
 /// Why something cannot be planned; nothing was written.
 pub fn plan(error: &PlanError) -> Text {
     match error {
@@ -87,13 +104,7 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::OtherDrive { drive, profile, device } => {
             Text::new("hd_plan.other_drive").with("drive", drive.get()).with("profile", profile).with("device", device)
         }
-        PlanError::OtherKind { profile, device } => {
-            Text::new("hd_plan.other_kind").with("profile", profile.category()).with("device", device.category())
-        }
-        PlanError::OtherVariant { drive, profile, device } => Text::new("hd_plan.other_variant")
-            .with("drive", drive.get())
-            .with_text("profile", variant(*profile))
-            .with_text("device", variant(*device)),
+        PlanError::OtherType(types) => of_types(types, "hd_plan.other_kind", "hd_plan.other_variant"),
         PlanError::OutOfRange(error) => out_of_range(error),
         PlanError::ReadOnly { item } => about("hd_said.read_only", *item),
         PlanError::Moves { item } => about("hd_said.motion", *item),

@@ -7,8 +7,8 @@ use crate::app::Language::{English, German};
 use crate::device::interbus::write::{Interrupted, Left, Written};
 use crate::device::interbus::{Asked, Damage, Exception};
 use crate::link::LinkErrorKind;
-use crate::profile::interbus::{Edge, Item, Op, PlanError};
-use crate::protocol::interbus::{CamNumber, Code, Command, Mode, OutOfRange, Parameter, ProgramNumber, Refused};
+use crate::profile::interbus::{Edge, Item, Op, OtherType, PlanError};
+use crate::protocol::interbus::{CamNumber, Code, Command, Flags, Mode, OutOfRange, Parameter, ProgramNumber, Refused};
 use crate::protocol::interbus::{StartupMode, Value, WindowShift};
 use crate::worker::NotBegun;
 use crate::worker::interbus::ChangeKind;
@@ -115,13 +115,14 @@ fn every_refusal_of_a_plan_names_both_limits() {
     };
     let preset = OutOfRange { parameter: Parameter::Preset, value: 3600, low: 0, high: 3599 };
     let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };
+    let types = OtherType { profile: Flags::new(value(2)), device: Flags::new(value(1)) };
     let cases = [
         (
             PlanError::OtherDevice { profile: "123".to_owned(), device: "456".to_owned() },
             vec!["123", "456"],
             Some("--allow-other-device"),
         ),
-        (PlanError::OtherSteps { profile: true }, vec![], Some("--allow-other-device")),
+        (PlanError::OtherType(types), vec!["ultiturn", "ingle"], Some("--allow-other-type")),
         (PlanError::Gear(GearError::Turns { turns: 4097 }), vec!["4097", "1", "4096"], None),
         (PlanError::Gear(GearError::Steps { steps: 8193, turns: 1, most: 8192 }), vec!["8193", "8192"], None),
         (PlanError::OutOfRange(preset), vec!["3600", "0", "3599"], None),

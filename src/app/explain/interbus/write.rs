@@ -9,8 +9,8 @@ use crate::app::explain::{self, plain};
 use crate::app::review::{ChangeWords, OpWords};
 use crate::app::{Severity, Text};
 use crate::device::interbus::write::{Interrupted, Left, Written};
-use crate::profile::interbus::{CamChange, Edge, Item, Op, ParameterChange, PlanError, ProgramChange};
-use crate::protocol::interbus::GearError;
+use crate::profile::interbus::{CamChange, Edge, Item, Op, OtherType, ParameterChange, PlanError, ProgramChange};
+use crate::protocol::interbus::{Flags, GearError};
 use crate::worker::NotBegun;
 use crate::worker::interbus::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
 
@@ -59,13 +59,29 @@ fn program(change: &ProgramChange) -> Vec<ChangeWords> {
     change.cams.iter().map(of_cam).chain(mask).chain(shift).collect()
 }
 
+/// A profile that goes onto another type of encoder.
+pub fn other_type(types: OtherType) -> Text {
+    of_types("ib_review.other_type", types)
+}
+
+fn of_types(id: &'static str, types: OtherType) -> Text {
+    let name = |flags: Flags| match (flags.multiturn(), flags.steps_minus_one()) {
+        (true, false) => "ib_type.multiturn",
+        (false, false) => "ib_type.single_turn",
+        (true, true) => "ib_type.multiturn_less_one",
+        (false, true) => "ib_type.single_turn_less_one",
+    };
+    let [profile, device] = [types.profile, types.device].map(|flags| Text::new(name(flags)));
+    Text::new(id).with_text("profile", profile).with_text("device", device)
+}
+
 /// Why something cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
-        PlanError::OtherSteps { .. } => Text::new("ib_plan.other_steps"),
+        PlanError::OtherType(types) => of_types("ib_plan.other_type", *types),
         PlanError::Gear(GearError::Turns { turns }) => Text::new("ib_plan.turns").with("turns", turns),
         PlanError::Gear(GearError::Steps { steps, turns, most }) => {
             Text::new("ib_plan.steps").with("steps", steps).with("turns", turns).with("most", most)

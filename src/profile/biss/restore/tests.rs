@@ -132,7 +132,7 @@ fn another_kind_needs_a_permit_of_its_own() {
     let now = device(&profile("2"));
     let kind_refused = |profile: &BissProfile| {
         let (profile, device) = (Box::new(profile.identity.kind()), Box::new(now.identity.kind()));
-        Err(PlanError::OtherKind { profile, device })
+        Err(OtherType::Kind { profile, device }.into())
     };
     let number_refused = Err(PlanError::OtherDevice { profile: "1".to_owned(), device: "2".to_owned() });
     let mut other = wanted.clone();
@@ -182,6 +182,36 @@ fn another_encoder_keeps_its_mounting() {
     // On the encoder itself nothing is held back.
     assert_eq!(ops(&planned(&wanted, &device(&profile("1")))), all);
     assert_eq!(ops(&plan_data(&wanted, &now).unwrap()), all[..1]);
+}
+
+/// Issue 22.9: another device ID, or a position of another width, is another type, which needs a permit of its own; another
+/// serial number needs the other one beside it.
+#[test]
+fn another_type_needs_a_permit_of_its_own() {
+    let mut wanted = profile("1");
+    with_preset(&mut wanted, 5, 5);
+    let same = device(&profile("1"));
+    let (mut other_id, mut wider, mut unknown) = (same.clone(), same.clone(), same.clone());
+    other_id.identity.device_id = [9; 6];
+    wider.identity.multiturn_bits = Some(24);
+    unknown.identity.multiturn_bits = None;
+    for mut now in [other_id, wider] {
+        let device_only = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
+        for refused in [RestoreOptions::default(), device_only] {
+            let error = plan_restore(&wanted, &now, refused).unwrap_err();
+            assert!(matches!(error, PlanError::OtherType(_)), "{error}");
+        }
+        // The same number of another type is another encoder: it keeps its mounting.
+        let type_only = RestoreOptions { allow_other_type: true, ..RestoreOptions::default() };
+        let restore = plan_restore(&wanted, &now, type_only).unwrap();
+        assert_eq!((ops(&restore).len(), restore.mounting_left.len()), (0, 1));
+        now.identity.serial_number = "2".to_owned();
+        let error = plan_restore(&wanted, &now, type_only).unwrap_err();
+        assert!(matches!(error, PlanError::OtherDevice { .. }), "{error}");
+        assert!(plan_restore(&wanted, &now, RestoreOptions { allow_other_type: true, ..device_only }).is_ok());
+    }
+    // A width that one side does not know differs from nothing.
+    assert!(plan_restore(&wanted, &unknown, RestoreOptions::default()).is_ok());
 }
 
 #[test]

@@ -12,9 +12,9 @@ fn device() -> DeviceState {
 
 const NONE: RestoreOptions =
     RestoreOptions { allow_other_device: false, allow_other_type: false, with_mounting: false };
-const OTHER: RestoreOptions =
-    RestoreOptions { allow_other_device: true, allow_other_type: false, with_mounting: false };
-const ALL: RestoreOptions = RestoreOptions { allow_other_device: true, allow_other_type: false, with_mounting: true };
+const OTHER: RestoreOptions = RestoreOptions { allow_other_device: true, ..NONE };
+const TYPE: RestoreOptions = RestoreOptions { allow_other_type: true, ..NONE };
+const ALL: RestoreOptions = RestoreOptions { with_mounting: true, ..OTHER };
 
 fn written(restore: &Restore) -> Vec<u16> {
     let write = |op: &Op| match op {
@@ -65,24 +65,29 @@ fn another_device_or_drive_is_refused() {
     assert!(plan_restore(&by_hand, &device, NONE).is_ok());
 }
 
-/// The serial number is the same in all of these.
+/// Issue 22.9: the serial number is the same in all of these, so that the permit for another type is the one they need.
 #[test]
-fn another_kind_of_device_or_drive_is_refused() {
+fn another_type_of_device_or_drive_is_refused() {
     let mut device = device();
     device.identity.topology = Some(Topology::Adapter);
     device.image = image(&[1]).with(&image_of(&[(166, 100)]));
-    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
-    assert_eq!(error, PlanError::OtherKind { profile: Topology::Hub4, device: Topology::Adapter });
+    let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
+    assert_eq!(error, OtherType::Device { profile: Topology::Hub4, device: Topology::Adapter }.into());
     assert_eq!(error.to_string(), "the profile is of a HIPERDRIVE HUB-4, the device is a HIPERDRIVE SINGLE");
-    let restore = plan_restore(&profile(), &device, OTHER).unwrap();
+    let restore = plan_restore(&profile(), &device, TYPE).unwrap();
     assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13), "what is of a place that both have");
     device.identity = profile().identity;
     device.identity.drives[1].variant = Some(Variant::new(13));
-    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
+    let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
     let (profiles, devices) = (Variant::new(7), Variant::new(13));
-    assert_eq!(error, PlanError::OtherVariant { drive: drive(3), profile: profiles, device: devices });
+    assert_eq!(error, OtherType::Drive { drive: drive(3), profile: profiles, device: devices }.into());
     assert!(error.to_string().contains("7 (HDA30A)") && error.to_string().contains("13 (HDA70)"), "{error}");
-    assert!(plan_restore(&profile(), &device, OTHER).is_ok());
+    assert!(plan_restore(&profile(), &device, TYPE).is_ok());
+    // Another serial number as well needs both.
+    device.identity.drives[1].serial_number = "5000".to_owned();
+    let error = plan_restore(&profile(), &device, TYPE).unwrap_err();
+    assert!(matches!(error, PlanError::OtherDrive { .. }), "{error}");
+    assert!(plan_restore(&profile(), &device, RestoreOptions { allow_other_type: true, ..OTHER }).is_ok());
     let mut by_hand = profile();
     by_hand.identity = ProfileIdentity::default();
     assert!(plan_restore(&by_hand, &device, NONE).is_ok());

@@ -87,12 +87,33 @@ fn a_preset_that_is_left_has_to_fit() {
     assert!(plan_restore(&profile(MINE), &other, RestoreOptions { with_mounting: true, ..options }).is_ok());
 }
 
+/// Issue 22.9: an encoder that gives its steps less one, or that counts no turns, is of another type, which needs a permit of
+/// its own; another serial number needs the other one beside it.
 #[test]
-fn steps_that_count_otherwise_are_refused() {
-    let mut own = device(MINE, &[]);
-    own.identity.flags = Some(Flags::new(value(3)));
-    let refused = plan_restore(&profile(MINE), &own, RestoreOptions::default());
-    assert_eq!(refused, Err(PlanError::OtherSteps { profile: false }));
+fn another_type_needs_a_permit_of_its_own() {
+    let mut own = device(MINE, &[("preset", Number(7))]);
+    let (device_only, type_only) = (
+        RestoreOptions { allow_other_device: true, ..RestoreOptions::default() },
+        RestoreOptions { allow_other_type: true, ..RestoreOptions::default() },
+    );
+    for other in [0, 1, 3] {
+        own.identity.flags = Some(Flags::new(value(other)));
+        let types = OtherType { profile: Flags::new(value(2)), device: Flags::new(value(other)) };
+        for refused in [RestoreOptions::default(), device_only] {
+            assert_eq!(plan_restore(&profile(MINE), &own, refused), Err(types.into()));
+        }
+        // The same number of another type is another encoder: it keeps its mounting.
+        let restore = plan_restore(&profile(MINE), &own, type_only).unwrap();
+        assert_eq!(restore.mounting_left, [Item::Preset]);
+        let mut two = own.clone();
+        two.identity.serial_number = "7654321".to_owned();
+        assert!(matches!(plan_restore(&profile(MINE), &two, type_only), Err(PlanError::OtherDevice { .. })));
+        let both = RestoreOptions { allow_other_type: true, ..device_only };
+        assert!(plan_restore(&profile(MINE), &two, both).is_ok());
+    }
+    // Bits of which nothing is known make no type.
+    own.identity.flags = Some(Flags::new(value(6)));
+    assert!(plan_restore(&profile(MINE), &own, RestoreOptions::default()).is_ok());
     own.identity.flags = None;
     assert!(plan_restore(&profile(MINE), &own, RestoreOptions::default()).is_ok());
 }
