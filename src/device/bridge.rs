@@ -285,6 +285,7 @@ impl Adapter<'_, '_> {
         self.adapter.next_seq = seq.wrapping_add(1);
         let bytes = [before, &request.emit(seq).emit()].concat();
         let sent_at = self.line.now();
+        self.state.sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at).map_err(LineError::Link)?;
         let deadline = sent_at + REPEAT_AFTER + self.state.margin;
         let mut portion = Vec::new();
@@ -292,14 +293,23 @@ impl Adapter<'_, '_> {
             let broken = self.adapter.receiver.dropped();
             while let Some(packet) = self.adapter.receiver.next_packet() {
                 if let Some(reply) = self.judge(request, seq, &packet)? {
+                    self.state.answered();
+                    self.state.answer_began(self.line.now());
                     return Ok(Some(Answered { reply, sent_at, received_at: self.line.now() }));
                 }
             }
-            self.state.damaged += self.adapter.receiver.dropped() - broken;
+            let broken = self.adapter.receiver.dropped() - broken;
+            self.state.damaged += broken;
+            self.state.quality.damaged += broken;
+            if let Some(bytes) = self.adapter.receiver.take_broken() {
+                let now = self.line.now();
+                self.line.show(now, MaskedBytes::clear(&bytes));
+            }
             portion.clear();
             self.line.receive(deadline, &mut portion).map_err(LineError::Link)?;
             if portion.is_empty() {
                 self.state.damaged += 1;
+                self.state.quality.silent += 1;
                 return Ok(None);
             }
             self.adapter.has_spoken = true;

@@ -1,8 +1,9 @@
 //! What the frames of the trace say: a reply is read with the request before it, a register over the bus with the bank that
 //! was selected.
 
-use crate::app::Text;
-use crate::app::explain::{plain, traced as adapter};
+use crate::app::explain::{self, plain, traced as adapter};
+use crate::app::{Explained, Text, TraceFault};
+use crate::device::biss::Damage;
 use crate::link::{Direction, TraceEntry};
 use crate::protocol::biss::{ByteOrder, RegisterAddress};
 use crate::protocol::bridge;
@@ -14,24 +15,33 @@ pub(super) struct Meaning {
     /// Which byte of a register's number comes first, once it is known.
     pub(super) order: Option<ByteOrder>,
     asked: Option<Request>,
+    /// The last request went over the configuration pin.
+    is_pin: bool,
     bank: Option<u8>,
 }
 
 impl Meaning {
-    /// What a frame says, and nothing for bytes that are no frame.
-    pub(super) fn of(&mut self, entry: &TraceEntry) -> Vec<Text> {
-        let Some(bytes) = entry.bytes.to_bytes() else { return Vec::new() };
-        let ubicom = bytes.first() == Some(&SYNC);
+    /// What a frame says.
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
+        let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         let said = match entry.direction {
-            Direction::Sent if ubicom => self.request(&bytes),
-            Direction::Received if ubicom => self.reply(&bytes),
-            _ => self.packet(&bytes),
+            Direction::Sent if bytes.first() == Some(&SYNC) => self.request(&bytes),
+            Direction::Sent => {
+                self.is_pin = false;
+                self.packet(&bytes)
+            }
+            Direction::Received if self.is_pin => return self.reply(&bytes),
+            Direction::Received => match adapter::received(&bytes) {
+                Some(fault) => return fault,
+                None => self.packet(&bytes),
+            },
         };
-        said.into_iter().collect()
+        said.into_iter().collect::<Vec<_>>().into()
     }
 
     fn request(&mut self, bytes: &[u8]) -> Option<Text> {
         let frame = Frame::parse(bytes).ok()?;
+        self.is_pin = true;
         self.asked = Request::parse(&frame, self.order.unwrap_or(ByteOrder::LowFirst)).ok();
         let place = |register| RegisterAddress::from_global(register).map_or_else(String::new, |at| at.to_string());
         Some(match self.asked? {
@@ -41,16 +51,26 @@ impl Meaning {
         })
     }
 
-    fn reply(&mut self, bytes: &[u8]) -> Option<Text> {
-        let asked = self.asked.take()?;
-        let frame = Frame::parse(bytes).ok()?;
-        Some(match Reply::parse(&frame, asked.command()).ok()? {
+    /// What came over the configuration pin behind a request. The reply may still come behind what is broken.
+    fn reply(&mut self, bytes: &[u8]) -> Explained {
+        let broken = |damage| Explained::broken(explain::biss::damage(&damage));
+        let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
+        let Some(asked) = self.asked else { return Explained::default() };
+        let reply = match Reply::parse(&frame, asked.command()) {
+            Ok(reply) => reply,
+            Err(error) => return broken(Damage::Reply(error)),
+        };
+        self.asked = None;
+        let text = match reply {
             Reply::Value(value) => plain(format!("0x{value:02X}")),
             Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
-            Reply::Written(Written::Refused) => Text::new("trace.refused"),
+            Reply::Written(Written::Refused) => {
+                return Explained { meaning: vec![Text::new("trace.refused")], fault: Some(TraceFault::Reported) };
+            }
             Reply::Written(Written::Unknown(code)) => plain(format!("0x{code:02X}")),
             Reply::Position(word) => plain(format!("0x{:X}", word.word())),
-        })
+        };
+        vec![text].into()
     }
 
     fn packet(&mut self, bytes: &[u8]) -> Option<Text> {
@@ -88,4 +108,53 @@ impl Meaning {
 
 fn written(id: &'static str, address: String, value: u8) -> Text {
     Text::new(id).with("address", address).with("value", format!("0x{value:02X}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::bits::{MaskedBytes, parse_hex};
+    use crate::units::Moment;
+
+    fn said(meaning: &mut Meaning, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
+        let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
+        let said = meaning.of(&TraceEntry { at: Moment::START, direction, bytes });
+        let words: Vec<String> = said.meaning.iter().map(|text| text.words(Language::English)).collect();
+        (said.fault, words.join(" "))
+    }
+
+    /// Issue 22.11: frames of the configuration pin (reference UBICOM 6), broken by hand, have a meaning and a mark; the reply may
+    /// still come behind them.
+    #[test]
+    fn a_broken_reply_has_a_meaning_and_a_mark() {
+        let request = "80 01 01 02 00 26 00 55";
+        let cases = [
+            ("good", "80 01 01 01 00 4B 31", None, "0x4B"),
+            ("a bit flipped", "80 01 01 01 00 4A 31", Some(TraceFault::Broken), "7"),
+            ("cut short", "80 01 01", Some(TraceFault::Broken), "3"),
+            ("no frame", "55 55", Some(TraceFault::Broken), "2"),
+            ("the reply to a write", "80 01 02 01 00 90 EB", Some(TraceFault::Broken), ""),
+        ];
+        for (label, reply, fault, words) in cases {
+            let mut meaning = Meaning::default();
+            assert_eq!(said(&mut meaning, Direction::Sent, request).0, None);
+            let told = said(&mut meaning, Direction::Received, reply);
+            assert!(told.0 == fault && told.1.contains(words) && !told.1.is_empty(), "{label}: {told:?}");
+            if fault.is_some() {
+                let then = said(&mut meaning, Direction::Received, "80 01 01 01 00 4B 31");
+                assert_eq!(then, (None, "0x4B".to_owned()), "{label}");
+            }
+        }
+        let mut meaning = Meaning::default();
+        said(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
+        assert_eq!(said(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
+        // Behind an adapter: a packet whose checksum is wrong.
+        let sent = bridge::Request::Hello.emit(1).emit();
+        let mut broken = sent.clone();
+        broken[2] ^= 1;
+        let hex = |bytes: &[u8]| crate::bits::hex(bytes);
+        assert_eq!(said(&mut meaning, Direction::Sent, &hex(&sent)).0, None);
+        assert_eq!(said(&mut meaning, Direction::Received, &hex(&broken)).0, Some(TraceFault::Broken));
+    }
 }

@@ -10,7 +10,7 @@ mod tests;
 mod write;
 
 pub use check::{check, source, switch};
-pub use error::{device, out_of_range, range, wrong_length};
+pub use error::{damage, device, out_of_range, range, wrong_length};
 pub use motion::{LOST, ended, goal, lock, lost, phase, refusal, weight};
 pub use names::{ErrorWords, control_bit, error, parameter, state, status_bit, variant};
 pub use write::{change, item, op, other_type, plan, service, warning, written};

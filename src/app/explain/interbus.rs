@@ -6,6 +6,7 @@ mod item;
 mod write;
 
 pub use check::check;
+pub use gateway::{damage, exception};
 pub use item::{direction, parameter, read_out, startup};
 pub use write::{change, op, other_type, plan, wear, weight, written};
 

@@ -1,13 +1,26 @@
 //! What passes over the line to an adapter, in words, whatever bus is behind it.
 
 use super::plain;
-use crate::app::Text;
+use crate::app::{Explained, Text, TraceFault};
 use crate::protocol::bridge::{Message, Packet, Reply, Request};
 
 /// The packet in bytes as they pass over the line; `None`: they are none.
 pub fn packet(bytes: &[u8]) -> Option<Packet> {
     let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
     Packet::parse(stuffed).ok()
+}
+
+/// A packet that came from an adapter and is broken, or refuses; `None` for any other.
+pub fn received(bytes: &[u8]) -> Option<Explained> {
+    let Some(packet) = packet(bytes) else { return Some(Explained::broken(Text::new("trace.no_packet"))) };
+    match Message::parse(&packet) {
+        Ok(Message::Error { .. }) => {
+            let meaning = said(&packet).into_iter().collect();
+            Some(Explained { meaning, fault: Some(TraceFault::Reported) })
+        }
+        Ok(_) => None,
+        Err(error) => Some(Explained::broken(plain(error))),
+    }
 }
 
 /// What an adapter is asked, whatever is behind it.

@@ -292,6 +292,11 @@ impl<'a> Master<'a> {
     /// What is right about a broken line before the next try; `failed` when there is to be none.
     fn may_try_again(&mut self, tries: u32, trouble: Trouble, failed: Error) -> Result<(), Error> {
         self.station.noisy |= matches!(trouble, Trouble::Damage(_));
+        let quality = &mut self.station.line.quality;
+        match trouble {
+            Trouble::Silence { .. } => quality.silent += 1,
+            Trouble::Damage(_) | Trouble::NoFrame(_) => quality.damaged += 1,
+        }
         let longest = match self.station.way {
             Way::ConfigPin => self.longest_pin_exchange(),
             Way::Adapter => self.longest_bus_exchange(),

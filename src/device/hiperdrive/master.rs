@@ -291,6 +291,11 @@ impl<'a> Master<'a> {
                 }
                 Err(trouble) => trouble,
             };
+            match &trouble {
+                Trouble::Silence => self.station.line.quality.silent += 1,
+                Trouble::Damage(_) => self.station.line.quality.damaged += 1,
+                Trouble::Status(_) => {}
+            }
             let longest = within + self.station.line.margin;
             // What is refused for its session was answered at once.
             let took = if let Trouble::Status(_) = trouble { usual + self.station.line.margin } else { longest };
@@ -311,6 +316,12 @@ impl<'a> Master<'a> {
                 Trouble::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
             }
         }
+    }
+
+    /// Tells bytes that are no frame to whoever watches.
+    fn show_rest(&mut self) {
+        let (now, rest) = (self.line.now(), self.station.receiver.take_rest());
+        self.line.show(now, MaskedBytes::clear(&rest));
     }
 
     /// Sends a frame under a number of its own, and waits for the one that answers it.
@@ -342,6 +353,7 @@ impl<'a> Master<'a> {
                     }
                     Ok(None) => break,
                     Err(cause) => {
+                        self.show_rest();
                         self.line.wait_for_silence(&mut self.station.line, QUIET)?;
                         self.station.receiver = Receiver::default();
                         return Ok(Err(cause.into()));
@@ -351,6 +363,7 @@ impl<'a> Master<'a> {
             let now = self.line.now();
             if now >= deadline {
                 let bytes = self.station.receiver.pending();
+                self.show_rest();
                 self.station.receiver = Receiver::default();
                 return Ok(Err(if bytes == 0 { Trouble::Silence } else { Damage::Cut { bytes }.into() }));
             }

@@ -97,6 +97,11 @@ impl<'a> Gateway<'a> {
             };
             self.state.line.damaged += 1;
             match trouble {
+                Trouble::Silence => self.state.line.quality.silent += 1,
+                Trouble::Damage(_) => self.state.line.quality.damaged += 1,
+                Trouble::Exception(_) => {}
+            }
+            match trouble {
                 Trouble::Silence => {
                     if *self.state.silent || tries >= SILENCES {
                         *self.state.silent = true;
@@ -127,6 +132,7 @@ impl<'a> Gateway<'a> {
             return Ok(Err(Trouble::Damage(Damage::Registers)));
         };
         let sent_at = self.line.now();
+        self.state.line.sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
         let deadline = sent_at + self.place.timeout + self.state.line.margin;
         loop {
@@ -136,10 +142,17 @@ impl<'a> Gateway<'a> {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&frame));
                         if self.place.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
-                            return Ok(judge(&request, asked, frame));
+                            let judged = judge(&request, asked, frame);
+                            if !matches!(judged, Err(Trouble::Damage(_))) {
+                                self.state.line.answered();
+                                self.state.line.answer_began(now);
+                            }
+                            return Ok(judged);
                         }
                     }
-                    Some(Err(damage)) => {
+                    Some(Err((damage, bytes))) => {
+                        let now = self.line.now();
+                        self.line.show(now, MaskedBytes::clear(&bytes));
                         self.line.wait_for_silence(self.state.line, QUIET)?;
                         return Ok(Err(Trouble::Damage(damage)));
                     }
@@ -155,22 +168,12 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    /// The frame of a request.
     fn request(&self, asked: Asked, number: u16) -> Option<(ModbusRequest, Vec<u8>)> {
-        let mut request = ModbusRequest::new_tcp_udp(self.place.unit, number);
-        let mut bytes = Vec::new();
-        let made = match asked {
-            Asked::Input { register } => request.generate_get_inputs(register, 2, &mut bytes),
-            Asked::Output { register } => request.generate_get_holdings(register, 2, &mut bytes),
-            Asked::Write { register, word } => {
-                request.generate_set_holdings_bulk(register, &self.place.order.registers(word), &mut bytes)
-            }
-        };
-        made.ok().map(|()| (request, bytes))
+        request(asked, self.place.unit, number, self.place.order)
     }
 
     /// The next whole frame of what has come; an error where it is none, and all that has come is let go.
-    fn next_frame(&mut self) -> Option<Result<Vec<u8>, Damage>> {
+    fn next_frame(&mut self) -> Option<Result<Vec<u8>, (Damage, Vec<u8>)>> {
         let waiting = &mut *self.state.waiting;
         if waiting.len() < HEADER {
             return None;
@@ -181,9 +184,8 @@ impl<'a> Gateway<'a> {
                 (waiting.len() >= length).then(|| Ok(waiting.drain(..length).collect()))
             }
             _ => {
-                let bytes = waiting.len();
-                waiting.clear();
-                Some(Err(Damage::NoFrame { bytes }))
+                let bytes = std::mem::take(waiting);
+                Some(Err((Damage::NoFrame { bytes: bytes.len() }, bytes)))
             }
         }
     }
@@ -194,6 +196,59 @@ impl<'a> Gateway<'a> {
             _ => Err(Error::Damaged { asked, tries: 1, cause: Damage::Registers }),
         }
     }
+}
+
+/// The frame of a request.
+fn request(asked: Asked, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
+    let mut request = ModbusRequest::new_tcp_udp(unit, number);
+    let mut bytes = Vec::new();
+    let made = match asked {
+        Asked::Input { register } => request.generate_get_inputs(register, 2, &mut bytes),
+        Asked::Output { register } => request.generate_get_holdings(register, 2, &mut bytes),
+        Asked::Write { register, word } => {
+            request.generate_set_holdings_bulk(register, &order.registers(word), &mut bytes)
+        }
+    };
+    made.ok().map(|()| (request, bytes))
+}
+
+/// What is wrong with a frame that was received.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// It is no reply to what was asked.
+    Broken(Damage),
+    /// The gateway refuses.
+    Refused(Exception),
+}
+
+/// What is wrong with a frame of the trace that was received behind this request; `None` where it answers it, also under the
+/// number of an earlier one.
+pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
+    let broken = |damage| Some(Fault::Broken(damage));
+    let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
+    if received.len() < SHORTEST || length != Ok(received.len()) {
+        return broken(Damage::NoFrame { bytes: received.len() });
+    }
+    let (number, unit, asked) = asked(sent, order)?;
+    let (request, _) = request(asked, unit, number, order)?;
+    match judge(&request, asked, received.to_vec()) {
+        Err(Trouble::Damage(damage)) => broken(damage),
+        Err(Trouble::Exception(exception)) => Some(Fault::Refused(exception)),
+        Ok(_) | Err(Trouble::Silence) => None,
+    }
+}
+
+/// What a frame of the trace asked, with its number and its unit.
+fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Asked)> {
+    let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
+    let register = u16::from_be_bytes([high, low]);
+    let asked = match (function, carried(true, sent, order)) {
+        (4, _) => Asked::Input { register },
+        (3, _) => Asked::Output { register },
+        (_, Some(Carried::Out(word))) => Asked::Write { register, word },
+        _ => return None,
+    };
+    Some((u16::from_be_bytes([number_high, number_low]), unit, asked))
 }
 
 /// What a reply with the right number says.

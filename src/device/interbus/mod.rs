@@ -21,7 +21,7 @@ pub mod write;
 
 pub use data::ProcessData;
 pub use error::{Asked, Awaited, Damage, Error, Exception, Implausible};
-pub use gateway::{Carried, Gateway, carried};
+pub use gateway::{Carried, Fault, Gateway, carried, fault};
 pub use handshake::{Handshake, Says, Standing};
 pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, read_status, select, survey};
 pub use journal::{Excursion, Journal};

@@ -11,6 +11,8 @@ pub struct Receiver {
     /// The packet under way is too long to be one: its bytes are let go until it ends.
     overlong: bool,
     dropped: u64,
+    /// The broken packet that was dropped last, until it is taken.
+    broken: Option<Vec<u8>>,
 }
 
 impl Receiver {
@@ -37,15 +39,23 @@ impl Receiver {
                 Some(stuffed) if !self.overlong && end <= Packet::MAX_STUFFED => Some(Packet::parse(stuffed)),
                 _ => Some(Err(PacketError::Length(end))),
             };
-            self.bytes.drain(..=end);
+            let packet: Vec<u8> = self.bytes.drain(..=end).collect();
             (self.searched, self.overlong) = (0, false);
             match parsed {
                 Some(Ok(packet)) => return Some(packet),
-                Some(Err(_)) => self.dropped += 1,
+                Some(Err(_)) => {
+                    self.dropped += 1;
+                    self.broken = Some(packet);
+                }
                 // Nothing between two 00.
                 None => {}
             }
         }
+    }
+
+    /// Takes the bytes of the broken packet that was dropped last; `None` where none was since.
+    pub const fn take_broken(&mut self) -> Option<Vec<u8>> {
+        self.broken.take()
     }
 
     /// Broken packets so far.

@@ -8,6 +8,8 @@ use super::fields::PacketError;
 pub struct Receiver {
     bytes: Vec<u8>,
     broken: Option<PacketError>,
+    /// What was no frame, until it is taken.
+    rest: Vec<u8>,
 }
 
 impl Receiver {
@@ -29,8 +31,13 @@ impl Receiver {
         }
         self.take().inspect_err(|why| {
             self.broken = Some(*why);
-            self.bytes = Vec::new();
+            self.rest = std::mem::take(&mut self.bytes);
         })
+    }
+
+    /// Takes the bytes that were no frame, or that are none yet.
+    pub fn take_rest(&mut self) -> Vec<u8> {
+        std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }
 
     /// Bytes of a frame that is not whole. Where a connection ends with some, it was cut.

@@ -249,3 +249,18 @@ fn a_line_is_found_again_after_garbage() {
     assert_eq!(pin.master().read(at("0x66")), Ok(75));
     assert!(pin.clock.now().since(from) < Duration::from_secs(1));
 }
+
+/// Issue 22.11: replies that come broken are counted as damaged, and the trace has their bytes.
+#[test]
+fn broken_replies_are_counted_and_shown() {
+    let mut pin = Pin::new("");
+    // The temperature is 0026h over the pin (reference UBICOM 6).
+    pin.tap().broken_to = Some(vec![0x80, 1, 1, 2, 0, 0x26]);
+    let error = pin.master().read(at("0x66")).unwrap_err();
+    assert!(matches!(error, Error::Damaged { .. }), "{error}");
+    let quality = pin.station.line.quality.clone();
+    assert_eq!((quality.damaged, quality.retries), (5, 4));
+    // Before them the order of a number's bytes was asked for.
+    let shown = pin.shown(Direction::Received);
+    assert!(shown.len() == 6 && shown.iter().all(|own| !own.contains('*')), "{shown:?}");
+}

@@ -119,7 +119,8 @@ fn asked(asked: Asked) -> Text {
     }
 }
 
-fn damage(damage: &Damage) -> Text {
+/// What was wrong with a reply.
+pub fn damage(damage: &Damage) -> Text {
     match damage {
         Damage::Packet(why) => Text::new("hd_damage.packet").with("why", why),
         Damage::Value(why) => Text::new("hd_damage.value").with("why", why),

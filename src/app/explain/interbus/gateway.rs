@@ -18,7 +18,7 @@ pub(super) fn asked(asked: Asked) -> Text {
 }
 
 /// What is the matter, most likely, and what to do.
-pub(super) fn exception(exception: Exception) -> Text {
+pub fn exception(exception: Exception) -> Text {
     Text::new(match exception.code() {
         0x01 => "ib_exception.function",
         0x02 => "ib_exception.address",
@@ -33,7 +33,7 @@ pub(super) fn exception(exception: Exception) -> Text {
 }
 
 /// What was wrong with a reply.
-pub(super) fn damage(damage: Damage) -> Text {
+pub fn damage(damage: Damage) -> Text {
     match damage {
         Damage::NoFrame { bytes } => Text::new("ib_damage.no_frame").with("bytes", bytes),
         Damage::Unit { asked, got } => Text::new("ib_damage.unit").with("asked", asked).with("got", got),

@@ -30,7 +30,8 @@ struct Timed {
 struct Heard {
     receiver: Receiver,
     sent: Vec<u8>,
-    bytes: usize,
+    /// All that came, for the trace.
+    raw: Vec<u8>,
     echo_heard: bool,
     damage: Option<Damage>,
 }
@@ -100,7 +101,8 @@ impl Master<'_> {
         self.station.line.sent(sent_at);
         self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
         let deadline = sent_at + self.longest_pin_exchange();
-        let heard = Heard { receiver: Receiver::new(NODE), sent: frame, bytes: 0, echo_heard: false, damage: None };
+        let heard =
+            Heard { receiver: Receiver::new(NODE), sent: frame, raw: Vec::new(), echo_heard: false, damage: None };
         self.listen(request, heard, deadline)
     }
 
@@ -123,14 +125,14 @@ impl Master<'_> {
             if !portion.is_empty() {
                 last_at = self.now();
             }
-            heard.bytes += portion.len();
+            heard.raw.extend(&portion);
             heard.receiver.push(&portion);
             let next = if portion.is_empty() { Receiver::silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut heard.receiver) {
                 if let Some(reply) = self.judge(request, &frame, &mut heard) {
                     let at = last_at - self.characters(frame.len());
+                    self.understood(&heard, &frame, at);
                     self.line.show(at, MaskedBytes::clear(&frame));
-                    self.understood(&heard);
                     return Ok(Ok(Timed { reply, at }));
                 }
             }
@@ -154,23 +156,29 @@ impl Master<'_> {
         None
     }
 
-    fn understood(&mut self, heard: &Heard) {
+    fn understood(&mut self, heard: &Heard, reply: &[u8], at: Moment) {
         let state = &mut self.station.line;
         state.answered();
+        state.answer_began(at);
         state.echo.learn(heard.echo_heard);
         if heard.receiver.skipped() > 0 || heard.damage.is_some() {
             // This reply is right as far as its sum tells; the line is not.
             state.damaged += 1;
+            state.quality.damaged += 1;
             self.station.noisy = true;
+            let before = heard.raw.windows(reply.len()).position(|window| window == reply);
+            let before = heard.raw.get(..before.unwrap_or(heard.raw.len())).unwrap_or_default();
+            self.line.show(at, MaskedBytes::clear(before.strip_prefix(&*heard.sent).unwrap_or(before)));
         }
     }
 
     /// The time is up.
     fn give_up(&mut self, heard: Heard) -> Trouble {
+        let broken = heard.raw.strip_prefix(&*heard.sent).unwrap_or(&heard.raw);
         let echo = if heard.echo_heard { heard.sent.len() } else { 0 };
-        let bytes = heard.bytes.saturating_sub(echo);
+        let bytes = heard.raw.len().saturating_sub(echo);
         let now = self.now();
-        self.line.show(now, MaskedBytes::hidden(bytes));
+        self.line.show(now, MaskedBytes::clear(broken));
         match heard.damage {
             Some(damage) => Trouble::Damage(damage),
             None if bytes > 0 => Trouble::Damage(Damage::NoFrame { bytes }),
