@@ -17,7 +17,7 @@ use encoder_studio::worker::hiperdrive::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, open,
 };
 
-use super::support::{Bench, Foreign};
+use super::support::{Bench, Foreign, Ran};
 
 fn session(bench: &Bench, foreign: &Foreign, query: &str) -> Session<Hiperdrive> {
     let url = format!("{}{query}", foreign.url).parse().unwrap();
@@ -352,4 +352,30 @@ fn a_session_that_goes_stops_what_it_has_opened() {
         log.extend(foreign.requests());
         log.last().is_some_and(|line| line == "LOST")
     });
+}
+
+/// Issue 22.19: what was done in vain is no success: a fault that stays after it was acknowledged, and drives that the presence
+/// test does not find again.
+#[test]
+fn an_action_whose_result_is_bad_fails() {
+    let bench = Bench::new();
+    let act = |target: &Foreign, action: &str| {
+        bench.run(&["do", "hiperdrive", action, "--yes", "--link", &target.url, "--json"])
+    };
+    let fails = |ran: &Ran, words: &[&str]| {
+        assert_eq!(ran.status, Some(1), "{ran:?}");
+        ran.says(words);
+    };
+    // 2AB8: a fault (reference 3); its drive is led by nobody, so that it stays.
+    let Some(faulty) = bench.target(&["--status=2AB8"]) else { return };
+    fails(&act(&faulty, "acknowledge"), &["drive 1", "still there"]);
+    let Some(hub) = bench.target(&["--topology=hub4", "--drives=1,3", "--gone-after-reset=3"]) else { return };
+    fails(&act(&hub, "presence-test"), &["Drive 3", "not there any more"]);
+    let Some(alone) = bench.target(&["--gone-after-reset=1"]) else { return };
+    fails(&act(&alone, "presence-test"), &["found no drive"]);
+    let Some(good) = bench.target(&["--topology=hub4", "--drives=1,3"]) else { return };
+    let told = act(&good, "presence-test").json();
+    let places: Vec<_> = told["results"].as_array().unwrap().iter().filter_map(|own| own["number"].as_u64()).collect();
+    assert_eq!(places, [1, 3], "{told}");
+    act(&good, "acknowledge").json();
 }

@@ -182,6 +182,18 @@ fn the_default_is_experimental() {
     assert_eq!(written(&encoder)[..1], ["W 0E000000"]);
 }
 
+/// Issue 22.19: an encoder that sends an error word after it was led back has not recovered.
+#[test]
+fn leading_back_fails_where_the_encoder_sends_an_error() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.gateway(&["--lost"]) else { return };
+    let ran = ask(&bench, &encoder, &["do", "interbus", "lead-back"]);
+    assert_eq!(ran.status, Some(1), "{ran:?}");
+    assert!(ran.out.contains("0x86000000") && ran.err.contains("0x86000000"), "{ran:?}");
+    let Some(encoder) = bench.gateway(&[]) else { return };
+    assert_eq!(ask(&bench, &encoder, &["do", "interbus", "lead-back"]).json()["done"], json!("lead-back"));
+}
+
 /// Issue 22.9: a profile of a multiturn encoder, for one that counts no turns: named, and refused without a permit of its own.
 #[test]
 fn an_encoder_of_another_type_needs_a_permit_of_its_own() {

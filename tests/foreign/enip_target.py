@@ -58,6 +58,7 @@ class Station:
         for drive in self.plugged:
             self.values.update({number + 100 * (drive - 1): row[1] for number, row in DRIVE.items()})
             self.values[107 + 100 * (drive - 1)] = options.position
+            self.values[105 + 100 * (drive - 1)] = options.status
         self.busy_until = 0.0
         self.network = {3: struct.pack("<I", 2), 5: struct.pack("<IIIIIH", 0xC0A80107, 0xFFFFFF00, 0, 0, 0, 0)}
         self.acknowledged = {}
@@ -144,6 +145,7 @@ class Station:
             self.note("STORE")
         if value == -4:
             self.note("RESET")
+            self.plugged = [drive for drive in self.plugged if drive != self.options.gone_after_reset]
         self.busy_until = time.monotonic() + self.options.busy / 1000
 
     def obey(self, drive, word, target):
@@ -399,6 +401,8 @@ def arguments():
     add("--lengths", type=lengths, default={}, help="NUMBER:BYTES,… of what is read with another length than the manual's")
     add("--slow", type=slow, default={}, help="NUMBER:VALUE:MS,… of what is answered late when it is set, as 47:-4:8000")
     add("--refuse", type=refusals, default={}, help="NUMBER:STATUS,… of what is not read")
+    add("--status", type=lambda text: int(text, 16), default=0x2A30, help="the status word of each drive until it is controlled")
+    add("--gone-after-reset", type=int, help="the place whose drive no reset finds again")
     add("--busy", type=int, default=60, help="milliseconds for which parameter 47 is not 0")
     add("--owned", action="store_true", help="another master has the cyclic connection")
     add("--multicast-only", action="store_true")

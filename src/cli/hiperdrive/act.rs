@@ -1,5 +1,7 @@
 //! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
 
+use serde_json::{Value as Json, json};
+
 use super::plan::{commit, operations, prepare, said};
 use super::run::{Runner, drive};
 use crate::app::{Text, explain};
@@ -11,8 +13,9 @@ use crate::cli::output::Output;
 use crate::cli::profiles::show_done;
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Failure, Result};
+use crate::device::hiperdrive::DriveIdentity;
 use crate::profile::hiperdrive::Service;
-use crate::protocol::hiperdrive::KIND;
+use crate::protocol::hiperdrive::{DriveNumber, KIND};
 use crate::worker::hiperdrive::{Change, HiperdriveJob, HiperdriveOutput};
 
 const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
@@ -54,7 +57,9 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let prepared = prepare(&mut runner, output, change)?;
     let operations = operations(&prepared.plan);
     let said = said(&prepared.plan);
+    let before: Vec<DriveNumber> = prepared.identity.drives.iter().map(|own| own.number).collect();
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
+    let found = if act.action == Action::PresenceTest { drives(&mut runner)? } else { Vec::new() };
     match act.action {
         Action::Factory if !act.all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
         Action::Acknowledge if operations.is_empty() => {
@@ -62,7 +67,49 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         }
         _ => {}
     }
-    show_done(output, &action_name(act.action), &operations, &spent, &[], &said)
+    let results: Vec<Json> = found.iter().map(result).collect();
+    let told: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
+    let done = show_done(output, &action_name(act.action), &operations, &spent, &results, &format!("{said}{told}"))?;
+    // What was done may have been in vain.
+    match act.action {
+        Action::PresenceTest => present(&before, &found)?,
+        Action::Acknowledge if !operations.is_empty() => {
+            let again = prepare(&mut runner, output, Change::Do(Service::Acknowledge(drive(&act.of))))?;
+            if !again.plan.is_empty() {
+                return Err(failed(&Text::new("hd_cli.still_faulty").with("drive", drive(&act.of).get())));
+            }
+        }
+        _ => {}
+    }
+    Ok(done)
+}
+
+/// The drives that are plugged in.
+fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
+    match runner.run(HiperdriveJob::Identify)? {
+        HiperdriveOutput::Identity(identity) => Ok(identity.drives),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn result(drive: &DriveIdentity) -> Json {
+    json!({
+        "number": drive.number.get(),
+        "variant": drive.variant.number(),
+        "name": drive.name,
+        "serial_number": drive.serial_number,
+    })
+}
+
+/// That the presence test has found a drive, and each that was there before it.
+fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
+    if found.is_empty() {
+        return Err(failed(&Text::new("hd_cli.no_drives")));
+    }
+    match before.iter().find(|number| found.iter().all(|own| own.number != **number)) {
+        Some(gone) => Err(failed(&Text::new("hd_cli.drive_gone").with("drive", gone.get()))),
+        None => Ok(()),
+    }
 }
 
 fn set_position(act: &Do, text: &str) -> Result<Change> {

@@ -73,15 +73,14 @@ fn lead_back(common: &Common, output: &Output) -> Result {
         other => return Err(unexpected(&other)),
     };
     let (is, word) = (explain::interbus::startup(now).terminal(), format!("0x{:08X}", reading.word));
-    let text = match reading.reply() {
-        Reply::Error(error) => {
-            let why = explain::interbus::refusal(error).terminal();
-            format!("the encoder is in mode {is}, and sends {word}: {why}\n")
-        }
-        _ => format!("the encoder runs, in mode {is}\n"),
+    let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
+    let Reply::Error(error) = reading.reply() else {
+        output.show(&json, &format!("the encoder runs, in mode {is}\n"))?;
+        return Ok(Done::Well);
     };
-    output.show(&json!({"done": "lead-back", "mode": mode(now), "word": word}), &text)?;
-    Ok(Done::Well)
+    output.show(&json, &format!("the encoder is in mode {is}\n"))?;
+    let why = explain::interbus::refusal(error).terminal();
+    Err(Failure::Failed(vec![format!("The encoder was led back and sends {word}: {why}")]))
 }
 
 fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
