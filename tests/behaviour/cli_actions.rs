@@ -152,3 +152,53 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
     let line = bench.run(&["position", "hiperface", "--link", &url, "--json"]).json();
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
 }
+
+/// Issue 22.12: a restore onto another encoder creates data fields; restoring its before-image deletes them again, but leaves and
+/// names one that was changed meanwhile, and what stands before it.
+#[test]
+fn undoing_a_restore_deletes_what_it_created_and_no_more() {
+    let bench = Bench::new();
+    let bytes = |byte: &str| byte.repeat(16);
+    let fields = format!(
+        r#"[{{"status":"C8","bytes":"{}"}},{{"status":"C8","bytes":"{}"}},{{"status":"C8","bytes":"{}"}}]"#,
+        bytes("11"),
+        bytes("22"),
+        bytes("33")
+    );
+    let Some(source) = bench.encoder(&["--serial", "XX0000001", "--fields", &fields]) else { return };
+    let file = bench.file("source.ron");
+    assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
+    for changed in [false, true] {
+        let own = format!(r#"[{{"status":"C8","bytes":"{}"}}]"#, bytes("AA"));
+        let Some(target) = bench.encoder(&["--serial", "XX0000002", "--fields", &own]) else { return };
+        let at = ["--link", &target.url, "--json"];
+        let copy = ["--copy", "field:0", "--copy", "field:1", "--copy", "field:2"];
+        let restore = [&["restore", &file, "--yes", "--allow-other-device"], &copy[..], &at].concat();
+        let told = bench.run(&restore).json();
+        let backup = told["backup"].as_str().unwrap().to_owned();
+        assert_eq!(
+            target.host(&["40 4E"]),
+            [frame("40 4E 6D 03")],
+            "two fields of one block were created, 109 of 112 are free"
+        );
+        if changed {
+            target.host(&["40 4B 01 00 01 55 77"]);
+        }
+        target.requests();
+        let undo = bench.run(&[&["restore", &backup, "--yes"], &at[..]].concat());
+        assert_eq!(undo.status, Some(0), "{undo:?}");
+        let deleted = |number: u8| frame(&format!("40 4D 0{number} 48 55"));
+        let defined: Vec<String> = target.writes().into_iter().filter(|frame| frame.starts_with("40 4D")).collect();
+        if changed {
+            // The last one is as it was written; the one before it is not.
+            assert_eq!(defined, [deleted(2)], "{undo:?}");
+            assert!(undo.err.contains("data field 1"), "{undo:?}");
+            assert_eq!(target.host(&["40 4A 01 00 01 55"]), [frame("40 4A 01 00 01 77")]);
+        } else {
+            assert_eq!(defined, [deleted(2), deleted(1)], "{undo:?}");
+            assert!(!undo.err.contains("data field"), "{undo:?}");
+        }
+        // What was there before it has its bytes again.
+        assert_eq!(target.host(&["40 4A 00 00 01 55"]), [frame("40 4A 00 00 01 AA")]);
+    }
+}
