@@ -5,7 +5,9 @@ use std::path::Path;
 
 use super::args::Consenting;
 use super::output::{Output, say};
+use super::runner::{Ended, Runs};
 use super::{Failure, Result};
+use crate::worker::{self, NotBegun};
 
 /// Without a terminal nobody can be asked: refused before anything is opened.
 pub(super) fn require_consent(consent: &Consenting) -> Result<()> {
@@ -32,6 +34,16 @@ pub(super) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result
         return Ok(());
     }
     Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]))
+}
+
+/// Refuses a write into a worn device, or one whose write cycles are not known, before anybody is asked for consent to it.
+pub(super) fn check_wear<D>(consent: &Consenting, seen: Option<u64>, cost: u64, limit: u64) -> Result<()>
+where
+    D: Runs,
+    D::Error: From<NotBegun>,
+{
+    worker::check_wear(seen, cost, limit, consent.force_wear)
+        .map_err(|refused| Ended::<D>::Job(Box::new(refused.into())).into_failure())
 }
 
 /// A file that is to be written may stand there already: on a terminal that is asked, before any device is. Without one it is

@@ -122,7 +122,7 @@ pub(super) fn commit<W: Write, P, K>(
     if terms.items.is_empty() {
         return Ok(Committed { written: W::Written::default(), backup: None, logbook_warning: None });
     }
-    check_wear(terms)?;
+    check_wear(terms.seen, terms.cost, terms.limit, terms.force_wear)?;
     let confirmed = write.confirm().map_err(JobError::Device)?;
     let intended = Intended::note(store, terms, &write.before_image()).map_err(NotBegun::NotKept)?;
     if let (Err(why), false) = (&intended.entry, terms.force_wear || terms.cost == 0) {
@@ -180,9 +180,12 @@ pub(super) fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     }
 }
 
-fn check_wear(terms: &Terms) -> Result<(), NotBegun> {
-    let Terms { cost, limit, force_wear, .. } = *terms;
-    match terms.seen {
+/// Whether a write may begin that costs so many write cycles, as far as these are known.
+///
+/// # Errors
+/// [`NotBegun::WearUnknown`], [`NotBegun::Worn`].
+pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bool) -> Result<(), NotBegun> {
+    match seen {
         _ if force_wear => Ok(()),
         None if cost > 0 => Err(NotBegun::WearUnknown { cost }),
         Some(seen) if seen.saturating_add(cost) > limit => Err(NotBegun::Worn { seen, cost, limit }),

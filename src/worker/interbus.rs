@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 pub use job::{
     Change, ChangeKind, Commit, Committed, Doing, InterbusJob, InterbusOutput, JobError, Prepared, Remark, WEAR_ASK,
-    WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key,
+    WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key, wear_limit,
 };
 pub use open::{check, open};
 

@@ -30,7 +30,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
-pub use commit::{Committed, NotBegun, is_uncounted};
+pub use commit::{Committed, NotBegun, check_wear, is_uncounted};
 pub use interruption::{Interruption, JobError};
 pub use live::Stopper;
 pub use open::OpenError;

@@ -139,3 +139,25 @@ fn save_replaces_a_file_on_a_terminal_only_when_told_to() {
     assert_eq!(asked(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
 }
+
+/// Issue 22.4: where the logbook cannot tell the write cycles, a write is refused before anybody is asked for consent
+/// to it, for every kind of device.
+#[test]
+fn a_write_that_is_refused_for_unknown_wear_is_not_asked_for() {
+    if python("master.py").is_none() {
+        return;
+    }
+    let bench = Bench::new();
+    bench.write("data", "a file where the folder should be");
+    let writes: [&[&str]; 4] = [
+        &["write", "hiperface", "address", "0x41"],
+        &["write", "biss", "0x24:0x00", "1"],
+        &["write", "interbus", "preset", "5"],
+        &["write", "hiperdrive", "24", "5"],
+    ];
+    for write in writes {
+        let ran = asked(&bench, &[write, &["--link", "sim:"]].concat(), "y\n");
+        assert_eq!(ran.status, Some(1), "{ran:?}");
+        assert!(ran.out.contains("--force-wear") && !ran.out.contains("Write?"), "{ran:?}");
+    }
+}

@@ -10,7 +10,7 @@ use crate::app::explain;
 use crate::bits::hex_compact;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::agree;
+use crate::cli::consent::{agree, check_wear};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, Shown, Spent, Step, warn};
 use crate::cli::runner::unexpected;
@@ -19,7 +19,7 @@ use crate::device::biss::write::Written;
 use crate::profile::biss::{BissPlan, Op, PresetParts, RegisterRange};
 use crate::profile::{Consent, Operation as _};
 use crate::protocol::biss::PresetValue;
-use crate::worker::biss::{Attendance, BissJob, BissOutput, Change, Commit, Prepared, WEAR_LIMIT};
+use crate::worker::biss::{Attendance, Biss, BissJob, BissOutput, Change, Commit, Prepared, WEAR_LIMIT};
 
 /// Manual 6.4.
 pub(super) const CALIBRATION: &str =
@@ -45,6 +45,7 @@ pub(super) fn commit(
     if prepared.plan.is_empty() {
         return Ok((Spent::default(), Vec::new()));
     }
+    check_wear::<Biss>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT)?;
     if let Some(wear) = explain::biss::wear(&prepared) {
         output.remark(&wear.terminal());
     }

@@ -6,13 +6,13 @@ use super::run::Runner;
 use crate::app::{Text, explain};
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::agree;
+use crate::cli::consent::{agree, check_wear};
 use crate::cli::output::{Lines, Output};
 use crate::cli::plan::{self, Shown, Spent};
 use crate::cli::runner::unexpected;
 use crate::profile::hiperdrive::{HiperdrivePlan, Op, Service, warnings};
 use crate::profile::{Consent, Operation as _};
-use crate::worker::hiperdrive::{Change, Commit, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
+use crate::worker::hiperdrive::{Change, Commit, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
 
 /// Makes a plan for a change; nothing is written. What it brings along is told.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
@@ -43,6 +43,8 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     if prepared.plan.is_empty() {
         return Ok(Spent::default());
     }
+    // The manual names no limit.
+    check_wear::<Hiperdrive>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), u64::MAX)?;
     if let Some(saves) = prepared.wear() {
         output.remark(&format!(
             "{saves} saves have been counted here with this one: the manual names no limit, and from {WEAR_WARNING} on an \

@@ -5,7 +5,7 @@ use serde_json::{Value as Json, json};
 use crate::app::explain;
 use crate::bits::{hex_compact, parse_hex};
 use crate::cli::args::{Common, Consenting, Write};
-use crate::cli::consent::{agree, require_consent};
+use crate::cli::consent::{agree, check_wear, require_consent};
 use crate::cli::hiperface::run::Runner;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
@@ -16,7 +16,7 @@ use crate::cli::{Failure, Result};
 use crate::profile::Consent;
 use crate::profile::hiperface::{HiperfacePlan, Item, Op};
 use crate::protocol::hiperface::{DataFieldStatus, DeviceAddress, LineSettings};
-use crate::worker::hiperface::{Change, Commit, HiperfaceJob, HiperfaceOutput, Prepared};
+use crate::worker::hiperface::{Change, Commit, Hiperface, HiperfaceJob, HiperfaceOutput, Prepared, WEAR_LIMIT};
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let item = super::item(&write.item)?;
@@ -108,6 +108,7 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     if prepared.plan.is_empty() {
         return Ok(Spent::default());
     }
+    check_wear::<Hiperface>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT)?;
     agree(output, consent, &plan_text(&prepared))?;
     let granted = Consent::to(prepared.plan.id());
     let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };

@@ -6,16 +6,15 @@ use super::run::Runner;
 use crate::app::{Text, explain};
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::agree;
+use crate::cli::consent::{agree, check_wear};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, Shown, Spent, Step};
-use crate::cli::runner::{Ended, unexpected};
+use crate::cli::runner::unexpected;
 use crate::profile::interbus::{InterbusPlan, Op, programs_needed};
 use crate::profile::{Consent, Operation as _};
 use crate::protocol::interbus::{Parameter, ProgramNumber};
-use crate::worker::NotBegun;
 use crate::worker::interbus::{
-    Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, WEAR_LIMIT, Wear,
+    Change, Commit, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear, wear_limit,
 };
 
 /// Makes a plan for a change; nothing is written.
@@ -47,15 +46,8 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     if prepared.plan.is_empty() {
         return Ok(Spent::default());
     }
-    let wear = prepared.wear();
-    if let (Some(Wear::Worn(_) | Wear::Unknown), false) = (wear, consent.force_wear) {
-        let cost = prepared.plan.write_cycles();
-        let refused = match prepared.cycles_seen {
-            Some(seen) => NotBegun::Worn { seen, cost, limit: WEAR_LIMIT },
-            None => NotBegun::WearUnknown { cost },
-        };
-        return Err(Ended::<Interbus>::Job(Box::new(JobError::NotBegun(refused))).into_failure());
-    }
+    let (wear, cost) = (prepared.wear(), prepared.plan.write_cycles());
+    check_wear::<Interbus>(consent, prepared.cycles_seen, cost, wear_limit(cost))?;
     let said = explain::interbus::wear(&prepared).map(|text| text.terminal());
     if let Some(said) = &said {
         output.remark(said);

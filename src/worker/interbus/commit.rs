@@ -1,6 +1,6 @@
 //! What an INTERBUS encoder brings to a write.
 
-use super::{Commit, Committed, Doing, Interbus, JobError, Prepared, Remark, Told, WEAR_LIMIT, device_key};
+use super::{Commit, Committed, Doing, Interbus, JobError, Prepared, Remark, Told, device_key, wear_limit};
 use crate::device::interbus::write::{Confirmed, Interrupted, Written, carry_out, confirm};
 use crate::device::interbus::{Error, Master};
 use crate::profile::Body;
@@ -18,8 +18,7 @@ pub(super) fn commit(
     let plan = &prepared.plan;
     let store = desk.store.clone();
     let device = device_key(&prepared.identity, desk.is_virtual);
-    // At the limit it is worn, not only beyond it; what stores nothing wears nothing.
-    let limit = if plan.write_cycles() == 0 { u64::MAX } else { WEAR_LIMIT - 1 };
+    let limit = wear_limit(plan.write_cycles());
     let terms = Terms::of(device, plan, Op::note, (prepared.cycles_seen, limit), commit.force_wear);
     let tell = std::cell::RefCell::new(tell);
     let master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));

@@ -21,6 +21,12 @@ pub const WEAR_LAST: u64 = 500;
 /// Stores at which the EEPROM counts as worn.
 pub const WEAR_LIMIT: u64 = 450;
 
+/// The stores after a plan from which on it is refused, unless it is forced: at the limit the EEPROM is worn, not only beyond
+/// it, and what stores nothing wears nothing.
+pub const fn wear_limit(cost: u64) -> u64 {
+    if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
+}
+
 /// What a session with an INTERBUS encoder does. All but the first and [`Position`](Self::Position) replaces the position
 /// for a moment and makes cam outputs invalid; what is read of a cam program selects it. The encoder does afterwards what it
 /// did before, unless it is sent into another mode.
