@@ -228,12 +228,14 @@ pub(super) struct Line<'a> {
     /// How long one goes on asking without an answer, where that is not the usual.
     pub(super) patience: Option<Duration>,
     shielded: bool,
+    /// What was let pass, where that is kept.
+    passed: Option<Vec<u8>>,
 }
 
 impl<'a> Line<'a> {
     /// The line of a job.
     pub(super) fn new(ctx: Ctx<'a>) -> Self {
-        Line { ctx, patience: None, shielded: false }
+        Line { ctx, patience: None, shielded: false, passed: None }
     }
 
     /// Now.
@@ -305,6 +307,7 @@ impl<'a> Line<'a> {
                 return Ok(());
             }
             self.show_hidden(self.now(), stray.len());
+            self.pass(&stray);
             stray.clear();
             self.wait_for_silence(state, quiet)?;
         }
@@ -331,6 +334,23 @@ impl<'a> Line<'a> {
     /// The wire.
     pub(super) fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         self.ctx.wire.receive(until, into)
+    }
+
+    /// From now on keeps what comes too late or behind a reply, until it is taken.
+    pub(super) fn keep_passed(&mut self) {
+        self.passed = Some(Vec::new());
+    }
+
+    /// Takes what came too late or behind a reply since it is kept, and keeps no more of it.
+    pub(super) fn take_passed(&mut self) -> Vec<u8> {
+        self.passed.take().unwrap_or_default()
+    }
+
+    /// Lets bytes pass that are no reply to what was asked.
+    pub(super) fn pass(&mut self, bytes: &[u8]) {
+        if let Some(passed) = &mut self.passed {
+            passed.extend(bytes);
+        }
     }
 
     /// Tells bytes that were received to whoever watches.
@@ -378,6 +398,7 @@ impl<'a> Line<'a> {
             self.ctx.wire.receive(slice, &mut late)?;
         }
         self.show_hidden(self.now(), late.len());
+        self.pass(&late);
         self.let_late_ones_pass(state, quiet)
     }
 
@@ -394,6 +415,7 @@ impl<'a> Line<'a> {
         while self.now() < passed {
             self.ctx.wire.receive(passed, &mut late)?;
         }
+        self.pass(&late);
         self.wait_for_silence(state, quiet)?;
         state.allow_for(lateness);
         Ok(())
@@ -413,6 +435,7 @@ impl<'a> Line<'a> {
                 state.quiet_until = self.now();
                 return Ok(());
             }
+            self.pass(&stray);
             if self.now() > give_up {
                 return Err(LineError::NeverSilent);
             }

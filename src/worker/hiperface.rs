@@ -162,7 +162,8 @@ impl Device for Hiperface {
     }
 
     fn take_remark(&mut self) -> Option<Remark> {
-        Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes)
+        let codes = Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes);
+        codes.or_else(|| self.unheard())
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
@@ -171,6 +172,9 @@ impl Device for Hiperface {
 
     /// What went wrong on the line since it was told last.
     fn idle(&mut self, _desk: &mut Desk) -> Option<Remark> {
+        if let Some(unheard) = self.unheard() {
+            return Some(unheard);
+        }
         let line = &self.station.line;
         // What ends in a failure is told by that.
         if line.is_troubled() || line.quality.troubles() == self.told_troubles {
@@ -182,6 +186,10 @@ impl Device for Hiperface {
 }
 
 impl Hiperface {
+    fn unheard(&mut self) -> Option<Remark> {
+        Some(self.station.take_codes_unheard()).filter(|count| *count > 0).map(Remark::CodesUnheard)
+    }
+
     fn carry_out(
         &mut self,
         desk: &mut Desk,

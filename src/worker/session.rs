@@ -92,7 +92,7 @@ impl<D: Device> Session<D> {
             Tell::Progress(progress) => tell(Event::Progress(id, progress)),
             Tell::Remark(remark) => tell(Event::Remark(remark)),
         });
-        if let Some(remark) = self.take_remark() {
+        while let Some(remark) = self.take_remark() {
             tell(Event::Remark(remark));
         }
         match result {

@@ -148,7 +148,7 @@ impl<D: Device> Bench<D> {
             Err(error) if D::is_cancelled(&error) => return false,
             Err(error) => {
                 self.live.poll_failed(wish);
-                if let Some(remark) = self.session.take_remark() {
+                while let Some(remark) = self.session.take_remark() {
                     self.outbox.send(Event::Remark(remark));
                 }
                 self.outbox.send(Event::PollFailed(Box::new(error)));

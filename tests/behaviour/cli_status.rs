@@ -47,6 +47,21 @@ fn status_reads_the_whole_queue_and_ends_well_whatever_it_reports() {
     assert_eq!(told, json!({"ok": true, "errors": [], "warnings": []}));
 }
 
+/// Issue 22.10: 50h takes a code out of the encoder: its reply that comes ten times as late as it may (17.6 ms, reference 4) is taken all the
+/// same, so that no code is lost by asking again.
+#[test]
+fn codes_in_late_replies_are_not_lost() {
+    let bench = Bench::new();
+    for milliseconds in [120, 180, 250, 400] {
+        let late = format!("{milliseconds}:10");
+        let Some(encoder) = bench.encoder(&["--status", "1E080120", "--late-status", &late]) else { return };
+        let ran = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]);
+        let told = ran.json();
+        assert_eq!(numbers(&told["errors"]), [0x01, 0x20], "{milliseconds} ms: {ran:?}");
+        assert_eq!(numbers(&told["warnings"]), [0x1E, 0x08], "{milliseconds} ms: {ran:?}");
+    }
+}
+
 #[test]
 fn warnings_alone_are_ok() {
     let bench = Bench::new();

@@ -18,6 +18,7 @@ import argparse
 import json
 import random
 import sys
+import threading
 import time
 
 sys.dont_write_bytecode = True  # the tests leave nothing behind
@@ -26,6 +27,7 @@ from device import BLOCK, Died, Encoder  # noqa: E402
 from terminal import END, Terminal  # noqa: E402
 
 SILENCE = 0.006  # seconds that end a frame
+READ_STATUS = 0x50
 
 
 class Line:
@@ -35,6 +37,7 @@ class Line:
         self.encoder, self.options = encoder, options
         self.terminal = Terminal(options.stdin_eof)
         self.dead = False
+        self.late_replies = 0
         self.random = random.Random(options.seed)
 
     def run(self):
@@ -70,7 +73,11 @@ class Line:
             self.dead, reply = True, None
         if self.options.state:
             self.encoder.save(self.options.state)
-        if reply:
+        late, times = self.options.late_status
+        if reply and frame[1] == READ_STATUS and self.late_replies < times:
+            self.late_replies += 1
+            threading.Timer(late, self.terminal.write, [reply]).start()
+        elif reply:
             time.sleep(self.options.delay)
             self.terminal.write(reply)
 
@@ -78,6 +85,10 @@ class Line:
 def parse_options():
     def byte(text):
         return int(text, 16)
+
+    def late(text):
+        milliseconds, times = text.split(":")
+        return int(milliseconds) / 1000, int(times)
 
     def channel(text):
         number, value = text.split("=")
@@ -96,6 +107,8 @@ def parse_options():
     add("--die-in-store", type=int, metavar="N",
         help="write only half of the Nth store, then be silent until the client closes and opens the line")
     add("--delay", type=float, default=0.003, help="seconds to process a request")
+    add("--late-status", type=late, default=(0.0, 0), metavar="MS:N",
+        help="the first N replies to 50h come so late; what comes meanwhile is answered")
     add("--address", type=byte, default=0x40)
     add("--settings", type=byte, default=0xE4)
     add("--type", type=byte, default=0x37)

@@ -4,8 +4,9 @@
 use std::time::Duration;
 
 use encoder_studio::link::Clock;
-use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DeviceAddress};
-use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
+use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DeviceAddress, StatusCode};
+use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, Remark};
+use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
 
@@ -145,4 +146,31 @@ fn a_silent_encoder_is_given_up_within_ten_seconds() {
             assert!(desk.tap().sent.len() <= 5);
         }
     }
+}
+
+/// Issue 22.10: 50h takes a code out of the encoder: whatever reply is lost, each code is given back or counted as one that may be lost.
+#[test]
+fn no_status_code_is_lost_without_a_word() {
+    let queue = [StatusCode::TEMPERATURE, StatusCode::TOO_FAST, StatusCode::COUNTER_OVERFLOW];
+    let mut counted = 0;
+    for lost in 0..8 {
+        let mut desk = Desk::new("");
+        desk.run(HiperfaceJob::Identify).unwrap();
+        queue.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().report(*code));
+        let already = desk.tap().sent.len();
+        desk.tap().swallow_reply = Some(already + lost);
+        let (mut codes, mut unheard) = (Vec::new(), 0);
+        let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| match event {
+            Event::Remark(Remark::Codes(own)) => codes.extend(own),
+            Event::Remark(Remark::CodesUnheard(count)) => unheard += count,
+            _ => {}
+        });
+        let Event::Finished(_, output) = end else { panic!("{lost}: {end:?}") };
+        let HiperfaceOutput::Status(own) = *output else { panic!("{lost}") };
+        codes.extend(own);
+        let missing = queue.iter().filter(|code| !codes.contains(code)).count();
+        assert!(missing <= unheard as usize, "reply {lost}: {codes:?}, {unheard} counted");
+        counted += unheard;
+    }
+    assert!(counted > 0, "50h was among them");
 }

@@ -242,7 +242,7 @@ impl Search {
                 Event::Lost(error) => self.end = Some(explain::link(&error)),
                 Event::Started(_)
                 | Event::Progress(..)
-                | Event::Remark(Remark::Codes(_) | Remark::Line(_))
+                | Event::Remark(Remark::Codes(_) | Remark::CodesUnheard(_) | Remark::Line(_))
                 | Event::PollFailed(_) => {}
             }
         }

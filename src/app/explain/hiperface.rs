@@ -163,6 +163,11 @@ pub fn created_left(fields: &[u8]) -> Option<Text> {
     (!fields.is_empty()).then(|| Text::new("review.created_left").with("fields", numbers.join(", ")))
 }
 
+/// So many status codes may have been lost on the way.
+pub fn codes_unheard(count: u32) -> Text {
+    Text::new("status.unheard").with("count", count)
+}
+
 /// A profile that goes onto another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     let OtherType { profile, device } = types;

@@ -195,6 +195,10 @@ impl OnLine for Encoder {
     fn remarked(&mut self, remark: Remark, services: &mut Services) {
         match remark {
             Remark::Codes(codes) => self.announced(codes, services),
+            Remark::CodesUnheard(count) => {
+                let text = explain::hiperface::codes_unheard(count);
+                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            }
             Remark::Line(quality) => self.line_quality = quality,
             Remark::Found(_) => {}
         }

@@ -37,6 +37,9 @@ impl Runs for Hiperface {
 
     /// Every code that the encoder announced, on a line of its own.
     fn say(remark: &Remark) {
+        if let Remark::CodesUnheard(count) = remark {
+            say(&format!("{}\n", explain::hiperface::codes_unheard(*count).terminal()));
+        }
         for code in codes(remark) {
             let kind = if code.is_warning() { "warning" } else { "error" };
             say(&format!("encoder {kind}: {code}\n"));
@@ -60,6 +63,6 @@ pub(super) fn codes_met(runner: &Runner) -> Vec<StatusCode> {
 fn codes(remark: &Remark) -> &[StatusCode] {
     match remark {
         Remark::Codes(codes) => codes,
-        Remark::Found(_) | Remark::Line(_) => &[],
+        Remark::CodesUnheard(_) | Remark::Found(_) | Remark::Line(_) => &[],
     }
 }

@@ -3,6 +3,7 @@
 //!
 //! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
 
+mod codes;
 mod exchange;
 
 use std::time::Duration;
@@ -14,9 +15,6 @@ use crate::link::Ctx;
 use crate::protocol::hiperface::{Answer, Command, Reply, Request};
 use crate::units::Moment;
 pub(super) use exchange::{Answered, Trouble};
-
-/// Most codes an encoder queues is four; the fifth reading finds the queue empty.
-const MOST_CODES: u32 = 5;
 
 /// The host's side of a HIPERFACE line.
 pub struct Master<'a> {
@@ -230,27 +228,5 @@ impl<'a> Master<'a> {
             return Ok(());
         }
         self.shielded(|master| master.settle(request, answered)).map(drop)
-    }
-
-    /// Reads the whole queue into the station: 50h until the error bit is gone.
-    pub(super) fn collect_codes(&mut self) -> Result<(), Error> {
-        for _ in 0..MOST_CODES {
-            let mut tries = 0;
-            let answered = loop {
-                tries += 1;
-                match self.attempt(&Request::ReadStatus)? {
-                    Ok(answered) => break answered,
-                    Err(trouble) => self.may_try_again(&Request::ReadStatus, tries, trouble)?,
-                }
-            };
-            let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = answered.answer;
-            if let Answer::Reply { reply: Reply::Status(codes), .. } = answered.answer {
-                self.station.meet_codes(codes);
-            }
-            if !pending {
-                break;
-            }
-        }
-        Ok(())
     }
 }

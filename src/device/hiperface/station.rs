@@ -56,6 +56,8 @@ pub struct Station {
     pub codes_met: Vec<StatusCode>,
     /// The same codes, for the logbook: 50h takes them out of the encoder, so that they are nowhere else.
     codes_read: Vec<StatusCode>,
+    /// Replies to 50h that did not come or were damaged: each may have been a status code.
+    pub(super) codes_unheard: u32,
     /// What is read is to be kept: it has to come twice, on a line that seems good as well.
     pub(super) thorough: bool,
     /// Most bytes to read at once: halved when the line damages long replies, doubled when it does not.
@@ -74,6 +76,7 @@ impl Station {
             geometry: None,
             codes_met: Vec::new(),
             codes_read: Vec::new(),
+            codes_unheard: 0,
             thorough: false,
             chunk: MAX_TRANSFER,
         }
@@ -130,6 +133,11 @@ impl Station {
     /// Takes what is to be written into the logbook, before any of it is shown.
     pub fn take_codes_read(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
+    }
+
+    /// Takes how many status codes may have been lost since the last time: replies to 50h that did not come, or were damaged.
+    pub fn take_codes_unheard(&mut self) -> u32 {
+        std::mem::take(&mut self.codes_unheard)
     }
 
     /// Takes the status codes met since the last time.

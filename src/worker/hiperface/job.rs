@@ -253,6 +253,8 @@ pub struct SavedProfile {
 pub enum Remark {
     /// Status codes that replies announced.
     Codes(Vec<StatusCode>),
+    /// So many status codes may have been lost: 50h takes them out of the encoder, and its reply was lost or damaged.
+    CodesUnheard(u32),
     /// An encoder that answered while one searched.
     Found(Found),
     /// Something had to be repeated, or came too late.

@@ -114,7 +114,7 @@ impl Master<'_> {
             }
         }
         let begun = self.without_echo(&line, frame).is_some_and(|reply| !reply.is_empty());
-        let more = self.hear_the_dead_time(&mut line)?;
+        let more = self.hear_the_dead_time(&mut line, frame)?;
         let intrusion = match (begun, more) {
             (_, false) => None,
             (true, true) => Some(Damage::Trailing),
@@ -128,14 +128,15 @@ impl Master<'_> {
     }
 
     /// The dead time, listening. True when something came that belongs to no reply.
-    fn hear_the_dead_time(&mut self, line: &mut Vec<u8>) -> Result<bool, Error> {
+    fn hear_the_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
         let before = line.len();
         let quiet_until = self.now() + self.dead_time();
         self.line.receive(quiet_until, line)?;
         self.station.line.quiet_until = quiet_until;
         let trailing = line.len() > before;
         if trailing {
-            let quiet = self.quiet();
+            let (quiet, echo) = (self.quiet(), self.station.line.echo);
+            self.line.pass(echo.strip(line, frame.bytes()).unwrap_or_default());
             self.line.wait_for_silence(&mut self.station.line, quiet)?;
         }
         Ok(trailing)
