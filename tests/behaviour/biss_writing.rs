@@ -5,7 +5,7 @@ use jiff::Timestamp;
 use serde_json::{Value, json};
 
 use super::biss_profile::PROFILE;
-use super::support::{Bench, Foreign, Ran};
+use super::support::{Bench, Foreign, Ran, asked};
 
 /// What the profile says of bank 24h and 25h, and its preset value of 270°.
 const AS_PROFILE: &str = r#"{"0x24:0x00": "000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F202122232425262728292A2B2C2D2E2F303132333435363738393A3B3C3D3E3F", "0x25:0x00": "A1B2C3"}"#;
@@ -364,4 +364,21 @@ fn an_encoder_that_was_left_in_a_mode_is_led_back() {
         assert_eq!(ask(&bench, encoder, &["read", "biss", "0x6A+2"]).json()["value"], json!("0000"));
         assert_eq!(ask(&bench, encoder, &["do", "biss", "lead-back"]).json()["mode"], json!(0), "again");
     }
+}
+
+/// Issue 22.15: leading back discards what somebody has entered and not saved: on a terminal that is asked, unless --yes answers
+/// it. Nothing is stored by it, so that a script needs no --yes.
+#[test]
+fn on_a_terminal_leading_back_is_asked_for() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.kit(&[]) else { return };
+    let lead_back = ["do", "biss", "lead-back", "--link", &encoder.url];
+    for no in ["n\n", "\n"] {
+        let ran = asked(&bench, &lead_back, no);
+        assert!(ran.status == Some(1) && ran.out.contains("not saved") && ran.out.contains("left as it is"), "{ran:?}");
+    }
+    assert_eq!(encoder.requests(), [""; 0]);
+    assert_eq!(asked(&bench, &lead_back, "y\n").status, Some(0));
+    assert_eq!(asked(&bench, &[&lead_back[..], &["--yes"]].concat(), "").status, Some(0));
+    assert_eq!(bench.run(&lead_back).status, Some(0));
 }

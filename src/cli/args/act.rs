@@ -82,7 +82,7 @@ pub(in crate::cli) enum Action {
     Preset,
     // Two kinds of device have it.
     #[value(
-        help = "biss: back to operation and the password cleared, after a procedure was cut off; interbus: out of a parameterisation that was left, to run"
+        help = "biss: back to operation and the password cleared, after a procedure was cut off; values that were entered and not saved are lost, which a terminal asks for (--yes); interbus: out of a parameterisation that was left, to run"
     )]
     LeadBack,
     /// interbus: back to what was delivered; experimental, since only the manual's appendix has it.

@@ -11,7 +11,7 @@ use super::run::{Runner, registers};
 use crate::app::{Text, explain};
 use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
 use crate::cli::check;
-use crate::cli::consent::{answer, can_ask, require_consent};
+use crate::cli::consent::{answer, ask, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::profiles::{load_to_write, show_done};
@@ -33,7 +33,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.action, words.as_slice()) {
         (Action::Check, []) => check_device(common, output),
-        (Action::LeadBack, []) => lead_back(common, output),
+        (Action::LeadBack, []) => lead_back(common, output, act),
         (Action::Calibrate, []) => {
             guided(common, output, act, MountingRun { calibrate: true, ..MountingRun::default() })
         }
@@ -70,7 +70,12 @@ fn check_device(common: &Common, output: &Output) -> Result {
     }
 }
 
-fn lead_back(common: &Common, output: &Output) -> Result {
+fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
+    // Nothing is stored by it, so that it needs no consent without a terminal; somebody who sits there may have entered
+    // what it discards.
+    if !act.consent.yes && can_ask() && !ask("Values that were entered and not saved will be lost. Lead back? [y/N] ") {
+        return Err(Failure::Failed(vec!["Not confirmed; the encoder is left as it is.".to_owned()]));
+    }
     match Runner::open(common)?.run(BissJob::LeadBack)? {
         BissOutput::LedBack(mode) => {
             let text = format!("in operation, password cleared; it was in mode {mode}\n");
