@@ -1,6 +1,6 @@
 //! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
 
-use super::parameters::{Parameters, without_entry};
+use super::parameters::{LEAVE_SUPPLY, Parameters, without_entry};
 use super::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::app::Text;
 use crate::device::biss::{Echo, PARAMETERS, Way};
@@ -53,6 +53,8 @@ pub struct BissForm {
     pub echo: Echo,
     /// The clock on the bus in hertz.
     pub clock: String,
+    /// The adapter leaves the encoder's supply on at the end.
+    pub leave_supply: bool,
     /// Bits of turns of an encoder that does not tell its frame.
     pub turns: String,
     /// Bits of steps of such an encoder.
@@ -88,6 +90,7 @@ impl Default for BissForm {
             order: None,
             echo: Echo::Unknown,
             clock: none(),
+            leave_supply: false,
             turns: none(),
             steps: none(),
             crc: none(),
@@ -136,6 +139,10 @@ impl BissForm {
 
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
+        if name == LEAVE_SUPPLY.0 {
+            self.leave_supply = value == LEAVE_SUPPLY.1;
+            return self.leave_supply;
+        }
         let is_virtual = self.way == BissWay::Virtual;
         let entry = match name {
             "mt" => &mut self.turns,
@@ -218,6 +225,9 @@ impl BissForm {
         }
         if self.is_on_the_bus() {
             parameters.entry("clock", &self.clock);
+            if self.leave_supply {
+                parameters.set(LEAVE_SUPPLY.0, LEAVE_SUPPLY.1);
+            }
         } else {
             if filled(&self.baud).is_some_and(|baud| baud != FORMAT.baud.to_string()) {
                 parameters.entry("baud", &self.baud);
@@ -273,6 +283,10 @@ mod tests {
             "tcp:[::1]:4001",
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:adapter:5000",
+            // Issue 22.16: another choice than the check box stays in the link.
+            "bridge:/dev/ttyACM0?leave-supply=on",
+            "bridge:tcp:adapter:5000?clock=2000000&leave-supply=on",
+            "bridge:/dev/ttyACM0?leave-supply=off",
             // Issue 22.20.
             "bridge:/dev/ttyACM0?mt=12&st=19&crc=0x43",
             "serial:/dev/ttyUSB0?st=14&crc=none",
@@ -296,7 +310,7 @@ mod tests {
         };
         let to_pin: fn(&mut BissForm) = |form| (form.way, form.port) = (BissWay::Pin, "COM3".to_owned());
         assert_eq!(other("sim:?bridge=on&noise=0.1&temperature=80&rpm=5&margin=7", to_pin), "serial:COM3?margin=7");
-        assert_eq!(other("bridge:COM3?clock=2000000&voltage=5", to_pin), "serial:COM3");
+        assert_eq!(other("bridge:COM3?clock=2000000&voltage=5&leave-supply=on", to_pin), "serial:COM3");
         assert_eq!(other("serial:COM3?timeout=50&order=low-first", |form| form.way = BissWay::Bus), "bridge:COM3");
         assert_eq!(other("sim:?bridge=on&noise=0.1&rpm=5", |form| form.behind_adapter = false), "sim:?rpm=5");
     }

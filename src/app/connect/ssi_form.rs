@@ -1,6 +1,6 @@
 //! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
 
-use super::parameters::{Parameters, without_entry};
+use super::parameters::{LEAVE_SUPPLY, Parameters, without_entry};
 use super::target::{adapter_in_network, checked, entered, parted, to_adapter};
 use crate::app::Text;
 use crate::device::ssi::PARAMETERS;
@@ -38,6 +38,8 @@ pub struct SsiForm {
     pub file: String,
     /// Volts that the adapter supplies the encoder with; empty: none.
     pub voltage: String,
+    /// The adapter leaves the encoder's supply on at the end.
+    pub leave_supply: bool,
     /// Milliseconds that a reply may come later than usual.
     pub margin: String,
     /// The frame that the virtual encoder sends: a family with its settings.
@@ -82,6 +84,10 @@ impl SsiForm {
     /// Fills in the entry of a parameter; false where there is none.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == SsiWay::Virtual;
+        if name == LEAVE_SUPPLY.0 {
+            self.leave_supply = value == LEAVE_SUPPLY.1;
+            return self.leave_supply;
+        }
         let entry = match name {
             "margin" => &mut self.margin,
             "voltage" => &mut self.voltage,
@@ -120,6 +126,9 @@ impl SsiForm {
             parameters.entry("fault", &self.fault);
         }
         parameters.decimal("voltage", &self.voltage);
+        if self.leave_supply {
+            parameters.set(LEAVE_SUPPLY.0, LEAVE_SUPPLY.1);
+        }
         parameters.entry("margin", &self.margin);
         // What only a virtual encoder has is not taken along.
         let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !is_of_the_virtual(name);
@@ -146,6 +155,9 @@ mod tests {
             "sim:?ssi=ahm36,code=gray&rpm=-60&fault=drop:0.01&clock=1000000",
             "bridge:/dev/ttyACM0",
             "bridge:/dev/ttyACM0?voltage=24&margin=200",
+            // Issue 22.16: another choice than the check box stays in the link.
+            "bridge:/dev/ttyACM0?voltage=24&leave-supply=on",
+            "bridge:/dev/ttyACM0?voltage=24&leave-supply=off",
             "bridge:tcp:adapter:5000?clock=1500000&pause=30",
             "replay:monday.trace",
         ];

@@ -15,6 +15,8 @@ pub enum SupplyAfter {
 impl SupplyAfter {
     /// The link parameter that chooses it.
     pub const PARAMETER: &str = "leave-supply";
+    /// The word for a supply that stays on.
+    pub const LEFT_ON: &str = "on";
     /// What the parameter takes.
     pub const ALLOWED: &str = "as-found, on or off";
 
@@ -22,7 +24,7 @@ impl SupplyAfter {
     pub fn read(word: &str) -> Option<Self> {
         match word {
             "as-found" => Some(SupplyAfter::AsFound),
-            "on" => Some(SupplyAfter::On),
+            Self::LEFT_ON => Some(SupplyAfter::On),
             "off" => Some(SupplyAfter::Off),
             _ => None,
         }

@@ -316,6 +316,12 @@ fn margin(ui: &mut Ui, skin: &Skin, margin: &mut String) {
     });
 }
 
+/// Whether the adapter leaves the encoder's supply on at the end.
+fn leave_supply(ui: &mut Ui, skin: &Skin, leave_on: &mut bool) {
+    ui.checkbox(leave_on, skin.say("connect.leave_supply"));
+    paragraph(ui, skin.caption(skin.say("connect.leave_supply_words")));
+}
+
 /// The link as the command line takes it: it follows the form, and the form follows it.
 fn link_ui(ui: &mut Ui, skin: &Skin, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example());

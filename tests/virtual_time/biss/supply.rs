@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use encoder_studio::device::biss::write::Left;
 use encoder_studio::device::bridge::SupplyAfter::{AsFound, Off, On};
+use encoder_studio::units::SupplyVoltage;
 use encoder_studio::worker::biss::{BissJob, JobError};
 
 use super::hands::{Hands, data};
@@ -27,6 +28,20 @@ fn the_supply_goes_off_unless_it_was_on_or_is_to_stay_on() {
         bench.session.leave();
         assert_eq!(has_power(&bench), left, "{found} {after:?}");
     }
+}
+
+/// Issue 22.16: the same for signals that are streamed: what was switched on for them goes off, and what was on before stays on.
+#[test]
+fn streamed_signals_leave_the_supply_as_it_was() {
+    let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
+    let mut bench = Bench::supplied(On);
+    assert!(bench.stream_signals(Some(volts)) && !has_power(&bench));
+    assert!(!bench.stream_signals(None) && !has_power(&bench));
+    bench.run(BissJob::Status).unwrap();
+    bench.session.leave();
+    assert!(has_power(&bench));
+    assert!(bench.stream_signals(Some(volts)) && has_power(&bench), "it was on before");
+    assert!(bench.stream_signals(None) && has_power(&bench));
 }
 
 /// A session that never asked anything, or whose supply is no matter of the link, switches nothing.

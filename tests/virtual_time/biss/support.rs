@@ -6,7 +6,7 @@ use std::time::Duration;
 pub(crate) use encoder_studio::device::biss::Way;
 use encoder_studio::device::biss::procedure::News;
 use encoder_studio::device::biss::{Master, Station, Supply};
-use encoder_studio::device::bridge::SupplyAfter;
+use encoder_studio::device::bridge::{SupplyAfter, Tap as Stream, Wanted};
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
 use encoder_studio::protocol::biss::{Descriptions, RegisterAddress};
 use encoder_studio::protocol::bridge::{Operation, Receiver};
@@ -15,7 +15,7 @@ use encoder_studio::sim::Motor;
 use encoder_studio::sim::biss::{Config, Encoder, Port};
 use encoder_studio::sim::bridge::{self, Adapter};
 use encoder_studio::store::Store;
-use encoder_studio::units::Moment;
+use encoder_studio::units::{Moment, SupplyVoltage};
 use encoder_studio::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError};
 use encoder_studio::worker::{Event, JobId, Progress, Session};
 
@@ -204,6 +204,20 @@ impl Bench {
         let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs("supply=switched")).unwrap());
         let folder = Arc::new(folder());
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
+    }
+
+    /// Streams sine and cosine over the adapter, as the Signals tab does; whether the encoder had power meanwhile.
+    pub(crate) fn stream_signals(&self, supply: Option<SupplyVoltage>) -> bool {
+        let End::Bus(adapter) = &self.end else { panic!("no adapter") };
+        let mut link = TestLink::new(adapter.clone(), self.clock.clone(), Arc::default());
+        let (cancel, mut trace, mut tap) = (Cancel::default(), Trace::default(), Stream::new(MARGIN));
+        let clock = &*self.clock;
+        let ctx = Ctx { wire: &mut link as _, clock, cancel: &cancel, trace: &mut trace };
+        tap.begin(ctx, Wanted::Analog { sample_hz: 10_000 }, supply).unwrap();
+        let has_power = self.encoder(|encoder, _| encoder.has_power());
+        let ctx = Ctx { wire: &mut link as _, clock, cancel: &cancel, trace: &mut trace };
+        tap.end(ctx).unwrap();
+        has_power
     }
 
     /// As [`reconnected`](Self::reconnected), with the supply switched on again and left like this.

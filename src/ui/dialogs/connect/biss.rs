@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{Dialog, echo, margin, network, parity, recording, segments, serial, unfolded};
+use super::{Dialog, echo, leave_supply, margin, network, parity, recording, segments, serial, unfolded};
 use crate::app::Action;
 use crate::app::connect::{BissForm, BissWay};
 use crate::protocol::biss::ByteOrder;
@@ -84,6 +84,9 @@ pub(super) fn form_ui(
             }
         });
         paragraph(ui, skin.caption(skin.say("connect.biss_frame_words")));
+        if form.is_on_the_bus() {
+            leave_supply(ui, skin, &mut form.leave_supply);
+        }
         margin(ui, skin, &mut form.margin);
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use super::{Dialog, margin, network, recording, segments, serial, unfolded};
+use super::{Dialog, leave_supply, margin, network, recording, segments, serial, unfolded};
 use crate::app::Action;
 use crate::app::connect::{SsiForm, SsiWay};
 use crate::ui::Skin;
@@ -46,6 +46,7 @@ pub(super) fn form_ui(
             ui.label(skin.label("V"));
         });
         paragraph(ui, skin.caption(skin.say("connect.voltage_words")));
+        leave_supply(ui, skin, &mut form.leave_supply);
         margin(ui, skin, &mut form.margin);
     }
 }
