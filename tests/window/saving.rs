@@ -13,6 +13,7 @@ use encoder_studio::app::ssi::{Action as Ssi, Edit as SsiEdit};
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, SessionId, Severity, Studio};
 use encoder_studio::profile::Changed;
 use encoder_studio::protocol::interbus::ProgramNumber;
+use encoder_studio::protocol::ssi::{Code, Range};
 
 use crate::support::Desk;
 
@@ -324,6 +325,33 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
             assert_eq!(says(&path), theirs.replace(from, to), "{crashes}");
         }
     }
+}
+
+/// Issue 22.27: what was edited earlier and makes no layout with what a colleague has changed meanwhile is left out, and that is
+/// said.
+#[test]
+fn edits_that_fit_no_more_are_left_out_and_told() {
+    let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
+    let theirs = text.replace("multiturn: 12, singleturn: 12", "steps: 3600");
+    let mut desk = Desk::fresh("");
+    let path = desk.outside.path("own.ron");
+    fs::write(&path, text).unwrap();
+    let is_open = |studio: &Studio| studio.shown().is_some_and(|own| *own.phase() == Phase::Offline);
+    desk.studio.begin(None, Some(path.clone()));
+    desk.until("it is open", is_open);
+    desk.settle();
+    let id = desk.studio.shown().unwrap().id();
+    let range = Range::Bits { multiturn: 12, singleturn: 11 };
+    desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Position(range, Code::Binary)))));
+    assert!(desk.studio.shown().unwrap().is_dirty());
+    until_kept(&mut desk);
+    let mut desk = desk.crash();
+    fs::write(&path, &theirs).unwrap();
+    desk.studio.begin(None, Some(path.clone()));
+    let problem = |studio: &Studio| studio.ssi().and_then(|own| own.designer.problem()).map(|own| own.id());
+    desk.until("it is told", |studio| problem(studio) == Some("ssi.draft_unfit"));
+    assert!(is_open(&desk.studio) && !desk.studio.shown().unwrap().is_dirty());
+    assert_eq!(says(&path), theirs);
 }
 
 /// Issue 22.27: a draft of an earlier version, which held the layout as a whole, still opens.
