@@ -1,7 +1,5 @@
 //! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
 
-use serde_json::{Value as Json, json};
-
 use super::plan::{commit, operations, prepare, said};
 use super::run::{Runner, drive};
 use crate::app::{Text, explain};
@@ -67,9 +65,8 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         }
         _ => {}
     }
-    let results: Vec<Json> = found.iter().map(result).collect();
     let told: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
-    let done = show_done(output, &action_name(act.action), &operations, &spent, &results, &format!("{said}{told}"))?;
+    let done = show_done(output, &action_name(act.action), &operations, &spent, &[], &format!("{said}{told}"))?;
     // What was done may have been in vain.
     match act.action {
         Action::PresenceTest => present(&before, &found)?,
@@ -90,15 +87,6 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
         HiperdriveOutput::Identity(identity) => Ok(identity.drives),
         other => Err(unexpected(&other)),
     }
-}
-
-fn result(drive: &DriveIdentity) -> Json {
-    json!({
-        "number": drive.number.get(),
-        "variant": drive.variant.number(),
-        "name": drive.name,
-        "serial_number": drive.serial_number,
-    })
 }
 
 /// That the presence test has found a drive, and each that was there before it.
