@@ -70,6 +70,9 @@ enum Trouble {
     Exception(Exception),
 }
 
+/// A whole frame, or bytes that are none.
+type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
+
 impl<'a> Gateway<'a> {
     /// The gateway of a station, and what is known of the encoder behind it.
     pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut Known) {
@@ -173,7 +176,7 @@ impl<'a> Gateway<'a> {
     }
 
     /// The next whole frame of what has come; an error where it is none, and all that has come is let go.
-    fn next_frame(&mut self) -> Option<Result<Vec<u8>, (Damage, Vec<u8>)>> {
+    fn next_frame(&mut self) -> Option<Whole> {
         let waiting = &mut *self.state.waiting;
         if waiting.len() < HEADER {
             return None;
