@@ -1,9 +1,10 @@
 //! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
 
-use super::parameters::{LEAVE_SUPPLY, Parameters, without_entry};
+use super::parameters::{Parameters, without_entry};
 use super::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::app::Text;
 use crate::device::biss::{Echo, PARAMETERS, Way};
+use crate::device::bridge::SupplyAfter;
 use crate::link::{LinkUrl, Scheme};
 use crate::protocol::biss::ByteOrder;
 use crate::protocol::ubicom::FORMAT;
@@ -139,8 +140,8 @@ impl BissForm {
 
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        if name == LEAVE_SUPPLY.0 {
-            self.leave_supply = value == LEAVE_SUPPLY.1;
+        if name == SupplyAfter::LEFT_ON.0 {
+            self.leave_supply = value == SupplyAfter::LEFT_ON.1;
             return self.leave_supply;
         }
         let is_virtual = self.way == BissWay::Virtual;
@@ -226,7 +227,7 @@ impl BissForm {
         if self.is_on_the_bus() {
             parameters.entry("clock", &self.clock);
             if self.leave_supply {
-                parameters.set(LEAVE_SUPPLY.0, LEAVE_SUPPLY.1);
+                parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
             }
         } else {
             if filled(&self.baud).is_some_and(|baud| baud != FORMAT.baud.to_string()) {

@@ -2,11 +2,7 @@
 
 use super::target::{filled, other};
 use crate::app::{Text, explain};
-use crate::device::bridge::SupplyAfter;
 use crate::link::{LinkUrl, Query, Scheme};
-
-/// What a link has where the adapter leaves the encoder's supply on.
-pub(super) const LEAVE_SUPPLY: (&str, &str) = (SupplyAfter::PARAMETER, SupplyAfter::LEFT_ON);
 
 /// A parameter of a link and its value.
 pub(super) type Pair = (String, String);

@@ -1,8 +1,9 @@
 //! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
 
-use super::parameters::{LEAVE_SUPPLY, Parameters, without_entry};
+use super::parameters::{Parameters, without_entry};
 use super::target::{adapter_in_network, checked, entered, parted, to_adapter};
 use crate::app::Text;
+use crate::device::bridge::SupplyAfter;
 use crate::device::ssi::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
 use crate::sim::{biss, bridge};
@@ -84,8 +85,8 @@ impl SsiForm {
     /// Fills in the entry of a parameter; false where there is none.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == SsiWay::Virtual;
-        if name == LEAVE_SUPPLY.0 {
-            self.leave_supply = value == LEAVE_SUPPLY.1;
+        if name == SupplyAfter::LEFT_ON.0 {
+            self.leave_supply = value == SupplyAfter::LEFT_ON.1;
             return self.leave_supply;
         }
         let entry = match name {
@@ -127,7 +128,7 @@ impl SsiForm {
         }
         parameters.decimal("voltage", &self.voltage);
         if self.leave_supply {
-            parameters.set(LEAVE_SUPPLY.0, LEAVE_SUPPLY.1);
+            parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
         }
         parameters.entry("margin", &self.margin);
         // What only a virtual encoder has is not taken along.

@@ -3,12 +3,14 @@
 mod check;
 mod damage;
 mod guide;
+mod plan;
 mod write;
 
 pub use check::check;
 pub use damage::damage;
 pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
-pub use write::{change, failure, op, other_type, plan, preset, wear, weight, written};
+pub use plan::{other_type, plan};
+pub use write::{change, failure, op, preset, wear, weight, written};
 
 use super::{adapter, link, not_begun, store};
 use crate::app::Text;

@@ -15,8 +15,8 @@ pub enum SupplyAfter {
 impl SupplyAfter {
     /// The link parameter that chooses it.
     pub const PARAMETER: &str = "leave-supply";
-    /// The word for a supply that stays on.
-    pub const LEFT_ON: &str = "on";
+    /// The parameter of a link whose session leaves the supply on, with its value.
+    pub const LEFT_ON: (&str, &str) = (Self::PARAMETER, "on");
     /// What the parameter takes.
     pub const ALLOWED: &str = "as-found, on or off";
 
@@ -24,7 +24,7 @@ impl SupplyAfter {
     pub fn read(word: &str) -> Option<Self> {
         match word {
             "as-found" => Some(SupplyAfter::AsFound),
-            Self::LEFT_ON => Some(SupplyAfter::On),
+            "on" => Some(SupplyAfter::On),
             "off" => Some(SupplyAfter::Off),
             _ => None,
         }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::encoder;
 use super::guide::{blocker, mode, speeds, step, task, temperatures};
+use super::plan::kind_of;
 use crate::app::biss::words::filter;
 use crate::app::explain::{self, plain};
 use crate::app::review::{ChangeWords, OpWords};
@@ -12,8 +13,8 @@ use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::device::biss::procedure::{Activity, Failure, Run, Standing};
 use crate::device::biss::write::{Interrupted, Left, Written};
-use crate::profile::biss::{Op, OtherType, PlanError, PresetParts, RegisterChange, RegisterRange};
-use crate::protocol::biss::{CalibrationStatus, Layout, PresetValue, ProcedureKind, WiegandStatus};
+use crate::profile::biss::{Op, PresetParts, RegisterChange, RegisterRange};
+use crate::protocol::biss::{CalibrationStatus, Layout, PresetValue, WiegandStatus};
 use crate::worker::biss::{Change, ChangeKind, Prepared, WEAR_LIMIT};
 
 /// A change in words.
@@ -90,58 +91,6 @@ fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Te
         .with_number("degrees", f64::from(value.singleturn()) * 360.0 / steps, 3)
         .with("singleturn", value.singleturn())
         .with("multiturn", value.multiturn())
-}
-
-/// A profile that goes onto another type of encoder.
-pub fn other_type(types: &OtherType) -> Text {
-    of_types(types, "biss_review.other_kind", "biss_review.other_width")
-}
-
-fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text {
-    match types {
-        OtherType::Kind { profile, device } => Text::new(kind).with("profile", profile).with("device", device),
-        OtherType::Width { profile, device } => Text::new(width).with("profile", profile).with("device", device),
-    }
-}
-
-/// Why something cannot be planned.
-pub fn plan(error: &PlanError) -> Text {
-    match error {
-        PlanError::OtherDevice { profile, device } => {
-            Text::new("plan.other_device").with("profile", profile).with("device", device)
-        }
-        PlanError::OtherType(types) => of_types(types, "biss_plan.other_kind", "biss_plan.other_width"),
-        PlanError::NoBank { bank } => Text::new("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
-        PlanError::PresetTooWide { value, bits, .. } => {
-            let last = (1u64 << bits.min(&63)) - 1;
-            Text::new("biss_plan.too_wide").with("value", value).with("bits", bits).with("last", last)
-        }
-        PlanError::UnknownFilter { code } => Text::new("biss_plan.no_filter").with("code", format!("0x{code:02X}")),
-        PlanError::NoProcedure { kind, description } => {
-            Text::new("biss_plan.no_procedure").with_text("what", kind_of(*kind)).with("name", description)
-        }
-        PlanError::FirmwareTooOld { kind, needed, found } => Text::new("biss_plan.old_firmware")
-            .with_text("what", kind_of(*kind))
-            .with("needed", needed)
-            .with("found", found),
-        PlanError::ReadOnly { address } => Text::new("biss_plan.read_only").with("address", address),
-        PlanError::Guarded { address } => Text::new("biss_plan.guarded").with("address", address),
-        PlanError::ByteCount { range, count } => {
-            Text::new("biss_plan.byte_count").with("range", range).with("count", count)
-        }
-        PlanError::NotBalanced { .. } => Text::new("biss_plan.not_balanced"),
-        PlanError::DrivenByThisEncoder => Text::new("mounting_card.refused"),
-    }
-}
-
-fn kind_of(kind: ProcedureKind) -> Text {
-    Text::new(match kind {
-        ProcedureKind::WiegandTest => "guide.wiegand",
-        ProcedureKind::Calibration => "guide.calibration",
-        ProcedureKind::DataWrite => "guide.data",
-        ProcedureKind::FilterSelection => "guide.filter",
-        ProcedureKind::Preset => "guide.store_preset",
-    })
 }
 
 /// That the write cycles of the flash are numbered, where a plan comes near their end.
@@ -293,7 +242,7 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::device::biss::Error;
     use crate::device::biss::procedure::{Blocker, Possible, Step, Task};
-    use crate::protocol::biss::{DeviceMode, RegisterAddress};
+    use crate::protocol::biss::{DeviceMode, ProcedureKind, RegisterAddress};
 
     fn cut_off(write_cycles: u64, cause: Failure, left: Left) -> Interrupted {
         let done = Written { ops: 1, write_cycles, ..Written::default() };
