@@ -11,8 +11,9 @@ use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
-use encoder_studio::profile::PlanId;
+use encoder_studio::profile::{self, Body, Comparison, Document, PlanId};
 use encoder_studio::protocol::hiperdrive::ParameterNumber;
+use encoder_studio::protocol::interbus::ProgramNumber;
 
 use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, PORT};
 use crate::wire::Wire;
@@ -129,6 +130,30 @@ impl Case {
 impl Case {
     /// Saves what the device keeps, as a profile.
     fn save(&self, desk: &mut Desk, path: &Path) {
+        self.ask_to_save(desk, path);
+        desk.until("it is saved", |_| path.exists());
+    }
+
+    /// Reads what is not read when it is connected.
+    fn read_all(&self, desk: &mut Desk) {
+        let id = shown(&desk.studio).unwrap().id();
+        match self.tab {
+            Tab::Biss => {
+                let description = desk.studio.biss().unwrap().description.clone().unwrap();
+                for area in description.areas() {
+                    desk.act(Action::Biss(id, Biss::ReadArea(area.first)));
+                    until_ready(desk);
+                }
+            }
+            Tab::Interbus => {
+                desk.act(Action::Interbus(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
+                until_ready(desk);
+            }
+            _ => {}
+        }
+    }
+
+    fn ask_to_save(&self, desk: &mut Desk, path: &Path) {
         let id = shown(&desk.studio).unwrap().id();
         let path_of = || path.to_path_buf();
         wish(desk, Wish::AskSave);
@@ -138,7 +163,6 @@ impl Case {
             Tab::Hiperdrive => Action::Hiperdrive(id, Hiperdrive::Save(path_of())),
             _ => Action::Hiperface(id, Hiperface::Save(path_of())),
         });
-        desk.until("it is saved", |_| path.exists());
     }
 
     /// An entry of a profile by which its device is of another type.
@@ -148,6 +172,17 @@ impl Case {
             Tab::Interbus => ("flags", "0"),
             Tab::Hiperdrive => ("category", "\"HIPERDRIVE HUB-4\""),
             _ => ("encoder_type", "0x32"),
+        }
+    }
+}
+
+fn compared(one: Body, other: Body) -> Comparison {
+    match one {
+        Body::Biss(one) => profile::biss::compare(&one, &other.into_biss().unwrap()),
+        Body::Interbus(one) => profile::interbus::compare(&one, &other.into_interbus().unwrap()),
+        Body::Hiperdrive(one) => profile::hiperdrive::compare(&one, &other.into_hiperdrive().unwrap()),
+        one => {
+            profile::hiperface::compare(&one.into_hiperface().unwrap().fields, &other.into_hiperface().unwrap().fields)
         }
     }
 }
@@ -437,5 +472,68 @@ fn another_type_of_device_needs_a_permit_of_its_own() {
         let named = ["review.other_type", "biss_review.other_kind", "ib_review.other_type", "hd_review.other_kind"];
         let text = warnings.iter().find(|own| named.contains(&own.id())).unwrap();
         crate::texts::check(text);
+    }
+}
+
+/// Issue 22.14: what was read can be saved when the line is lost, of every kind. A profile needs all of it: what was not read
+/// before is named, and nothing is saved.
+#[test]
+fn what_was_read_is_saved_when_the_line_is_lost() {
+    for case in CASES {
+        let mut desk = case.desk();
+        // What is not read when it is connected.
+        let missing = match case.tab {
+            Tab::Biss => Some("OEM"),
+            Tab::Interbus => Some("cam program 8"),
+            _ => None,
+        };
+        let whole = desk.outside.path("whole.ron");
+        for all in [false, true] {
+            if all {
+                case.read_all(&mut desk);
+                case.save(&mut desk, &whole);
+                until_ready(&mut desk);
+            }
+            case.edit(&mut desk, &[0x5A]);
+            case.wire(&desk).unplug();
+            until_lost(&mut desk);
+            assert!(shown(&desk.studio).unwrap().is_savable());
+            let path = desk.outside.path(&format!("lost-{all}.ron"));
+            // That the line is lost may be told once more meanwhile.
+            let told = |studio: &Studio, id: &str| {
+                let mut notices = studio.services.log.notices();
+                let own = notices.rfind(|notice| notice.texts.iter().any(|text| text.id() == id));
+                own.map(|notice| notice.texts.clone())
+            };
+            case.ask_to_save(&mut desk, &path);
+            match missing.filter(|_| !all) {
+                Some(missing) => {
+                    desk.until("it is refused", |studio| told(studio, "session.not_all_read").is_some());
+                    let texts = told(&desk.studio, "session.not_all_read").unwrap();
+                    assert!(texts[0].words(Language::English).contains(missing), "{texts:?}");
+                    crate::texts::check(&texts[0]);
+                    desk.settle();
+                    assert!(!path.exists());
+                }
+                None => {
+                    let is_saved = |studio: &Studio| path.exists() && told(studio, "session.saved_as_read").is_some();
+                    desk.until("it is saved", is_saved);
+                    let texts = told(&desk.studio, "session.saved_as_read").unwrap();
+                    assert!(texts.iter().any(|text| text.id() == "session.saved_without"), "{texts:?}");
+                    let read = |path: &Path| Document::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+                    let lost = read(&path);
+                    assert!(lost.note.is_some_and(|note| note.contains("did not answer")));
+                    if all {
+                        let comparison = compared(read(&whole).body, lost.body);
+                        assert!(comparison.compared > 0 && comparison.differences.is_empty(), "{:?}", case.tab);
+                        assert!(comparison.missing().is_empty(), "{:?}", comparison.missing());
+                    }
+                }
+            }
+            wish(&mut desk, Wish::RevertAll);
+            case.wire(&desk).plug();
+            case.reconnect(&mut desk);
+            desk.settle();
+        }
     }
 }

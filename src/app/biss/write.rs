@@ -7,13 +7,14 @@ use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{Review, ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Cut, Kind, Saved, WithMemory};
-use crate::app::{Severity, Text};
-use crate::device::biss::Error;
+use crate::app::session::{Agreed, Cut, Kind, Known, Saved, WithMemory, without_edits};
+use crate::app::{Severity, Text, explain};
 use crate::device::biss::procedure::{Answer, Failure, Task, Unattended};
 use crate::device::biss::write::Left;
-use crate::profile::biss::{BissProfile, Op, RegisterRange, RestoreOptions, check_device, other_type};
+use crate::device::biss::{Error, profile_of};
+use crate::profile::biss::{Bank, BissProfile, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type};
 use crate::profile::{Body, PlanId, ProfileError};
+use crate::protocol::biss::RegisterAddress;
 use crate::store::DeviceKey;
 use crate::worker::biss::{Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key};
 
@@ -172,6 +173,27 @@ impl Saved for Encoder {
 
     fn wanted_body(&self) -> Option<Body> {
         self.wanted_profile().map(Body::Biss)
+    }
+
+    fn known_body(&self) -> Option<Known> {
+        let survey = self.survey.as_ref()?;
+        let (mut data, mut missing) = (Vec::new(), Vec::new());
+        for area in survey.identity.description.areas().iter().filter(|area| area.access.reads()) {
+            let bank = |number| {
+                let bytes = self.memory.bytes(RegisterAddress::start_of(number), Bank::SIZE);
+                bytes.and_then(|bytes| Some(Bank { number, bytes: bytes.try_into().ok()? }))
+            };
+            match area.banks().map(bank).collect::<Option<Vec<Bank>>>() {
+                Some(banks) => data.push(DataImage::of(area, banks)),
+                None => missing.push(explain::name(&area.name)),
+            }
+        }
+        if !missing.is_empty() {
+            return Some(Err(missing));
+        }
+        let profile = profile_of(survey, data, survey.status.unsaved_mode());
+        let remarks = without_edits(self.edits()).into_iter().chain(explain::biss::saved_unsaved(&profile)).collect();
+        Some(Ok((Body::Biss(profile), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

@@ -5,9 +5,9 @@ use super::unit::Unit;
 use super::words;
 use crate::app::review::OpWords;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Saved, WithMemory, some};
-use crate::app::{Severity, Text};
-use crate::profile::hiperdrive::{HiperdriveProfile, Op, RestoreOptions, check_device, other_types};
+use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
+use crate::app::{Severity, Text, explain};
+use crate::profile::hiperdrive::{HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types};
 use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker::hiperdrive::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
@@ -103,6 +103,21 @@ impl Saved for Unit {
 
     fn remarks(&self) -> Vec<Text> {
         some(&self.marks(), words::mark)
+    }
+
+    fn known_body(&self) -> Option<Known> {
+        let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
+        // What the device refuses is in no profile; what came broken was to be in this one.
+        let missing: Vec<Text> =
+            survey.wrong_lengths.iter().map(|own| explain::hiperdrive::item(Item(own.number))).collect();
+        if !missing.is_empty() {
+            return Some(Err(missing));
+        }
+        let kept = survey.identity.kept().filter_map(|number| Some((number, base.get(number)?)));
+        let image = Image { values: kept.collect() };
+        let profile = HiperdriveProfile::of(survey.identity.profile(), image);
+        let remarks = without_edits(self.edits()).into_iter().collect();
+        Some(Ok((Body::Hiperdrive(Box::new(profile)), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

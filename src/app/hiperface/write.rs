@@ -5,7 +5,7 @@ use super::review::Review;
 use super::rules;
 use crate::app::review::Permit;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, OnLine, Saved, WithMemory};
+use crate::app::session::{Agreed, Known, OnLine, Saved, WithMemory, without_edits};
 use crate::app::{Severity, Text};
 use crate::device::hiperface::{SaveOptions, profile_of};
 use crate::profile::hiperface::{FieldRange, HiperfaceProfile, Recorded, RestoreOptions, check_device};
@@ -113,16 +113,16 @@ impl Saved for Encoder {
         Some(Body::Hiperface(self.wanted_profile()?))
     }
 
-    fn known_body(&self) -> Option<(Body, Vec<Text>)> {
+    fn known_body(&self) -> Option<Known> {
         let identity = self.identity.as_ref()?;
         let fields = self.staged.device().to_vec();
         let locked = fields.iter().filter(|own| own.bytes.is_none() && !self.unreadable.contains_key(&own.number));
         let locked = locked
             .map(|own| Text::new("session.saved_locked").with("field", own.number).with("number", own.status.code()));
-        let edits = self.is_dirty().then(|| Text::new("session.saved_without").with("count", self.edits()));
-        let remarks = edits.into_iter().chain(locked).chain(self.unreadable.values().cloned()).collect();
+        let remarks =
+            without_edits(self.edits()).into_iter().chain(locked).chain(self.unreadable.values().cloned()).collect();
         let recorded = Recorded { counter: self.counter, ..Recorded::default() };
-        Some((Body::Hiperface(profile_of(identity, fields, recorded)), remarks))
+        Some(Ok((Body::Hiperface(profile_of(identity, fields, recorded)), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

@@ -72,8 +72,8 @@ impl Encoder {
                     motor.set_rpm(rpm);
                 }
             }
-            // Before a name is asked for: reading for a file selects cam programs.
-            Action::AskSave if self.asks_for_standstill() && !self.is_stopped() => {
+            // Before a name is asked for: reading for a file selects cam programs. What was read before needs no reading.
+            Action::AskSave if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() => {
                 services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
             }
             Action::AskSave => self.session.ask_where_to_save(services),

@@ -4,7 +4,7 @@ use super::cams::words;
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Saved, WithMemory, some};
+use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
 use crate::app::{Severity, Text};
 use crate::profile::interbus::{Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device, other_type};
 use crate::profile::{Body, ProfileError};
@@ -105,6 +105,22 @@ impl Saved for Encoder {
 
     fn remarks(&self) -> Vec<Text> {
         some(&words::marks(&self.marks()), Text::clone)
+    }
+
+    fn known_body(&self) -> Option<Known> {
+        let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
+        let is_missing = |number: &ProgramNumber| base.image.program(*number).is_none();
+        let missing: Vec<Text> = ProgramNumber::all()
+            .filter(is_missing)
+            .map(|number| Text::new("ib_startup.program").with("program", number.get()))
+            .collect();
+        if !missing.is_empty() {
+            return Some(Err(missing));
+        }
+        let profile = InterbusProfile::of(survey.identity.profile(), base.image.clone(), survey.recorded());
+        let profile = InterbusProfile { names: base.names.clone(), ..profile };
+        let remarks = without_edits(self.edits()).into_iter().collect();
+        Some(Ok((Body::Interbus(Box::new(profile)), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

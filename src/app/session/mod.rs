@@ -22,7 +22,7 @@ pub(in crate::app) use memory::{Agreed, WithMemory};
 pub(in crate::app) use on_desk::OnDesk;
 pub(in crate::app) use on_line::{Cut, OnLine, first};
 pub use profiles::Listed;
-pub(in crate::app) use saved::{Saved, some};
+pub(in crate::app) use saved::{Known, Saved, some, without_edits};
 pub(in crate::app) use saving::Found;
 pub use saving::{Guard, ProfileFile, Saving};
 

@@ -13,6 +13,14 @@ use crate::worker::Device;
 
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 
+/// What was read as a profile, with what is to be said of it; or what is missing for one, a text each.
+pub(in crate::app) type Known = Result<(Body, Vec<Text>), Vec<Text>>;
+
+/// That so many edits are not in what was read.
+pub(in crate::app) fn without_edits(count: usize) -> Option<Text> {
+    (count > 0).then(|| Text::new("session.saved_without").with("count", count))
+}
+
 /// Whoever can be saved and restored.
 pub(in crate::app) trait Saved: WithMemory {
     /// How the logbook knows it; `None` before it was read.
@@ -24,11 +32,11 @@ pub(in crate::app) trait Saved: WithMemory {
     /// The profile as the user wants it, where this is one.
     fn wanted_body(&self) -> Option<Body>;
 
-    /// What was read of a device that cannot be read now, and what is not in it; `None` where that is not all that there is
-    /// to save.
-    fn known_body(&self) -> Option<(Body, Vec<Text>)> {
-        None
-    }
+    /// What was read of a device that cannot be read now, and what is to be said of it; `None` where nothing was.
+    ///
+    /// # Errors
+    /// What a profile needs beyond what was read, a text each.
+    fn known_body(&self) -> Option<Known>;
 
     /// What was read is saved: the device does not answer any more.
     fn saves_what_was_read(&self) -> bool {
@@ -58,7 +66,14 @@ pub(in crate::app) trait Saved: WithMemory {
             }
             let remarks = self.remarks();
             self.session_mut().write_document(path, document, remarks, services);
-        } else if let Some((body, remarks)) = self.known_body().filter(|_| self.saves_what_was_read()) {
+        } else if let Some(known) = self.known_body().filter(|_| self.saves_what_was_read()) {
+            let (body, remarks) = match known {
+                Ok(known) => known,
+                Err(missing) => {
+                    let text = Text::new("session.not_all_read").with_list("missing", missing);
+                    return self.session().refuse(text, services);
+                }
+            };
             let mut document = document_of(body);
             document.note = Some("as it was read last; the device did not answer when this was saved".to_owned());
             let remarks = std::iter::once(Text::new("session.saved_as_read")).chain(remarks).collect();

@@ -176,7 +176,7 @@ fn certainly<T>(
 }
 
 /// A profile of an encoder with these data, which were read in this device mode where that is not operation.
-fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
+pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);
     let mut profile = BissProfile {

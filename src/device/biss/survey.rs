@@ -27,6 +27,13 @@ pub struct Status {
     pub position: Option<PositionReading>,
 }
 
+impl Status {
+    /// The device mode, where that is not operation: registers may show what was entered and never saved.
+    pub fn unsaved_mode(&self) -> Option<DeviceMode> {
+        self.mode.filter(|mode| *mode != DeviceMode::OPERATION)
+    }
+}
+
 /// A register of bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {

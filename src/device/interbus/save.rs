@@ -2,7 +2,7 @@
 
 use super::identify::{direction_of, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
-use super::{Error, Identity, Master};
+use super::{Error, Identity, Master, Survey};
 use crate::profile::Unknown;
 use crate::profile::interbus::{DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, Recorded};
 use crate::protocol::interbus::{Command, Parameter, ProgramNumber, ReadOut, ReadOutValue, StartupMode};
@@ -11,6 +11,20 @@ impl Identity {
     /// As it stands in a profile.
     pub fn profile(&self) -> ProfileIdentity {
         ProfileIdentity { serial_number: self.serial_number.clone(), flags: Some(self.flags), unknown: Unknown::new() }
+    }
+}
+
+impl Survey {
+    /// What a profile keeps of it beside what can be restored.
+    pub fn recorded(&self) -> Recorded {
+        Recorded {
+            software_version: Some(self.identity.software_version),
+            operating_minutes: Some(self.operating_minutes),
+            temperature_tenths: Some(self.temperature_tenths),
+            mode: Some(self.identity.mode),
+            preset_flag: Some(self.preset_flag),
+            unknown: Unknown::new(),
+        }
     }
 }
 
@@ -28,15 +42,7 @@ pub fn save(
         let wanted: Vec<ProgramNumber> = if with_programs { ProgramNumber::all().collect() } else { Vec::new() };
         let of_program = &mut |done, total, program| told(done, total, Kept::Program(program));
         let image = read_image(master, survey.parameters, &wanted, of_program)?;
-        let recorded = Recorded {
-            software_version: Some(survey.identity.software_version),
-            operating_minutes: Some(survey.operating_minutes),
-            temperature_tenths: Some(survey.temperature_tenths),
-            mode: Some(survey.identity.mode),
-            preset_flag: Some(survey.preset_flag),
-            unknown: Unknown::new(),
-        };
-        Ok(InterbusProfile::of(survey.identity.profile(), image, recorded))
+        Ok(InterbusProfile::of(survey.identity.profile(), image, survey.recorded()))
     })
 }
 
