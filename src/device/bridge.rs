@@ -7,6 +7,8 @@ pub(super) mod flow;
 mod power;
 mod tap;
 
+use std::time::Duration;
+
 use crate::bits::MaskedBytes;
 use crate::device::line::{Line, LineError, LineState};
 use crate::protocol::bridge::{
@@ -21,6 +23,9 @@ pub use tap::{Streaming, Tap, TapError, Wanted};
 
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
 pub(super) const BISS_TIME_OUT_US: u16 = 20;
+
+/// What goes on for so long behind the time of a reply, be it noise or a stream, brings none.
+const ENDLESS: Duration = Duration::from_secs(1);
 
 /// What is known about an adapter, from one job to the next.
 #[derive(Clone, Debug, Default)]
@@ -314,6 +319,10 @@ impl Adapter<'_, '_> {
             }
             self.adapter.has_spoken = true;
             self.adapter.receiver.push(&portion);
+            if self.line.now() >= deadline + ENDLESS {
+                self.state.damaged += 1;
+                return Ok(None);
+            }
         }
     }
 

@@ -19,6 +19,8 @@ const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 const SLICE: Duration = Duration::from_millis(50);
 /// A line on which bytes keep coming for so long has no silence.
 const NEVER_SILENT: Duration = Duration::from_secs(2);
+/// Bytes that are kept at most of what is no frame: a socket brings more noise than anybody can read.
+pub(super) const MOST_KEPT: usize = 4096;
 
 /// Whether the adapter gives our own bytes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -268,7 +270,7 @@ impl<'a> Line<'a> {
         Ok(())
     }
 
-    /// Listens without sending; gives back what it heard.
+    /// Listens without sending; gives back what it heard, of noise without an end the first bytes.
     ///
     /// # Errors
     /// The wire, or [`LineError::Cancelled`].
@@ -279,6 +281,7 @@ impl<'a> Line<'a> {
             self.check_cancel()?;
             let slice = (self.now() + SLICE).min(end);
             self.ctx.wire.receive(slice, &mut heard)?;
+            heard.truncate(MOST_KEPT);
         }
         self.show_hidden(end, heard.len());
         Ok(heard)
@@ -346,10 +349,10 @@ impl<'a> Line<'a> {
         self.passed.take().unwrap_or_default()
     }
 
-    /// Lets bytes pass that are no reply to what was asked.
+    /// Lets bytes pass that are no reply to what was asked. Of noise without an end only the first are kept.
     pub(super) fn pass(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
-            passed.extend(bytes);
+            passed.extend(bytes.iter().take(MOST_KEPT.saturating_sub(passed.len())));
         }
     }
 
@@ -413,9 +416,10 @@ impl<'a> Line<'a> {
         let passed = state.last_sent + lateness + state.margin;
         let mut late = Vec::new();
         while self.now() < passed {
+            late.clear();
             self.ctx.wire.receive(passed, &mut late)?;
+            self.pass(&late);
         }
-        self.pass(&late);
         self.wait_for_silence(state, quiet)?;
         state.allow_for(lateness);
         Ok(())

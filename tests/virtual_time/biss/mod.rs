@@ -3,6 +3,7 @@
 mod adapter;
 mod cuts;
 mod faults;
+mod flood;
 pub(crate) mod hands;
 mod jobs;
 mod master;

@@ -9,6 +9,7 @@ use crate::bits::MaskedBytes;
 use crate::device::biss::error::Damage;
 use crate::device::biss::position::PositionReading;
 use crate::device::biss::{Echo, Error};
+use crate::device::line::MOST_KEPT;
 use crate::protocol::biss::{ByteOrder, RegisterAddress};
 use crate::protocol::ubicom::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
@@ -30,8 +31,10 @@ struct Timed {
 struct Heard {
     receiver: Receiver,
     sent: Vec<u8>,
-    /// All that came, for the trace.
+    /// The first of all that came, for the trace.
     raw: Vec<u8>,
+    /// How many bytes came.
+    bytes: usize,
     echo_heard: bool,
     damage: Option<Damage>,
 }
@@ -101,8 +104,14 @@ impl Master<'_> {
         self.station.line.sent(sent_at);
         self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
         let deadline = sent_at + self.longest_pin_exchange();
-        let heard =
-            Heard { receiver: Receiver::new(NODE), sent: frame, raw: Vec::new(), echo_heard: false, damage: None };
+        let heard = Heard {
+            receiver: Receiver::new(NODE),
+            sent: frame,
+            raw: Vec::new(),
+            bytes: 0,
+            echo_heard: false,
+            damage: None,
+        };
         self.listen(request, heard, deadline)
     }
 
@@ -125,7 +134,8 @@ impl Master<'_> {
             if !portion.is_empty() {
                 last_at = self.now();
             }
-            heard.raw.extend(&portion);
+            heard.bytes += portion.len();
+            heard.raw.extend(portion.iter().take(MOST_KEPT.saturating_sub(heard.raw.len())));
             heard.receiver.push(&portion);
             let next = if portion.is_empty() { Receiver::silence } else { Receiver::next_frame };
             while let Some(frame) = next(&mut heard.receiver) {
@@ -176,7 +186,7 @@ impl Master<'_> {
     fn give_up(&mut self, heard: Heard) -> Trouble {
         let broken = heard.raw.strip_prefix(&*heard.sent).unwrap_or(&heard.raw);
         let echo = if heard.echo_heard { heard.sent.len() } else { 0 };
-        let bytes = heard.raw.len().saturating_sub(echo);
+        let bytes = heard.bytes.saturating_sub(echo);
         let now = self.now();
         self.line.show(now, MaskedBytes::clear(broken));
         match heard.damage {

@@ -1,0 +1,79 @@
+//! Noise that comes faster than anybody can read: it costs neither memory nor time without end.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use encoder_studio::device::biss::Station;
+use encoder_studio::link::{ByteLink, Clock, LinkError, VirtualClock};
+use encoder_studio::store::Store;
+use encoder_studio::units::{CharacterFormat, Moment};
+use encoder_studio::worker::biss::{Biss, BissJob};
+use encoder_studio::worker::{Event, JobId, Session};
+
+use super::support::Way;
+use crate::support::{MARGIN, folder};
+
+/// Behind each request 512,000 bytes a second come for so long.
+struct Flood {
+    clock: Arc<VirtualClock>,
+    lasts: Duration,
+    until: Moment,
+    portion: [u8; 512],
+}
+
+impl ByteLink for Flood {
+    fn send(&mut self, _: &[u8]) -> Result<(), LinkError> {
+        self.until = self.clock.now() + self.lasts;
+        Ok(())
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        if self.clock.now() >= self.until {
+            self.clock.sleep_until(until);
+            return Ok(());
+        }
+        self.clock.sleep_until(self.clock.now() + Duration::from_millis(1));
+        into.extend(self.portion);
+        Ok(())
+    }
+
+    fn set_format(&mut self, _: CharacterFormat) -> Result<(), LinkError> {
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        Ok(())
+    }
+}
+
+/// Issue 22.11: of noise over either way the trace keeps what can be read, and a job ends also where it never does.
+#[test]
+fn a_flood_of_noise_costs_neither_memory_nor_time_without_end() {
+    for (way, noise) in [(Way::ConfigPin, 0x55), (Way::ConfigPin, 0x80), (Way::Adapter, 0x55), (Way::Adapter, 0)] {
+        for lasts in [300, 900, 3_600_000] {
+            let (clock, folder) = (Arc::<VirtualClock>::default(), folder());
+            // Packets that are none, with an end each.
+            let mut portion = [noise; 512];
+            portion[511] = 0;
+            let lasts = Duration::from_millis(lasts);
+            let link = Flood { clock: clock.clone(), lasts, until: Moment::START, portion };
+            let mut session: Session<Biss> =
+                Session::over(Box::new(link), clock.clone(), Station::new(way, MARGIN), Store::at(folder.path()), None);
+            let longest = Arc::<Mutex<usize>>::default();
+            let seen = longest.clone();
+            session.watch(move |entry| {
+                let mut longest = seen.lock().unwrap();
+                *longest = entry.bytes.len().max(*longest);
+            });
+            let end = session.run(JobId::default(), BissJob::Status, &mut |_| {});
+            assert!(matches!(end, Event::Failed(..)), "{way:?} {noise:02X} {lasts:?}: {end:?}");
+            let longest = *longest.lock().unwrap();
+            assert!(longest <= 4_096, "{way:?} {noise:02X} {lasts:?}: {longest} bytes in one line of the trace");
+            assert!(
+                clock.now() < Moment::START + Duration::from_secs(25),
+                "{way:?} {noise:02X} {lasts:?}: {:?}",
+                clock.now()
+            );
+        }
+    }
+}
