@@ -62,6 +62,48 @@ fn codes_in_late_replies_are_not_lost() {
     }
 }
 
+/// Issue 22.10: whatever comes instead of a reply to 50h, also an old one that comes again, each code is given or said to be lost,
+/// and none is given twice.
+#[test]
+fn each_code_is_given_once_or_said_to_be_lost() {
+    let bench = Bench::new();
+    let spoilt = [
+        "good,the-last",
+        "twice,lost",
+        "twice,good,twice",
+        "twice-apart,good,lost",
+        "good,cut,behind-the-last",
+        "lost,good,the-last,the-last",
+    ];
+    for replies in spoilt {
+        let Some(encoder) = bench.encoder(&["--status", "1E080120", "--status-replies", replies]) else { return };
+        let ran = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]);
+        let told = ran.json();
+        let given = [numbers(&told["errors"]), numbers(&told["warnings"])].concat();
+        let once: std::collections::BTreeSet<u64> = given.iter().copied().collect();
+        assert_eq!(once.len(), given.len(), "{replies}: {ran:?}");
+        let said = ran
+            .err
+            .split("lost or damaged: ")
+            .nth(1)
+            .map_or(0, |rest| rest.split(['.', ' ']).next().and_then(|count| count.parse().ok()).unwrap_or(0));
+        assert!(4 - given.len() <= said, "{replies}: {said} said to be lost of {ran:?}");
+    }
+}
+
+/// Issue 22.10: a reply that a device server gives twice has its codes in it.
+#[test]
+fn a_reply_that_comes_twice_costs_no_code() {
+    let bench = Bench::new();
+    let Some(encoder) = bench.encoder(&["--status", "1E080120", "--status-replies", "twice,twice,twice,twice"]) else {
+        return;
+    };
+    let ran = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]);
+    let told = ran.json();
+    assert_eq!((numbers(&told["errors"]), numbers(&told["warnings"])), (vec![0x01, 0x20], vec![0x1E, 0x08]), "{ran:?}");
+    assert!(!ran.err.contains("lost or damaged"), "{ran:?}");
+}
+
 #[test]
 fn warnings_alone_are_ok() {
     let bench = Bench::new();

@@ -38,6 +38,8 @@ class Line:
         self.terminal = Terminal(options.stdin_eof)
         self.dead = False
         self.late_replies = 0
+        self.status_replies = list(options.status_replies)
+        self.last_status = b""
         self.random = random.Random(options.seed)
 
     def run(self):
@@ -77,9 +79,30 @@ class Line:
         if reply and frame[1] == READ_STATUS and self.late_replies < times:
             self.late_replies += 1
             threading.Timer(late, self.terminal.write, [reply]).start()
+        elif reply and frame[1] == READ_STATUS and self.status_replies:
+            self.answer_status(self.status_replies.pop(0), reply)
         elif reply:
             time.sleep(self.options.delay)
             self.terminal.write(reply)
+
+    def answer_status(self, how, reply):
+        """As a line or a device server spoils a reply to 50h."""
+        before, self.last_status = self.last_status, reply
+        time.sleep(self.options.delay)
+        parts = {
+            "good": [reply],
+            "lost": [],
+            "twice": [reply, reply],
+            "twice-apart": [reply, None, reply],
+            "cut": [reply[:-1]],
+            "behind-the-last": [before, reply],
+            "the-last": [before],
+        }
+        for part in parts[how]:
+            if part is None:
+                time.sleep(0.1)
+            else:
+                self.terminal.write(part)
 
 
 def parse_options():
@@ -109,6 +132,8 @@ def parse_options():
     add("--delay", type=float, default=0.003, help="seconds to process a request")
     add("--late-status", type=late, default=(0.0, 0), metavar="MS:N",
         help="the first N replies to 50h come so late; what comes meanwhile is answered")
+    add("--status-replies", type=lambda text: text.split(","), default=[], metavar="HOW,…",
+        help="how the first replies to 50h come: good, lost, twice, twice-apart, cut, behind-the-last, the-last")
     add("--address", type=byte, default=0x40)
     add("--settings", type=byte, default=0xE4)
     add("--type", type=byte, default=0x37)

@@ -174,3 +174,14 @@ fn no_status_code_is_lost_without_a_word() {
     }
     assert!(counted > 0, "50h was among them");
 }
+
+/// Issue 22.10: a code may be lost where 50h was sent: not behind an encoder that was never asked for one.
+#[test]
+fn no_code_is_said_to_be_lost_that_was_not_asked_for() {
+    let mut desk = Desk::new("fault=silent-after:0");
+    let mut told = Vec::new();
+    let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| told.push(format!("{event:?}")));
+    assert!(matches!(end, Event::Failed(..)), "{end:?}");
+    assert!(!desk.tap().sent.iter().any(|frame| frame.get(1) == Some(&0x50)));
+    assert!(!told.iter().any(|event| event.contains("CodesUnheard")), "{told:?}");
+}

@@ -47,8 +47,8 @@ struct Heard {
 impl Master<'_> {
     /// One exchange. The outer error ends everything; the inner one may be tried again.
     pub(in super::super) fn attempt(&mut self, request: &Request) -> Result<Result<Answered, Trouble>, Error> {
-        if self.station.line.echo == Echo::Unknown && request.command() != Command::ReadTypeLabel {
-            self.ask(&Request::ReadTypeLabel)?;
+        if request.command() != Command::ReadTypeLabel {
+            self.learn_echo()?;
         }
         self.begin()?;
         let frame = request.emit(self.station.address);
@@ -62,10 +62,22 @@ impl Master<'_> {
         let secret = judgement.is_err() && frame.is_secret();
         let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);
+        // In what is broken there may be a whole reply. What came too late or too long was let pass; an echo is none.
+        if let Err(Trouble::Damage(Damage::Reply(_))) = judgement {
+            self.line.pass(&reply);
+        }
         Ok(judgement.map_err(|trouble| match trouble {
             Trouble::Damage(Damage::Reply(_)) if secret => Trouble::Damage(Damage::Unreadable),
             trouble => trouble,
         }))
+    }
+
+    /// Makes sure that it is known whether the line gives our own bytes back.
+    pub(super) fn learn_echo(&mut self) -> Result<(), Error> {
+        if self.station.line.echo == Echo::Unknown {
+            self.ask(&Request::ReadTypeLabel)?;
+        }
+        Ok(())
     }
 
     /// Before each exchange: the user's wish, the dead time, and silence on the line.
