@@ -44,8 +44,11 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, Cancel) {
     (lines, cancel)
 }
 
+/// Ends a write early, at the frame with this number.
+type EarlyEnd = fn(&mut Tap, &Cancel, usize);
+
 /// How a write ends early, at a frame of ours.
-const EARLY: [(&str, fn(&mut Tap, &Cancel, usize)); 3] = [
+const EARLY: [(&str, EarlyEnd); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
     ("mute", |tap, _, at| tap.mute_from = Some(at)),
