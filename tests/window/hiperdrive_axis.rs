@@ -17,6 +17,7 @@ use encoder_studio::sim::Faults;
 use encoder_studio::units::Moment;
 use encoder_studio::worker::hiperdrive::Change;
 
+use crate::hiperdrive_acts::act_until;
 use crate::support::Desk;
 
 use bench::*;
@@ -97,11 +98,8 @@ fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
 #[test]
 fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
     let mut desk = confirmed();
-    // The settings are read on a thread, and a press before that is refused.
-    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(DriveNumber::FIRST).is_ok());
-    act(&mut desk, Hiperdrive::Drive(Motor::JogPress { direction: Direction::Clockwise, repeated: false }));
-    // Held, however long the computer takes for the way up to motion.
-    held_until(&mut desk, "it moves", Unit::is_moving);
+    let press = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
+    held_until(&mut desk, press, "it moves", Unit::is_moving);
     run(&mut desk, Run::Cancel);
     stands(&mut desk);
     let own = axis(&desk);
@@ -152,8 +150,7 @@ fn the_pads_of_the_run_have_an_effort_of_their_own() {
         (Motor::SlowJogPress { direction: Direction::Clockwise, repeated: false }, 10, 25),
         (Motor::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
     ] {
-        act(&mut desk, Hiperdrive::Drive(press));
-        held_until(&mut desk, "it turns", |own| own.moves.held(own.drive()).is_some());
+        held_until(&mut desk, press, "it turns", |own| own.moves.held(own.drive()).is_some());
         let sent = unit(&desk).moves.sent(unit(&desk).drive()).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
         act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
@@ -245,10 +242,7 @@ fn a_reconnection_is_no_restart() {
 #[test]
 fn a_fault_in_the_test_is_told_and_acknowledged() {
     let mut desk = until_test(FRESH, 1, false);
-    run(&mut desk, Run::Press(Button::Go(Place::Lower)));
-    desk.until("it moves", |studio| {
-        studio.hiperdrive().is_some_and(|own| own.state(own.drive()) == Some(State::Moving))
-    });
+    go(&mut desk, Place::Lower, |own| own.state(own.drive()) == Some(State::Moving));
     let drive = unit(&desk).drive();
     let clock = Moment::default();
     unit(&desk).target.clone().unwrap().with(|own| own.drive(drive).unwrap().fail(clock, ErrorCode::BLOCK_FORWARD));
@@ -262,12 +256,16 @@ fn a_fault_in_the_test_is_told_and_acknowledged() {
         let own = studio.hiperdrive().unwrap();
         own.axis().unwrap().ask(Button::Acknowledge, &own.seen(own.drive())).is_ok()
     });
-    run(&mut desk, Run::Press(Button::Acknowledge));
-    desk.until("it is over", |studio| {
-        let own = studio.hiperdrive().unwrap();
-        let seen = own.seen(own.drive());
-        !seen.has_failed() && own.axis().unwrap().ask(Button::Go(Place::Lower), &seen).is_ok()
-    });
+    act_until(
+        &mut desk,
+        |_| Hiperdrive::Axis(Run::Press(Button::Acknowledge)),
+        "it is over",
+        |studio| {
+            let own = studio.hiperdrive().unwrap();
+            let seen = own.seen(own.drive());
+            !seen.has_failed() && own.axis().unwrap().ask(Button::Go(Place::Lower), &seen).is_ok()
+        },
+    );
     assert!(words::fault(&seen(&desk)).is_none());
 }
 
@@ -287,10 +285,11 @@ fn the_end_is_saved_as_a_report() {
     assert_eq!(question.endings(), ["txt"]);
     let path = desk.outside.path("axis.txt");
     desk.act(Action::Chosen(question, path.clone()));
-    desk.until("it is saved", |_| path.exists());
+    desk.until("it is saved", |studio| {
+        studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == "report.saved"))
+    });
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("The drive has -2044.00 mm … 2044.00 mm."), "{text}");
-    desk.settle();
     assert_eq!(desk.told(Severity::Good).last(), Some(&"report.saved"));
 }
 

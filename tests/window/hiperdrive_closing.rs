@@ -10,6 +10,7 @@ use encoder_studio::protocol::hiperdrive::{Direction, RunEnd, State, StatusBit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, unit};
+use crate::hiperdrive_acts::{drive_until, set_off};
 use crate::hiperdrive_motion::in_control;
 use crate::support::{Desk, LONG};
 
@@ -24,8 +25,7 @@ fn says(desk: &Desk) -> (State, bool, bool) {
 
 fn moving() -> Desk {
     let mut desk = in_control("sim:");
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    set_off(&mut desk);
     desk
 }
 
@@ -116,8 +116,13 @@ fn drives_are_let_go_without_the_window() {
 #[test]
 fn a_session_that_is_closed_behind_a_motion() {
     let mut desk = in_control("sim:");
-    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    let run = Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
+    drive_until(
+        &mut desk,
+        |_| run,
+        "it moves",
+        |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving),
+    );
     let (target, id) = (unit(&desk).target.clone().unwrap(), unit(&desk).session.id);
     let other = desk.studio.devices().iter().find(|own| own.id() != id).map(|own| own.id());
     if let Some(other) = other {

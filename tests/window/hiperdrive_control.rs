@@ -4,13 +4,14 @@
 use std::time::Duration;
 
 use encoder_studio::app::hiperdrive::axis::{Action as Run, Button};
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Motor};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Motor, Unit};
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect};
 use encoder_studio::device::hiperdrive::dead_man::Lock;
 use encoder_studio::protocol::hiperdrive::{ErrorCode, State, Value};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit};
+use crate::hiperdrive_acts::{drive_until, set_off};
 use crate::hiperdrive_motion::in_control;
 use crate::support::Desk;
 
@@ -112,8 +113,12 @@ fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_
     desk.settle();
     drive(&mut desk, Motor::ConfirmLimits(ONE));
     assert!(unit(&desk).moves.locks(ONE).is_empty());
-    drive(&mut desk, Motor::Step { by: 4 });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().moves.view().drives.iter().any(|own| own.act > 0));
+    drive_until(
+        &mut desk,
+        |_| Motor::Step { by: 4 },
+        "it moves",
+        |studio| studio.hiperdrive().unwrap().moves.view().drives.iter().any(|own| own.act > 0),
+    );
 }
 
 #[test]
@@ -148,8 +153,8 @@ fn the_table_shows_what_the_drive_says_now() {
         rows.into_iter().find(|row| row.number == number(of)).unwrap().value.unwrap()
     };
     assert_eq!((shown(&desk, 107), shown(&desk, 104)), (Value::Number(0), Value::Number(0)));
-    drive(&mut desk, Motor::Step { by: 4096 });
-    desk.until("it arrives", |studio| {
+    let to_4096 = |own: &Unit| Motor::Step { by: 4096 - own.actual(ONE).unwrap().position };
+    drive_until(&mut desk, to_4096, "it arrives", |studio| {
         let own = studio.hiperdrive().unwrap();
         !studio.moves() && own.actual(ONE).is_some_and(|own| own.position == 4096)
     });
@@ -168,8 +173,7 @@ fn the_table_shows_what_the_drive_says_now() {
 #[test]
 fn what_was_said_before_a_loss_counts_no_more() {
     let mut desk = in_control("sim:");
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| studio.moves() && studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    set_off(&mut desk);
     fall_silent(&desk);
     desk.until("the loss is known", |studio| !is_open(studio));
     desk.until("nothing moves as far as is known", |studio| !studio.moves());

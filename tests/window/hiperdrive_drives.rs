@@ -4,16 +4,16 @@ use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::{AccessKitNode, Queryable};
 use encoder_studio::app::explain::hiperdrive as explain;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::{Action, Language, Severity, Studio, Tab};
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Phase};
 use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, unit};
+use crate::hiperdrive_acts::{drive_until, has_lapsed, last_end, set_off, until_free, warned, while_it_moves};
 use crate::hiperdrive_motion::in_control;
 use crate::screen::Screen;
-use crate::support::Desk;
 
 const HUB: &str = "sim:?hub=4&drives=1,1&requested=1";
 
@@ -23,11 +23,6 @@ fn two() -> DriveNumber {
 
 fn percent(percent: u8) -> Percent {
     Percent::new(percent).unwrap()
-}
-
-#[track_caller]
-fn until_free(desk: &mut Desk, drive: DriveNumber) {
-    desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(drive).is_ok());
 }
 
 fn moves(studio: &Studio, drive: DriveNumber) -> bool {
@@ -49,8 +44,8 @@ fn what_is_set_for_one_drive_is_not_set_for_another() {
     assert_eq!((moves.is_expert(ONE), moves.is_expert(two())), (true, false));
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
     assert_eq!(desk.told(Severity::Warning), ["hd_refused.endless"]);
-    drive(&mut desk, Motor::Step { by: 64 });
-    desk.until("it has been sent", |studio| {
+    let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(own.drive()).unwrap().position };
+    drive_until(&mut desk, to_64, "it has been sent", |studio| {
         studio.hiperdrive().unwrap().moves.sent(two()).is_some_and(|own| own.target == 64)
     });
     let sent = unit(&desk).moves.sent(two()).unwrap();
@@ -64,36 +59,49 @@ fn what_is_set_for_one_drive_is_not_set_for_another() {
 fn a_second_motion_waits_for_the_end_of_the_first() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
     // Before the drive itself has said that it moves.
+    drive(&mut desk, Motor::Move { target: 30_000_000 });
     drive(&mut desk, Motor::Step { by: 64 });
-    desk.until("it moves", |studio| moves(studio, ONE));
-    drive(&mut desk, Motor::Step { by: 64 });
-    drive(&mut desk, Motor::Move { target: 0 });
-    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
-    assert_eq!(desk.told(Severity::Warning), ["hd_refused.still_moves"; 4]);
-    act(&mut desk, Hiperdrive::SelectDrive(two()));
-    desk.until("the other one is read", |studio| {
-        studio.hiperdrive().unwrap().moves.limits(two()).is_some_and(|own| own.limits().is_some())
+    assert_eq!(desk.told(Severity::Warning), ["hd_refused.still_moves"]);
+    drive(&mut desk, Motor::Stop);
+    desk.until("it stands", |studio| !studio.moves());
+    let told = while_it_moves(&mut desk, |desk| {
+        let before = warned(desk).len();
+        drive(desk, Motor::Step { by: 64 });
+        drive(desk, Motor::Move { target: 0 });
+        drive(desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
+        warned(desk).split_off(before)
     });
-    let all = [
-        Motor::Step { by: 64 },
-        Motor::JogPress { direction: Direction::Clockwise, repeated: false },
-        Motor::Lead(Goal::Ready),
-        Motor::Acknowledge,
-    ];
-    for motor in all {
-        drive(&mut desk, motor);
-        assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_refused.other_moves"), "{motor:?}");
-    }
-    desk.settle();
-    assert!(moves(&desk.studio, ONE), "it goes on");
-    assert_eq!(unit(&desk).moving_drives(), [ONE]);
+    assert_eq!(told, ["hd_refused.still_moves"; 3]);
+    drive(&mut desk, Motor::Stop);
+    desk.until("it stands", |studio| !studio.moves());
+    let seen = while_it_moves(&mut desk, |desk| {
+        act(desk, Hiperdrive::SelectDrive(two()));
+        desk.until("the other one is read", |studio| {
+            studio.hiperdrive().unwrap().moves.limits(two()).is_some_and(|own| own.limits().is_some())
+        });
+        let before = warned(desk).len();
+        for motor in [
+            Motor::Step { by: 64 },
+            Motor::JogPress { direction: Direction::Clockwise, repeated: false },
+            Motor::Lead(Goal::Ready),
+            Motor::Acknowledge,
+        ] {
+            drive(desk, motor);
+        }
+        let told = warned(desk).split_off(before);
+        desk.settle();
+        (told, moves(&desk.studio, ONE), unit(desk).moving_drives())
+    });
+    assert_eq!(seen, (vec!["hd_refused.other_moves"; 4], true, vec![ONE]), "it goes on");
+    act(&mut desk, Hiperdrive::SelectDrive(two()));
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
     until_free(&mut desk, two());
-    drive(&mut desk, Motor::Step { by: 64 });
-    desk.until("now it may", |studio| studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64));
+    let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(two()).unwrap().position };
+    drive_until(&mut desk, to_64, "now it may", |studio| {
+        studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64)
+    });
 }
 
 /// Issue 21.7: a job that waits is not discarded by what is asked of another drive.
@@ -101,20 +109,25 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
 fn a_job_that_waits_is_not_discarded_by_another_drive() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| moves(studio, ONE));
-    drive(&mut desk, Motor::Pause);
-    desk.until("it waits", |studio| {
-        let phase = studio.hiperdrive().unwrap().moves.phase(ONE);
-        matches!(phase, Some(Phase::Paused { .. }))
+    let seen = while_it_moves(&mut desk, |desk| {
+        let before = last_end(&desk.studio, ONE);
+        let lapsed = |studio: &Studio| has_lapsed(studio, ONE, before);
+        drive(desk, Motor::Pause);
+        desk.until("it waits", |studio| {
+            let phase = studio.hiperdrive().unwrap().moves.phase(ONE);
+            matches!(phase, Some(Phase::Paused { .. })) || lapsed(studio)
+        });
+        act(desk, Hiperdrive::SelectDrive(two()));
+        let told = warned(desk).len();
+        drive(desk, Motor::Lead(Goal::Ready));
+        let told = warned(desk).split_off(told);
+        act(desk, Hiperdrive::SelectDrive(ONE));
+        until_free(desk, ONE);
+        drive(desk, Motor::Resume);
+        desk.until("it goes on", |studio| moves(studio, ONE) || lapsed(studio));
+        (told, moves(&desk.studio, ONE))
     });
-    act(&mut desk, Hiperdrive::SelectDrive(two()));
-    drive(&mut desk, Motor::Lead(Goal::Ready));
-    assert_eq!(desk.told(Severity::Warning), ["hd_refused.other_moves"]);
-    act(&mut desk, Hiperdrive::SelectDrive(ONE));
-    until_free(&mut desk, ONE);
-    drive(&mut desk, Motor::Resume);
-    desk.until("it goes on", |studio| moves(studio, ONE));
+    assert_eq!(seen, (vec!["hd_refused.other_moves"], true));
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
 }
@@ -126,8 +139,7 @@ fn what_is_told_names_the_drive() {
         let mut desk = in_control(link);
         act(&mut desk, Hiperdrive::SelectDrive(own));
         until_free(&mut desk, own);
-        drive(&mut desk, Motor::Move { target: 30_000_000 });
-        desk.until("it moves", |studio| moves(studio, own));
+        set_off(&mut desk);
         let target = unit(&desk).target.clone().unwrap();
         target.with(|station| station.drive(own).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
         desk.until("the fault is told", |studio| {
@@ -149,16 +161,20 @@ fn a_speed_that_waits_is_told_from_the_one_that_is_sent() {
         (Effort { speed: percent(40), ..Effort::MOVE }, Effort { speed: percent(20), ..Effort::MOVE });
     assert_eq!(unit(&desk).moves.moves_with(ONE), None);
     drive(&mut desk, Motor::MoveEffort(before));
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| moves(studio, ONE));
+    let seen = while_it_moves(&mut desk, |desk| {
+        drive(desk, Motor::MoveEffort(after));
+        desk.settle();
+        let moves = &unit(desk).moves;
+        let seen = (moves.move_effort(ONE), moves.moves_with(ONE), moves.jogs_with(ONE));
+        // For another attempt.
+        drive(desk, Motor::MoveEffort(before));
+        seen
+    });
+    assert_eq!(seen, (after, Some(before), None), "and that is no jog");
     drive(&mut desk, Motor::MoveEffort(after));
-    desk.settle();
-    assert_eq!((unit(&desk).moves.move_effort(ONE), unit(&desk).moves.moves_with(ONE)), (after, Some(before)));
-    assert_eq!(unit(&desk).moves.jogs_with(ONE), None, "that is no jog");
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
-    drive(&mut desk, Motor::Step { by: 1_000_000 });
-    desk.until("it moves", |studio| moves(studio, ONE));
+    drive_until(&mut desk, |_| Motor::Step { by: 1_000_000 }, "it moves", |studio| moves(studio, ONE));
     assert_eq!(unit(&desk).moves.moves_with(ONE), Some(after));
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
@@ -197,7 +213,7 @@ fn target(screen: &Screen) -> Node<'_> {
 
 /// Moves drive 1, does something meanwhile, and looks while it still moves: a window that is held up stops what it moves, so
 /// that a busy machine may need several attempts.
-fn while_it_moves(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
+fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let own = |action| Action::Hiperdrive(id, action);
     for _ in 0..20 {
@@ -241,7 +257,7 @@ fn stands(screen: &Screen, text: &str) -> bool {
 fn the_buttons_of_the_drives_show_their_states() {
     let mut screen = on_screen();
     let says = |screen: &Screen, words: &str| screen.harness.query_by_label(words).is_some();
-    let shown = while_it_moves(
+    let shown = while_it_moves_on(
         &mut screen,
         || Hiperdrive::SelectDrive(two()),
         |screen| says(screen, "drive 1, Moving") && says(screen, "drive 1 moving"),
@@ -263,7 +279,7 @@ fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     let slower = Motor::MoveEffort(Effort { speed: percent(20), ..Effort::MOVE });
     let waits = "sent: 25 %";
     assert!(!screen.shows(waits));
-    assert!(while_it_moves(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));
+    assert!(while_it_moves_on(&mut screen, || Hiperdrive::Drive(slower), |screen| screen.shows(waits)));
     screen.act(Action::StopMotion);
     screen.until("it stands", |studio| !studio.moves());
     screen.steps();

@@ -3,8 +3,8 @@
 
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Mark, Motor};
-use encoder_studio::app::{Action, Severity, Tab, connect};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Mark, Motor, Unit};
+use encoder_studio::app::{Action, Severity, Studio, Tab, connect};
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Lock};
 use encoder_studio::protocol::hiperdrive::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
@@ -12,6 +12,7 @@ use encoder_studio::protocol::hiperdrive::{
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
+use crate::hiperdrive_acts::{drive_until, hold_pad_until, hold_until, set_off, warned, while_it_moves};
 use crate::support::{Desk, LONG};
 
 /// What the drive itself says, whatever the window believes.
@@ -40,18 +41,6 @@ pub(crate) fn in_control(link: &str) -> Desk {
     desk
 }
 
-/// Says with every look that the jog is held, until it is so.
-#[track_caller]
-fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) -> bool) {
-    let began = Instant::now();
-    while !condition(desk) {
-        assert!(began.elapsed() < LONG, "never: {what}\n{}", crate::support::log(&desk.studio));
-        drive(desk, Motor::JogHold);
-        desk.studio.poll();
-        std::thread::sleep(Duration::from_millis(1));
-    }
-}
-
 fn moves(desk: &Desk) -> bool {
     unit(desk).state(ONE) == Some(State::Moving)
 }
@@ -59,16 +48,8 @@ fn moves(desk: &Desk) -> bool {
 /// A jog that is held, and turns the drive.
 #[track_caller]
 fn jog(desk: &mut Desk) {
-    // A machine that is busy may let a quarter of a second pass without a look.
-    for _ in 0..20 {
-        drive(desk, Motor::JogPress { direction: Direction::Clockwise, repeated: false });
-        hold_until(desk, "it moves", |desk| moves(desk) || !unit(desk).moves.is_held());
-        if unit(desk).moves.is_held() {
-            return;
-        }
-        until_standing(desk);
-    }
-    panic!("it was never held for long enough");
+    let press = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
+    hold_pad_until(desk, press, "it moves", |_| {}, moves);
 }
 
 /// Without another look of the window at it: what stops a drive has been said already.
@@ -101,17 +82,18 @@ fn a_jog_turns_the_drive_for_as_long_as_it_is_held() {
     drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: true });
     desk.settle();
     assert!(stands(&desk) && !unit(&desk).moves.is_held());
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(warned(&desk).is_empty());
 }
 
 #[test]
 fn a_jog_that_nobody_says_is_held_ends_by_itself() {
     let mut desk = in_control("sim:");
     jog(&mut desk);
+    let before = desk.times_told("hd_end.stale");
     // Pictures are drawn, and the button is in none of them.
     desk.until("it stands", |studio| !studio.moves());
     assert!(stands(&desk) && !unit(&desk).moves.is_held());
-    assert_eq!(desk.times_told("hd_end.stale"), 1);
+    assert_eq!(desk.times_told("hd_end.stale"), before + 1);
     drive(&mut desk, Motor::JogHold);
     desk.settle();
     assert!(stands(&desk), "an act that has ended does not begin again");
@@ -120,8 +102,7 @@ fn a_jog_that_nobody_says_is_held_ends_by_itself() {
 #[test]
 fn a_window_that_stands_still_stops_what_moves() {
     let mut desk = in_control("sim:");
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    set_off(&mut desk);
     until_standing(&desk);
     assert!(status(&desk).has(StatusBit::StandingStill) && !status(&desk).has(StatusBit::TargetReached));
 }
@@ -175,15 +156,16 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
 #[test]
 fn a_move_goes_on_in_another_tab_and_ends_by_stop() {
     let mut desk = in_control("sim:");
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| studio.moves() && studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
-    desk.act(Action::ShowTab(Tab::Biss));
-    desk.act(Action::LetGo);
-    for _ in 0..400 {
-        desk.studio.poll();
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    assert!(desk.studio.moves() && desk.studio.has_drives(), "{}", crate::support::log(&desk.studio));
+    let goes_on = while_it_moves(&mut desk, |desk| {
+        desk.act(Action::ShowTab(Tab::Biss));
+        desk.act(Action::LetGo);
+        for _ in 0..400 {
+            desk.studio.poll();
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        desk.studio.moves() && desk.studio.has_drives()
+    });
+    assert!(goes_on, "{}", crate::support::log(&desk.studio));
     desk.act(Action::Escape);
     until_standing(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
@@ -195,20 +177,25 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     let mut desk = in_control("sim:");
     let effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
     drive(&mut desk, Motor::MoveEffort(effort));
-    drive(&mut desk, Motor::Move { target: 4096 });
-    desk.until("it arrives", |studio| {
-        let own = studio.hiperdrive().unwrap();
-        own.said(ONE).is_some_and(|said| said.words.id() == "hd_end.arrived")
-    });
+    drive_until(
+        &mut desk,
+        |_| Motor::Move { target: 4096 },
+        "it arrives",
+        |studio| {
+            let own = studio.hiperdrive().unwrap();
+            own.said(ONE).is_some_and(|said| said.words.id() == "hd_end.arrived")
+        },
+    );
     assert_eq!(unit(&desk).actual(ONE).unwrap().position, 4096);
-    drive(&mut desk, Motor::Step { by: -4096 });
-    desk.until("it is back", |studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position == 0);
+    let back = |own: &Unit| Motor::Step { by: -own.actual(ONE).unwrap().position };
+    let is_back = |studio: &Studio| studio.hiperdrive().unwrap().actual(ONE).unwrap().position == 0;
+    drive_until(&mut desk, back, "it is back", is_back);
     desk.until("it stands", |studio| !studio.moves());
     // 511 turns are 33 488 896 steps.
     drive(&mut desk, Motor::Move { target: 33_488_897 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
+    assert_eq!(warned(&desk), ["hd_refused.outside"]);
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
-    assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_refused.endless"));
+    assert_eq!(warned(&desk).last(), Some(&"hd_refused.endless"));
     assert!(unit(&desk).could_run_endlessly(ONE).is_ok(), "it can be switched on");
     drive(&mut desk, Motor::Expert(true));
     assert!(unit(&desk).may_run_endlessly(ONE).is_ok(), "factory limits and scaling");
@@ -220,8 +207,12 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
 fn states_are_led_to_and_a_fault_is_acknowledged() {
     let mut desk = in_control("sim:");
     assert_eq!(unit(&desk).reachable(ONE), [State::Ready]);
-    drive(&mut desk, Motor::Lead(Goal::Enabled));
-    desk.until("it is enabled", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Enabled));
+    drive_until(
+        &mut desk,
+        |_| Motor::Lead(Goal::Enabled),
+        "it is enabled",
+        |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Enabled),
+    );
     assert!(unit(&desk).reachable(ONE).contains(&State::Operational));
     jog(&mut desk);
     let target = unit(&desk).target.clone().unwrap();
@@ -235,8 +226,12 @@ fn states_are_led_to_and_a_fault_is_acknowledged() {
     assert!(!unit(&desk).moves.is_held());
     assert_eq!(unit(&desk).may_move(ONE).unwrap_err().id(), "hd_refused.fault");
     assert_eq!(unit(&desk).reachable(ONE), [State::Locked]);
-    drive(&mut desk, Motor::Acknowledge);
-    desk.until("it is ready", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Ready));
+    drive_until(
+        &mut desk,
+        |_| Motor::Acknowledge,
+        "it is ready",
+        |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Ready),
+    );
 }
 
 #[test]
@@ -255,8 +250,8 @@ fn locks_say_what_to_do() {
 #[test]
 fn a_run_ends_at_once_where_its_panel_is_out_of_sight() {
     let mut desk = in_control("sim:");
-    drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd });
-    desk.until("it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    let run = Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
+    drive_until(&mut desk, |_| run, "it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
     desk.act(Action::ShowTab(Tab::Biss));
     until_standing(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
@@ -302,11 +297,13 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
     desk.studio.poll();
     assert!(stands(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
     for _ in 0..2 {
-        drive(&mut desk, Motor::FreeOutward(up));
-        assert!(unit(&desk).may_jog(ONE, up).is_ok() && !unit(&desk).can_free(ONE, up));
-        drive(&mut desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
-        drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
-        hold_until(&mut desk, "it moves out", moves);
+        let free = |desk: &mut Desk| {
+            drive(desk, Motor::FreeOutward(up));
+            assert!(unit(desk).may_jog(ONE, up).is_ok() && !unit(desk).can_free(ONE, up));
+            drive(desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
+        };
+        let press = Motor::JogPress { direction: up, repeated: false };
+        hold_pad_until(&mut desk, press, "it moves out", free, moves);
         let sent = unit(&desk).moves.sent(ONE).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
         assert!(unit(&desk).may_jog(ONE, up).is_ok(), "its pad stays enabled while it is held");
@@ -343,11 +340,13 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_one_is_freed() {
             assert_eq!(unit(&desk).may_jog(ONE, own).unwrap_err().id(), "hd_refused.unclear", "{own:?}");
             assert!(unit(&desk).is_blocked(ONE, own), "{own:?}");
         }
-        drive(&mut desk, Motor::FreeOutward(way));
-        assert!(unit(&desk).may_jog(ONE, way).is_ok() && unit(&desk).may_jog(ONE, other).is_err());
-        drive(&mut desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
-        drive(&mut desk, Motor::JogPress { direction: way, repeated: false });
-        hold_until(&mut desk, "it moves", moves);
+        let free = |desk: &mut Desk| {
+            drive(desk, Motor::FreeOutward(way));
+            assert!(unit(desk).may_jog(ONE, way).is_ok() && unit(desk).may_jog(ONE, other).is_err());
+            drive(desk, Motor::JogEffort(Effort { speed: Percent::FULL, torque: Percent::FULL }));
+        };
+        let press = Motor::JogPress { direction: way, repeated: false };
+        hold_pad_until(&mut desk, press, "it moves", free, moves);
         let sent = unit(&desk).moves.sent(ONE).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
         drive(&mut desk, Motor::JogRelease);

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
+use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::{Action, Severity, Studio, Tab, World};
 use encoder_studio::device::hiperdrive::Station;
 use encoder_studio::link::{ByteLink, Clock, LinkError, RealClock, SimLink, SimPort};
@@ -17,6 +17,7 @@ use encoder_studio::worker::Session;
 use encoder_studio::worker::hiperdrive::Way;
 
 use crate::hiperdrive::{ONE, act, drive, number, unit, until_read};
+use crate::hiperdrive_acts::{drive_until, set_off};
 use crate::hiperdrive_motion::in_control;
 use crate::screen::Screen;
 use crate::support::{Desk, LONG, Outside};
@@ -66,8 +67,10 @@ fn another_drive_of_a_hub_moves_by_what_was_read_since_it_is_shown() {
     assert_eq!(unit(&desk).limits(two()), Some((-33_488_896, 65_536)), "by what it has now");
     drive(&mut desk, Motor::Move { target: 65_537 });
     assert_eq!(desk.told(Severity::Warning), ["hd_lock.old", "hd_refused.outside"]);
-    drive(&mut desk, Motor::Step { by: 64 });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64));
+    let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(two()).unwrap().position };
+    drive_until(&mut desk, to_64, "it moves", |studio| {
+        studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64)
+    });
 }
 
 /// A stream on which every reply is damaged while somebody wishes it; packets pass as they are.
@@ -127,8 +130,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
 #[test]
 fn what_cannot_be_read_stops_what_moves_until_it_can() {
     let (mut desk, bad) = over_a_bad_stream();
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    set_off(&mut desk);
     bad.store(true, Ordering::SeqCst);
     desk.until("it stands", |studio| !studio.moves());
     desk.until("that is told", |studio| {
@@ -185,26 +187,27 @@ fn a_fault_of_one_drive_is_not_over_where_another_recovers() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(two()) == Some(State::Moving));
+    set_off(&mut desk);
     fail(&desk, two());
     desk.until("its fault is told", fault_stands);
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
     desk.until("the other may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
-    drive(&mut desk, Motor::Move { target: 30_000_000 });
-    desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+    set_off(&mut desk);
     fail(&desk, ONE);
     desk.until("both have failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
     desk.until("that is told", |studio| fault_stands(studio) && studio.hiperdrive().unwrap().session.is_ready());
     assert_eq!(desk.times_told("hd_end.fault"), 2);
     act(&mut desk, Hiperdrive::SelectDrive(two()));
-    drive(&mut desk, Motor::Acknowledge);
-    desk.until("it has recovered", |studio| studio.hiperdrive().unwrap().state(two()) == Some(State::Ready));
+    drive_until(
+        &mut desk,
+        |_| Motor::Acknowledge,
+        "it has recovered",
+        |studio| studio.hiperdrive().unwrap().state(two()) == Some(State::Ready),
+    );
     desk.settle();
     assert!(fault_stands(&desk.studio), "the other has not");
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
-    drive(&mut desk, Motor::Acknowledge);
-    desk.until("all have recovered", |studio| !fault_stands(studio));
+    drive_until(&mut desk, |_| Motor::Acknowledge, "all have recovered", |studio| !fault_stands(studio));
 }
 
 /// A reading of all states that began before a fault ends behind it.
@@ -212,8 +215,7 @@ fn a_fault_of_one_drive_is_not_over_where_another_recovers() {
 fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
     let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
     for _ in 0..3 {
-        drive(&mut desk, Motor::Move { target: 30_000_000 });
-        desk.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
+        set_off(&mut desk);
         act(&mut desk, Hiperdrive::ReadStatus);
         // The first drive was asked by now.
         std::thread::sleep(Duration::from_millis(40));
@@ -222,10 +224,12 @@ fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
         desk.until("everything is read", |studio| studio.hiperdrive().unwrap().session.is_ready());
         desk.settle();
         assert!(fault_stands(&desk.studio));
-        drive(&mut desk, Motor::Acknowledge);
-        desk.until("it has recovered", |studio| {
-            !fault_stands(studio) && studio.hiperdrive().unwrap().may_move(ONE).is_ok()
-        });
+        drive_until(
+            &mut desk,
+            |_| Motor::Acknowledge,
+            "it has recovered",
+            |studio| !fault_stands(studio) && studio.hiperdrive().unwrap().may_move(ONE).is_ok(),
+        );
     }
 }
 

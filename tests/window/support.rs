@@ -25,7 +25,7 @@ use crate::wire::{TestLink, Wire};
 /// More than anything here takes; a hanging thread is what it is for.
 pub(crate) const LONG: Duration = Duration::from_secs(20);
 /// The margin of `sim:` links.
-const MARGIN: Duration = Duration::from_millis(20);
+pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
 /// The world of one test: a folder, and what stands at the ends of its links.
 pub(crate) struct Outside {
@@ -109,6 +109,9 @@ impl Outside {
                 Ok(Session::to_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
             }),
             open_hiperdrive: Arc::new(move |url, store| {
+                if url.scheme == Scheme::Sim {
+                    return crate::unhurried::open(url, store);
+                }
                 let Some(wire) = drives.get(&url.target) else { return hiperdrive::open(url, store) };
                 let station = encoder_studio::device::hiperdrive::Station::from_query(&url.query, None, MARGIN)?;
                 let link = Box::new(TestLink::plug_into(wire)?);

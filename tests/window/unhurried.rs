@@ -1,0 +1,41 @@
+//! Virtual HIPERDRIVE drives whose time passes more slowly: a motion that is not kept alive for 250 ms rightly stops, and a
+//! picture that is drawn in software on a busy computer may take longer than that.
+
+use std::net::Ipv4Addr;
+use std::sync::{Arc, Mutex};
+
+use encoder_studio::device::hiperdrive::Station;
+use encoder_studio::link::{Clock, LinkUrl, RealClock, SimLink, SimPort};
+use encoder_studio::sim::hiperdrive::{Config, Target};
+use encoder_studio::store::Store;
+use encoder_studio::units::Moment;
+use encoder_studio::worker::hiperdrive::{Hiperdrive, Way};
+use encoder_studio::worker::{OpenError, Session};
+
+use crate::support::MARGIN;
+
+/// So many seconds here are one of the session and of its drives.
+const SLOWER: u32 = 2;
+
+struct Unhurried(RealClock);
+
+impl Clock for Unhurried {
+    fn now(&self) -> Moment {
+        Moment::after_start(self.0.now().since_start() / SLOWER)
+    }
+
+    fn sleep_until(&self, moment: Moment) {
+        self.0.sleep_until(Moment::after_start(moment.since_start() * SLOWER));
+    }
+}
+
+/// A session with the virtual drives of a `sim:` link, on such a clock.
+pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
+    let clock: Arc<dyn Clock> = Arc::new(Unhurried(RealClock::start()));
+    let target = Target::new(&Config::from_pairs(&url.query.without(&["rpi", "udp", "timeout"]))?);
+    let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
+    let wire = Box::new(SimLink::connect(connection, clock.clone()));
+    let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
+    let station = Station::from_query(&url.query, None, MARGIN)?;
+    Ok(Session::to_target(Way { wire, port: Some(port), station, target: Some(target) }, clock, store))
+}
