@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran, ended, finish, signal};
+use super::going::Going;
+use super::support::{Bench, Foreign, IN_TIME, Ran, finish, signal};
 
 const JSON: &str = "--json";
 
@@ -271,7 +272,7 @@ fn what_is_wrong_with_wires_and_adapters_is_told_in_a_sentence() {
         for command in [&["identify", "biss"][..], &["position", "biss"], &["read", "biss", "0x66"]] {
             let ran = ask(&bench, &adapter, command);
             ran.fails(1, words);
-            assert!(ran.took.as_secs() < 10, "{ran:?}");
+            assert!(ran.took < IN_TIME, "{ran:?}");
         }
     }
 }
@@ -285,13 +286,13 @@ fn an_encoder_that_falls_silent_or_talks_nonsense_ends_in_an_error() {
             let file = bench.file("p.ron");
             let ran = ask(&bench, encoder, &["save", "biss", "-o", &file, JSON]);
             ran.fails(1, &["Check"]);
-            assert!(ran.took.as_secs() < 20 && !bench.path("p.ron").exists(), "{ran:?}");
+            assert!(ran.took < IN_TIME && !bench.path("p.ron").exists(), "{ran:?}");
         }
     }
     let Some(nonsense) = bench.kit(&["--nonsense"]) else { return };
     let ran = ask(&bench, &nonsense, &["identify", "biss", JSON]);
     ran.fails(1, &[]);
-    assert!(ran.took.as_secs() < 10, "{ran:?}");
+    assert!(ran.took < IN_TIME, "{ran:?}");
 }
 
 #[test]
@@ -300,12 +301,11 @@ fn a_line_that_is_lost_in_the_middle_is_told() {
     let Some(encoders) = both(&bench, &[]) else { return };
     for mut encoder in encoders {
         let arguments = ["position", "biss", "--csv", "--link", &encoder.url, "--count", "100000", "--interval", "20"];
-        let child = bench.program(&arguments).spawn().unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(1500));
+        let going = Going::since(bench.program(&arguments), 11);
         encoder.kill();
-        let ran = ended(child, std::time::Instant::now());
+        let ran = going.ended();
         assert_eq!(ran.status, Some(1), "{ran:?}");
-        assert!(ran.out.lines().count() > 10 && ran.took.as_secs() < 10, "{ran:?}");
+        assert!(ran.took < IN_TIME, "{ran:?}");
         ran.says(&[]);
     }
 }
@@ -319,12 +319,11 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
         ("sim:?bridge=on", &["--json", "--count", "100000"], 1),
     ] {
         let arguments = [&["position", "biss", "--link", link, "--interval", "5"], options].concat();
-        let child = bench.program(&arguments).spawn().unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(1500));
-        signal(&child, "INT");
-        let ran = ended(child, std::time::Instant::now());
+        let going = Going::since(bench.program(&arguments), 6);
+        signal(&going.child, "INT");
+        let ran = going.ended();
         assert_eq!(ran.status, Some(status), "{ran:?}");
-        assert!(ran.out.ends_with('\n') && ran.out.lines().count() > 5, "{ran:?}");
+        assert!(ran.out.ends_with('\n'), "{ran:?}");
         assert_eq!(ran.err.contains("crc errors: 0"), link.contains("bridge") && status == 0, "{ran:?}");
     }
 }

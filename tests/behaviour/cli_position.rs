@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Read};
 use std::time::Instant;
 
-use super::support::{Bench, ended, signal};
+use super::support::{Bench, Foreign, ended, signal};
 
 const HEADER: &str = "t_s,raw,turns,steps,degrees,valid,codes";
 
@@ -30,7 +30,7 @@ fn a_table_has_a_header_once_and_a_line_a_reading() {
 fn a_scale_has_millimetres_and_codes_have_a_column() {
     let bench = Bench::new();
     // Type 90h has periods of 1 mm: 0E0531h are 918833 steps of 1/32 mm.
-    let Some(encoder) = bench.encoder(&["--type", "90", "--status", "1C08"]) else { return };
+    let Some(encoder) = bench.encoder(&["--type", "90", "--status", "1C08"]).map(Foreign::waited_for) else { return };
     let arguments = ["position", "hiperface", "--link", &encoder.url, "--csv", "--count", "2", "--interval", "0"];
     let ran = bench.run(&arguments);
     let lines: Vec<&str> = ran.out.lines().collect();

@@ -2,14 +2,14 @@
 
 use serde_json::{Value, json};
 
-use super::support::{Bench, Ran};
+use super::support::{Bench, Foreign, Ran};
 
 fn numbers(list: &Value) -> Vec<u64> {
     list.as_array().unwrap().iter().map(|entry| entry["code"].as_u64().unwrap()).collect()
 }
 
 fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
-    let encoder = bench.encoder(&["--status", codes])?;
+    let encoder = bench.encoder(&["--status", codes])?.waited_for();
     let ran = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]);
     let line = ran.json();
     Some((ran, line))
@@ -19,7 +19,7 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
 #[test]
 fn status_codes_are_kept_in_the_logbook() {
     let bench = Bench::new();
-    let Some(encoder) = bench.encoder(&["--status", "1E"]) else { return };
+    let Some(encoder) = bench.encoder(&["--status", "1E"]).map(Foreign::waited_for) else { return };
     assert_eq!(bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).status, Some(0));
     // Beside the database its journal may hold what is not in it yet.
     let folders = [bench.path("data"), bench.path("data/encoder-studio")];
@@ -34,7 +34,7 @@ fn status_codes_are_kept_in_the_logbook() {
 #[test]
 fn status_reads_the_whole_queue_and_ends_well_whatever_it_reports() {
     let bench = Bench::new();
-    let Some(encoder) = bench.encoder(&["--status", "1E080120"]) else { return };
+    let Some(encoder) = bench.encoder(&["--status", "1E080120"]).map(Foreign::waited_for) else { return };
     let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
     assert_eq!(told["ok"], json!(false));
     assert_eq!(numbers(&told["errors"]), [0x01, 0x20]);
@@ -107,7 +107,7 @@ fn a_reply_that_comes_twice_costs_no_code() {
 #[test]
 fn warnings_alone_are_ok() {
     let bench = Bench::new();
-    let Some(encoder) = bench.encoder(&["--status", "1C1D1E08"]) else { return };
+    let Some(encoder) = bench.encoder(&["--status", "1C1D1E08"]).map(Foreign::waited_for) else { return };
     let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
     assert_eq!((&told["ok"], &told["errors"]), (&json!(true), &json!([])));
     assert_eq!(numbers(&told["warnings"]), [0x1C, 0x1D, 0x1E, 0x08]);
@@ -138,7 +138,7 @@ fn a_code_about_the_position_makes_it_invalid() {
 #[test]
 fn codes_met_on_the_way_are_named_and_the_value_is_printed() {
     let bench = Bench::new();
-    let Some(encoder) = bench.encoder(&["--status", "1D06"]) else { return };
+    let Some(encoder) = bench.encoder(&["--status", "1D06"]).map(Foreign::waited_for) else { return };
     let ran = bench.run(&["read", "hiperface", "counter", "--link", &encoder.url, "--json"]);
     assert_eq!(ran.json()["value"], json!(0));
     assert!(ran.err.contains("1Dh") && ran.err.contains("06h"), "{ran:?}");

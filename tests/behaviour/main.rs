@@ -25,6 +25,7 @@ mod cli_simulate;
 mod cli_ssi;
 mod cli_status;
 mod foreign;
+mod going;
 mod hiperdrive_bad_input;
 mod hiperdrive_foreign;
 mod hiperdrive_move;
