@@ -11,7 +11,7 @@ use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text, explain, ssi};
-use crate::link::{LinkUrl, TraceEntry};
+use crate::link::{LinkUrl, Scheme, TraceEntry};
 use crate::worker::biss::Biss;
 use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::hiperface::{Hiperface, may_have_other_master};
@@ -23,6 +23,29 @@ use crate::worker::{Ring, Session, Worker};
 const FRAMES: usize = 2_000;
 
 impl Studio {
+    /// The tab of the device that a link leads to. What the link does not say is remembered: the kind of device that was
+    /// at it before, the tab shown last if it was one of several; for a new link that tab.
+    pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
+        let shown = if self.settings.tab == Tab::Signals { Tab::Hiperface } else { self.settings.tab };
+        let Some(link) = link else { return shown };
+        let fits = |tab: &Tab| tab.check(link).is_ok();
+        // Each kind has virtual devices: their links tell nothing about it.
+        let text = (link.scheme != Scheme::Sim).then(|| link.to_string());
+        let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
+        if used(&shown) {
+            return shown;
+        }
+        if let Some(tab) = Tab::DEVICES.into_iter().find(used) {
+            return tab;
+        }
+        match link.scheme {
+            // Both of these are reached over an adapter.
+            Scheme::Bridge if shown != Tab::Ssi => Tab::Biss,
+            _ if fits(&shown) => shown,
+            _ => Tab::DEVICES.into_iter().find(fits).unwrap_or(shown),
+        }
+    }
+
     /// Opens a link to a kind of device: in the session that has this wire already, else in a new one. A session of
     /// another kind lets go of the wire.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {

@@ -16,7 +16,7 @@ use super::signals::{self, Signals};
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
-use crate::link::{LinkUrl, Scheme};
+use crate::link::LinkUrl;
 use crate::worker::biss::Change;
 
 /// A session's number, from the start of the program on.
@@ -70,16 +70,7 @@ impl Studio {
 
     /// What the window begins with: a link, a profile, or else the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
-        // A link that only one kind can open is for that one; any other for the kind that was shown.
-        let shown = if self.settings.tab == Tab::Signals { Tab::Hiperface } else { self.settings.tab };
-        let tab = match &link {
-            // Both of these are reached over an adapter.
-            Some(link) if link.scheme == Scheme::Bridge && shown != Tab::Ssi => Tab::Biss,
-            Some(link) if shown.check(link).is_err() => {
-                Tab::DEVICES.into_iter().find(|tab| tab.check(link).is_ok()).unwrap_or(shown)
-            }
-            _ => shown,
-        };
+        let tab = self.tab_of(link.as_ref());
         let link = link.or_else(|| profile.is_none().then(|| tab.virtual_link()));
         if let Some(link) = link {
             self.open_link(tab, link);

@@ -9,7 +9,7 @@ use encoder_studio::protocol::biss::Role;
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
-use crate::support::Desk;
+use crate::support::{Desk, asks_for_drive};
 
 #[test]
 fn the_virtual_encoder_is_read_over_either_way() {
@@ -45,6 +45,31 @@ fn a_link_that_only_one_kind_can_open_opens_in_its_tab() {
         desk.act(Action::ShowTab(shown));
         desk.studio.begin(Some(link.parse().unwrap()), None);
         assert_eq!(desk.studio.settings.tab, expected, "{link}");
+    }
+}
+
+/// What a link does not say is remembered: an encoder with BiSS is not asked for as one with HIPERFACE.
+#[test]
+fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
+    let (port, adapter) = ("serial:/dev/nowhere", "bridge:/dev/nowhere");
+    let cases: [(Tab, &[Tab], &str, Tab); 9] = [
+        (Tab::Hiperface, &[], port, Tab::Hiperface),
+        (Tab::Hiperface, &[Tab::Biss], port, Tab::Biss),
+        (Tab::Signals, &[Tab::Biss], port, Tab::Biss),
+        (Tab::Biss, &[Tab::Hiperface], port, Tab::Hiperface),
+        (Tab::Biss, &[Tab::Hiperface, Tab::Biss], port, Tab::Biss),
+        (Tab::Interbus, &[Tab::Biss, Tab::Hiperface], port, Tab::Hiperface),
+        (Tab::Hiperface, &[Tab::Ssi], adapter, Tab::Ssi),
+        (Tab::Hiperface, &[], adapter, Tab::Biss),
+        (Tab::Biss, &[Tab::Hiperface], "sim:", Tab::Biss),
+    ];
+    for (shown, used, link, expected) in cases {
+        let mut desk = Desk::fresh("");
+        desk.act(Action::ShowTab(shown));
+        used.iter().for_each(|tab| desk.studio.settings.use_link(*tab, link));
+        desk.studio.begin(Some(link.parse().unwrap()), None);
+        assert_eq!(desk.studio.settings.tab, expected, "{link} in {shown:?}, used in {used:?}");
+        assert_eq!(asks_for_drive(&desk.studio), link == port && expected == Tab::Hiperface, "{link} in {shown:?}");
     }
 }
 
