@@ -50,6 +50,22 @@ fn a_draft_that_cannot_be_kept_is_told_once() {
     assert_eq!(desk.wire().field(0)[0], 3);
 }
 
+/// The notice of edits that came back is over once they are written; the result stands in the review and in the log.
+#[test]
+fn a_write_ends_the_notice_of_edits_that_came_back() {
+    let mut desk = Desk::begun("");
+    desk.put(0, 0, b"X");
+    desk.until_kept();
+    let mut desk = desk.crash();
+    desk.studio.begin(None, None);
+    desk.until("it is told", |studio| studio.services.log.standing().is_some());
+    assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
+    desk.until_read();
+    desk.write();
+    assert!(desk.studio.services.log.standing().is_none());
+    assert_eq!(desk.times_told("session.written"), 1);
+}
+
 /// What was edited for a profile belongs to that file.
 #[test]
 fn the_draft_of_a_profile_ends_where_it_is_saved() {

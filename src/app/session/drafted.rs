@@ -74,6 +74,10 @@ pub(in crate::app) trait Drafted: OnDesk {
         if nameless && !edits.is_nothing() {
             self.session_mut().drafting.tell_of_none(&name, services);
         }
+        if edits.is_nothing() {
+            // They were written, saved or taken back.
+            services.log.settle(DRAFT_BACK, Some(&name));
+        }
         self.session_mut().drafting.keep(key, edits, services);
     }
 

@@ -191,7 +191,13 @@ pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
     /// A plan was carried out: the device is read again.
     fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = told::<Self::Device>(&committed);
-        services.tell(severity, texts, Some(&self.session().name()));
+        let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
+        // What went well stands in the review until that is closed.
+        if severity == Severity::Good && stands {
+            services.note(severity, texts, Some(&name));
+        } else {
+            services.tell(severity, texts, Some(&name));
+        }
         self.forget_steps();
         self.reads_again();
         self.carried_out(&committed, services);
