@@ -58,7 +58,9 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
             ui.label(skin.label(skin.say(sheet.manner.way())));
             buttons(ui, skin, device, actions, "review.cancel", |ui, actions| {
                 let icon = if sheet.manner == Manner::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
-                if primary(ui, skin, device.is_ready(), icon, &skin.say(sheet.manner.word())).clicked() {
+                // Without the permit it would be refused.
+                let may_wear = sheet.force_wear != Some(false);
+                if primary(ui, skin, device.is_ready() && may_wear, icon, &skin.say(sheet.manner.word())).clicked() {
                     actions.push(Action::Review(device.id(), ReviewAction::Write(*plan)));
                 }
             });

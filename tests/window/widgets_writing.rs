@@ -78,6 +78,22 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
+/// Issue 22.4: a write that needs its permit cannot be pressed without it.
+#[test]
+fn without_a_logbook_write_waits_for_its_permit() {
+    let mut screen = Screen::begun(SIZE);
+    std::fs::create_dir_all(screen.outside.store().logbook_path()).unwrap();
+    type_bytes(&mut screen, "58");
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    screen.until("the plan is ready", |studio| {
+        is_review(studio, |state| matches!(state, ReviewState::Ready(_)))
+            && studio.hiperface().unwrap().session.is_ready()
+    });
+    assert!(!screen.is_enabled("review.write"));
+    screen.ask(Hiperface::ForceWear(true));
+    assert!(screen.is_enabled("review.write"));
+}
+
 #[test]
 fn what_a_field_does_not_allow_cannot_be_pressed() {
     let mut screen = Screen::begun(SIZE);
