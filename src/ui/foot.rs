@@ -1,14 +1,14 @@
 //! The foot of a page where a memory is edited, whatever the device: how many edits there are, taking them back, and
 //! writing them.
 
-use egui::{RichText, Ui};
+use egui::{RichText, Ui, WidgetInfo};
 
 use super::controls::{enabled_button, icon_button, name, primary};
 use super::{Skin, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, Studio, Tab, Text, Wish};
 
-/// Width below which not all of a profile's buttons have room for their words.
+/// Width below which not all buttons of a profile, or those of a device and the count of edits, have room for their words.
 const NARROW: f32 = 660.0;
 
 /// Draws the foot.
@@ -23,8 +23,7 @@ pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
         if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
             actions.push(device.wish(Wish::Redo));
         }
-        // A profile has two more buttons beside it.
-        let narrow = *device.phase() == Phase::Offline && width < NARROW;
+        let narrow = width < NARROW;
         let revert = if narrow { icon_button } else { enabled_button };
         if revert(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
             actions.push(device.wish(Wish::RevertAll));
@@ -57,11 +56,21 @@ pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
                     (Source::File { .. } | Source::New { .. }, _, true) => "values.unsaved",
                 })
                 .with("count", count);
-                let words = RichText::new(skin.words(&text)).color(skin.palette.staged);
-                ui.add(egui::Label::new(words).truncate());
+                edits(ui, skin, count, &skin.words(&text));
             }
         });
     });
+}
+
+/// How many edits there are, in words, or as a number where the words have no room.
+fn edits(ui: &mut Ui, skin: &Skin, count: usize, words: &str) {
+    let color = skin.palette.staged;
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let has_room = ui.painter().layout_no_wrap(words.to_owned(), font, color.into()).size().x <= ui.available_width();
+    let shown = if has_room { words.to_owned() } else { format!("{}  {count}", icons::PENCIL_SIMPLE) };
+    let label = ui.add(egui::Label::new(RichText::new(shown).color(color)).extend());
+    label.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, words));
+    label.on_hover_text(words);
 }
 
 /// A profile goes into a connected device of its kind: which one is chosen here.

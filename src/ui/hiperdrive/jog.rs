@@ -1,6 +1,6 @@
 //! Motion by hand: hold to run, and steps that run to their end.
 
-use egui::{Ui, Vec2, vec2};
+use egui::{FontId, Ui, Vec2, vec2};
 
 use super::motion::{View, effort_ui, length_ui, why_not};
 use super::outside;
@@ -24,7 +24,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         let effort = effort_ui(ui, skin, unit, own, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(drive));
         pads_ui(ui, skin, unit, allowed.is_ok(), actions);
-        paragraph(ui, skin.caption(skin.say("hd_jog.words")));
+        pads_note(ui, skin, unit);
         why_not(ui, skin, &allowed);
         ui.add_space(skin.space.between);
         ui.separator();
@@ -48,6 +48,28 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         paragraph(ui, skin.caption(skin.say("hd_step.words")));
         // At the end: nothing that can be clicked moves away when it comes.
         outside::block_ui(ui, skin, unit, &mut view.outside, actions);
+    });
+}
+
+/// What the pads do, or why both or one of them are blocked, in the same room: nothing below moves when that changes.
+fn pads_note(ui: &mut Ui, skin: &Skin, unit: &Unit) {
+    let drive = unit.drive();
+    let outside = unit.outside(drive).filter(|own| {
+        let ways = [Direction::Counterclockwise, Direction::Clockwise];
+        own.is_far && ways.into_iter().any(|way| unit.is_blocked(drive, way))
+    });
+    let (id, colour) = match outside.map(|own| own.outside) {
+        None => ("hd_jog.words", skin.palette.muted),
+        Some(Outside::At(_)) => ("hd_jog.outside", skin.palette.bad),
+        Some(Outside::Unclear) => ("hd_jog.unclear", skin.palette.bad),
+    };
+    let width = ui.available_width();
+    let font = FontId::proportional(skin.sizes.caption);
+    let height = |id| ui.painter().layout(skin.say(id), font.clone(), colour.into(), width).size().y;
+    let room = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear"].into_iter().map(height).fold(0.0, f32::max);
+    ui.allocate_ui(vec2(width, room), |ui| {
+        ui.set_min_height(room);
+        paragraph(ui, skin.caption(skin.say(id)).color(colour));
     });
 }
 
