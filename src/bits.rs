@@ -15,6 +15,17 @@ pub fn hex_compact(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect()
 }
 
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ByteOrder {
+    /// The highest.
+    #[default]
+    HighFirst,
+    /// The lowest.
+    LowFirst,
+}
+
 /// A number as it came, in so many bits. Its text has as many upper-case hexadecimal digits as they need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {

@@ -5,10 +5,10 @@ use super::encoder::Encoder;
 use crate::app::review::{ChangeWords, OpWords};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
+use crate::bits::ByteOrder;
 use crate::device::biss::Identity;
 use crate::device::biss::procedure::Outcome;
 use crate::profile::biss::Op;
-use crate::protocol::biss::ByteOrder;
 use crate::worker::biss::Prepared;
 
 impl Encoder {

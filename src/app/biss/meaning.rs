@@ -3,9 +3,10 @@
 
 use crate::app::explain::{self, plain, traced as adapter};
 use crate::app::{Explained, Text, TraceFault};
+use crate::bits::ByteOrder;
 use crate::device::biss::Damage;
 use crate::link::{Direction, TraceEntry};
-use crate::protocol::biss::{ByteOrder, RegisterAddress};
+use crate::protocol::biss::RegisterAddress;
 use crate::protocol::bridge;
 use crate::protocol::ubicom::{Frame, Reply, Request, SYNC, Written};
 

@@ -2,7 +2,8 @@
 //! row and every other byte in a row of its own.
 
 use super::memory::Memory;
-use crate::protocol::biss::{Access, ByteOrder, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
+use crate::bits::ByteOrder;
+use crate::protocol::biss::{Access, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
 
 /// The banks of an encoder that nobody has described: as many as the kit encoder has.
 const LAST_BANK: u8 = 0x43;

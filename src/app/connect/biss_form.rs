@@ -3,10 +3,10 @@
 use super::parameters::{Parameters, without_entry};
 use super::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::app::Text;
+use crate::bits::ByteOrder;
 use crate::device::biss::{Echo, PARAMETERS, Way};
 use crate::device::bridge::SupplyAfter;
 use crate::link::{LinkUrl, Scheme};
-use crate::protocol::biss::ByteOrder;
 use crate::protocol::ubicom::FORMAT;
 use crate::sim::{biss, bridge};
 use crate::units::Parity;

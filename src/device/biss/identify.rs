@@ -6,11 +6,12 @@ use std::sync::Arc;
 use super::registers::Registers;
 use super::widths::find_widths;
 use super::{Error, Master, Station, Way};
+use crate::bits::ByteOrder;
 use crate::profile::Unknown;
 use crate::profile::biss::ProfileIdentity;
 use crate::protocol::biss::{
-    ByteOrder, Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch,
-    ProfileId, RegisterAddress, Role, eds_layout,
+    Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
+    RegisterAddress, Role, eds_layout,
 };
 use crate::protocol::bridge::Hello;
 

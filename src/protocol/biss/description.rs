@@ -11,7 +11,7 @@ mod tests;
 use std::fmt;
 
 pub use name::Name;
-pub use register::{Access, Area, ByteOrder, Decoded, Decoding, Register, Role};
+pub use register::{Access, Area, Decoded, Decoding, Register, Role};
 
 use super::address::RegisterAddress;
 use super::procedure::ProcedureKind;

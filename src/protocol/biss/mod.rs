@@ -10,6 +10,7 @@ mod crc;
 mod description;
 mod eds;
 mod line;
+mod position_word;
 mod procedure;
 mod single_cycle;
 mod status;
@@ -25,8 +26,8 @@ pub use control::{
 };
 pub use crc::{Crc, CrcError};
 pub use description::{
-    Access, Area, ByteOrder, Decoded, Decoding, Description, DescriptionError, Descriptions, Identity, Lock, Mismatch,
-    Name, Procedure, Register, Role,
+    Access, Area, Decoded, Decoding, Description, DescriptionError, Descriptions, Identity, Lock, Mismatch, Name,
+    Procedure, Register, Role,
 };
 pub use eds::{EDS_TICK, Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, layout as eds_layout};
 pub use line::{Cycle, CycleError};

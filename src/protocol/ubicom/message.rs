@@ -3,7 +3,7 @@
 
 use super::frame::{Frame, NODE};
 use super::position::PositionWord;
-use crate::protocol::biss::ByteOrder;
+use crate::bits::ByteOrder;
 
 /// The three commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

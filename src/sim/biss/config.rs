@@ -4,7 +4,8 @@
 use std::time::Duration;
 
 use super::wiegand::Pulses;
-use crate::protocol::biss::{ByteOrder, Filter, Firmware};
+use crate::bits::ByteOrder;
+use crate::protocol::biss::{Filter, Firmware};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 

@@ -6,10 +6,9 @@ use std::time::Duration;
 
 use super::config::Config;
 use super::encoder::Encoder;
-use crate::protocol::biss::{ByteOrder, RegisterAddress};
-use crate::protocol::ubicom::{
-    BYTE_TIME_OUT, FORMAT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
-};
+use crate::bits::ByteOrder;
+use crate::protocol::biss::RegisterAddress;
+use crate::protocol::ubicom::{BYTE_TIME_OUT, FORMAT, Frame, NODE, Receiver, Reply, Request, Written, character_bits};
 use crate::sim::Faults;
 use crate::sim::line::{Line, Queue, Wires};
 use crate::units::Moment;
@@ -128,7 +127,7 @@ impl Port {
             }
             Request::Position { argument: 0x01 } => {
                 let layout = self.encoder.layout().clone();
-                self.encoder.reading(at).map(|reading| Reply::Position(PositionWord::of(&reading, &layout)))
+                self.encoder.reading(at).map(|reading| Reply::Position(layout.position_word(&reading)))
             }
             Request::Position { .. } => None,
         };

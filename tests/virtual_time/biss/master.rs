@@ -3,9 +3,9 @@
 
 use std::time::Duration;
 
+use encoder_studio::bits::ByteOrder;
 use encoder_studio::device::biss::{Damage, Echo, Error};
 use encoder_studio::link::{Cancel, Clock, Direction};
-use encoder_studio::protocol::biss::ByteOrder;
 
 use super::support::{Pin, at};
 

@@ -1,10 +1,11 @@
 //! Frames of UBICOM, one behind the other. Register numbers are taken low byte first.
 
 use super::form;
+use crate::bits::ByteOrder;
 use crate::bits::{hex, hex_compact};
 use crate::cli::biss::words;
 use crate::cli::decode::Explained;
-use crate::protocol::biss::{ByteOrder, Layout, RegisterAddress};
+use crate::protocol::biss::{Layout, RegisterAddress};
 use crate::protocol::ubicom::{Frame, NODE, PositionWord, Reply, Request, Written};
 
 /// What the frames say. `asked` is the request before them, and the last of theirs afterwards.
@@ -91,7 +92,7 @@ fn value_words(register: u16, value: u8) -> String {
 
 fn position_words(word: PositionWord) -> String {
     let layout = Layout::default();
-    match word.reading(&layout) {
+    match layout.reading_of(word) {
         None => format!("position 0x{:X}, which has more than 33 bits", word.word()),
         Some(reading) => {
             let (turns, steps) = (reading.multiturn, reading.singleturn);

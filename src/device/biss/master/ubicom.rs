@@ -5,12 +5,13 @@
 use std::time::Duration;
 
 use super::{Attempt, Master, Taken, Trouble};
+use crate::bits::ByteOrder;
 use crate::bits::MaskedBytes;
 use crate::device::biss::error::Damage;
 use crate::device::biss::position::PositionReading;
 use crate::device::biss::{Echo, Error};
 use crate::device::line::MOST_KEPT;
-use crate::protocol::biss::{ByteOrder, RegisterAddress};
+use crate::protocol::biss::RegisterAddress;
 use crate::protocol::ubicom::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };
@@ -78,7 +79,7 @@ impl Master<'_> {
             Err(trouble) => return Ok(Err(trouble)),
         };
         let layout = self.station.frame();
-        let Some(reading) = word.reading(&layout) else {
+        let Some(reading) = layout.reading_of(word) else {
             let (multiturn, singleturn) = (layout.multiturn_bits(), layout.singleturn_bits());
             return Err(Error::TooWide { word: word.word(), multiturn, singleturn });
         };

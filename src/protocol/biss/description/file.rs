@@ -14,8 +14,9 @@ use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
 use super::german::German;
 use super::name::Name;
-use super::register::{Access, Area, ByteOrder, Decoding, Register, Role};
+use super::register::{Access, Area, Decoding, Register, Role};
 use super::{Description, Identity, Lock, Procedure};
+use crate::bits::ByteOrder;
 
 pub(super) fn parse(text: &str) -> Result<Description, SpannedError> {
     let mut file: File = ron::from_str(text)?;

@@ -3,6 +3,7 @@
 use super::super::address::RegisterAddress;
 use super::super::status::Firmware;
 use super::name::Name;
+use crate::bits::ByteOrder;
 
 /// One row of a description.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,17 +74,6 @@ pub enum Access {
     W,
     /// Read and write.
     Rw,
-}
-
-/// Which byte of a number comes first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ByteOrder {
-    /// The highest: the data sheet.
-    #[default]
-    HighFirst,
-    /// The lowest: preset values.
-    LowFirst,
 }
 
 /// What a register's number says.

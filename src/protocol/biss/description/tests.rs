@@ -6,6 +6,7 @@ use super::super::eds::EdsBank;
 use super::super::procedure::{PulseVoltage, *};
 use super::super::status::{DeviceMode, ErrorRegister, Temperature, WarningRegister};
 use super::*;
+use crate::bits::ByteOrder;
 
 fn at(text: &str) -> RegisterAddress {
     text.parse().unwrap()

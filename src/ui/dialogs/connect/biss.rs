@@ -5,7 +5,7 @@ use egui::Ui;
 use super::{Dialog, echo, leave_supply, margin, network, parity, recording, segments, serial, unfolded};
 use crate::app::Action;
 use crate::app::connect::{BissForm, BissWay};
-use crate::protocol::biss::ByteOrder;
+use crate::bits::ByteOrder;
 use crate::ui::Skin;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
 

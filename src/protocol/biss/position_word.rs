@@ -1,0 +1,66 @@
+//! What the position word of UBICOM says: singleturn below, multiturn above it (manual 5.2). There is no error and no
+//! warning bit in it.
+
+use super::single_cycle::{Layout, Reading};
+use crate::protocol::ubicom::PositionWord;
+
+impl Layout {
+    /// The word of a position. Bits of the multiturn for which there is no place are left out.
+    pub fn position_word(&self, reading: &Reading) -> PositionWord {
+        let [b0, b1, b2, b3, b4, ..] = self.steps(reading).to_le_bytes();
+        PositionWord::parse([b0, b1, b2, b3, b4])
+    }
+
+    /// The position of a word, with the widths of the frame; `None` where bits above them are set. Error and warning are
+    /// not told.
+    pub fn reading_of(&self, word: PositionWord) -> Option<Reading> {
+        let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
+        let (singleturn, above) = split(word.word(), self.singleturn_bits());
+        let (multiturn, rest) = split(above, self.multiturn_bits());
+        // Fields have at most 32 bits.
+        let fields = Reading {
+            multiturn: u32::try_from(multiturn).ok()?,
+            singleturn: u32::try_from(singleturn).ok()?,
+            ..Reading::default()
+        };
+        (rest == 0).then_some(fields)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Reference 6.
+    #[test]
+    fn the_published_positions() {
+        let layout = Layout::default();
+        for (bytes, multiturn, singleturn) in [
+            ([0x00, 0x80, 0x69, 0x24, 0x00], 0x1234, 0x18000),
+            ([0x00, 0x00, 0x00, 0x00, 0x00], 0x0000, 0x00000),
+            ([0xFF, 0xFF, 0xFF, 0xFF, 0x01], 0xFFFF, 0x1FFFF),
+            ([0x00, 0x00, 0x02, 0x00, 0x00], 0x0001, 0x00000),
+        ] {
+            let reading = Reading { multiturn, singleturn, error: false, warning: false };
+            let word = PositionWord::parse(bytes);
+            assert_eq!(layout.reading_of(word), Some(reading), "{bytes:02X?}");
+            assert_eq!(layout.position_word(&reading), word);
+        }
+    }
+
+    #[test]
+    fn a_word_too_wide_for_the_encoder_is_no_position() {
+        let word = PositionWord::parse([0, 0, 0, 0, 2]);
+        assert_eq!(Layout::default().reading_of(word), None);
+        let wide = Layout::new(32, 17, true, true, None).unwrap();
+        assert_eq!(wide.reading_of(word).map(|reading| reading.multiturn), Some(0x1_0000));
+    }
+
+    proptest! {
+        #[test]
+        fn no_word_panics(bytes: [u8; 5]) {
+            let _ = Layout::default().reading_of(PositionWord::parse(bytes));
+        }
+    }
+}
