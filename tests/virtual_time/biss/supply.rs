@@ -74,6 +74,19 @@ fn power_is_not_cut_while_something_may_be_under_way() {
     assert!(has_power(&bench), "it may calibrate");
 }
 
+/// Issue 22.16: nothing is heard of it from the beginning, so that it may be calibrating since an earlier session.
+#[test]
+fn an_encoder_that_never_says_anything_keeps_its_power() {
+    let mut bench = Bench::supplied_at("line=open", AsFound);
+    bench.run(BissJob::Status).unwrap_err();
+    bench.session.leave();
+    assert!(has_power(&bench));
+    let mut bench = Bench::supplied_at("line=open", Off);
+    bench.run(BissJob::Status).unwrap_err();
+    bench.session.leave();
+    assert!(has_power(&bench), "that it may be cut off is not said by a link");
+}
+
 /// Wherever a write is cut off: what could not be led back keeps its power until it is.
 #[test]
 fn an_encoder_that_could_not_be_led_back_keeps_its_power() {

@@ -201,7 +201,13 @@ impl Bench {
 
     /// Behind an adapter that switches the encoder's supply, at first off.
     pub(crate) fn supplied(after: SupplyAfter) -> Self {
-        let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs("supply=switched")).unwrap());
+        Self::supplied_at("", after)
+    }
+
+    /// The same, with more to say of the adapter.
+    pub(crate) fn supplied_at(query: &str, after: SupplyAfter) -> Self {
+        let query = format!("supply=switched&{query}");
+        let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs(&query)).unwrap());
         let folder = Arc::new(folder());
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }

@@ -55,8 +55,8 @@ impl Master<'_> {
         if self.station.unfinished {
             return Ok(true);
         }
-        // In this session nothing was written.
-        let Some(written_at) = self.station.written_at else { return Ok(false) };
+        // In this session nothing was written; one that says nothing at all may be at what an earlier one has begun.
+        let Some(written_at) = self.station.written_at else { return Ok(!self.has_power()) };
         let since = self.now().since(written_at);
         self.wait(SETTLES.saturating_sub(since))?;
         let Some(lock) = self.station.description.as_ref().and_then(|own| own.lock()) else { return Ok(false) };
