@@ -88,9 +88,13 @@ impl Remembered {
         self.marks.insert(drive, self.marks(drive).wrapping_add(times));
     }
 
-    /// Drives that were marked since `before`. A program that does not count leaves out the numbers.
+    /// Drives that were marked since `before`: a mark of the same number is the same, which may be confirmed here and not yet
+    /// on disk. A program that does not count leaves out the numbers.
     fn marked_since(&self, before: &Remembered) -> Vec<u8> {
-        let is_new = |drive: &u8| !before.is_unconfirmed(*drive) || self.marks(*drive) != before.marks(*drive);
+        let is_new = |drive: &u8| {
+            let number = self.marks(*drive);
+            number != before.marks(*drive) || number == 0 && !before.is_unconfirmed(*drive)
+        };
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
 
@@ -208,6 +212,30 @@ impl Unit {
             unsaved: self.unsaved.saved().clone(),
             scales: unconfirmed.iter().filter_map(scale).collect(),
             unconfirmed,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Issue 21.11: what was confirmed here locks again by another's mark, and not by the one that was confirmed.
+    #[test]
+    fn a_mark_of_the_same_number_is_the_same() {
+        let of = |text: &str| ron::from_str::<Remembered>(&format!("({text})")).unwrap();
+        let cases: [(&str, &str, &[u8]); 7] = [
+            ("unconfirmed: [1], marks: {1: 1}", "", &[1]),
+            ("unconfirmed: [1], marks: {1: 1}", "unconfirmed: [1], marks: {1: 1}", &[]),
+            ("unconfirmed: [1], marks: {1: 1}", "marks: {1: 1}", &[]),
+            ("unconfirmed: [1], marks: {1: 2}", "marks: {1: 1}", &[1]),
+            // By a program that does not count.
+            ("unconfirmed: [1]", "", &[1]),
+            ("unconfirmed: [1]", "marks: {1: 1}", &[1]),
+            ("marks: {1: 2}", "marks: {1: 1}", &[]),
+        ];
+        for (found, before, marked) in cases {
+            assert_eq!(of(found).marked_since(&of(before)), marked, "{found}, {before}");
         }
     }
 }
