@@ -75,6 +75,8 @@ fn registers_that_were_never_saved_are_told_with_the_way_back() {
     screen.until("the encoder is read", is_read);
     for page in ["page.registers", "page.data"] {
         screen.click(page);
+        // The page may read what it shows.
+        screen.until("nothing runs", is_read);
         assert!(screen.shows("The encoder is in device mode 0x04"), "{page}");
         assert!(screen.is_enabled("lead_back_card.button"), "{page}");
     }
