@@ -62,7 +62,7 @@ impl Studio {
         }
     }
 
-    /// The session for a link, which is shown from now on; `None` where there is to be none.
+    /// The session for a link, now the one that is shown; `None` where none may be opened.
     fn session_at(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
         let mut own = None;
         for device in &mut self.devices {
