@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::going::Going;
-use super::support::{Bench, Foreign, IN_TIME, Ran, finish, signal};
+use super::support::{Bench, Foreign, Ran, finish, signal};
 
 const JSON: &str = "--json";
 
@@ -272,7 +272,7 @@ fn what_is_wrong_with_wires_and_adapters_is_told_in_a_sentence() {
         for command in [&["identify", "biss"][..], &["position", "biss"], &["read", "biss", "0x66"]] {
             let ran = ask(&bench, &adapter, command);
             ran.fails(1, words);
-            assert!(ran.took < IN_TIME, "{ran:?}");
+            assert!(ran.took.as_secs() < 10, "{ran:?}");
         }
     }
 }
@@ -286,13 +286,13 @@ fn an_encoder_that_falls_silent_or_talks_nonsense_ends_in_an_error() {
             let file = bench.file("p.ron");
             let ran = ask(&bench, encoder, &["save", "biss", "-o", &file, JSON]);
             ran.fails(1, &["Check"]);
-            assert!(ran.took < IN_TIME && !bench.path("p.ron").exists(), "{ran:?}");
+            assert!(ran.took.as_secs() < 20 && !bench.path("p.ron").exists(), "{ran:?}");
         }
     }
     let Some(nonsense) = bench.kit(&["--nonsense"]) else { return };
     let ran = ask(&bench, &nonsense, &["identify", "biss", JSON]);
     ran.fails(1, &[]);
-    assert!(ran.took < IN_TIME, "{ran:?}");
+    assert!(ran.took.as_secs() < 10, "{ran:?}");
 }
 
 #[test]
@@ -305,7 +305,7 @@ fn a_line_that_is_lost_in_the_middle_is_told() {
         encoder.kill();
         let ran = going.ended();
         assert_eq!(ran.status, Some(1), "{ran:?}");
-        assert!(ran.took < IN_TIME, "{ran:?}");
+        assert!(ran.out.lines().count() > 10 && ran.took.as_secs() < 10, "{ran:?}");
         ran.says(&[]);
     }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 
 use super::going::Going;
-use super::support::{Bench, IN_TIME, ended, frame, signal};
+use super::support::{Bench, ended, frame, signal};
 
 const FIELDS: &str = r#"[{"status":"C9","bytes":"0815"},{"status":"88","bytes":"01"}]"#;
 
@@ -17,7 +17,7 @@ fn a_silent_encoder_ends_a_command_in_time() {
     let Some(encoder) = bench.encoder(&["--silent"]) else { return };
     let ran = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]);
     ran.fails(1, &["40h"]);
-    assert!(ran.took < IN_TIME, "{ran:?}");
+    assert!(ran.took < Duration::from_secs(10), "{ran:?}");
     // Tried again, but not for ever.
     assert!((2..=5).contains(&encoder.requests().len()));
 }
@@ -28,7 +28,7 @@ fn a_silent_encoder_behind_an_echo_is_told_apart() {
     let Some(encoder) = bench.encoder(&["--silent", "--echo"]) else { return };
     let ran = bench.run(&["save", "hiperface", "--link", &encoder.url, "-o", &bench.file("p.ron")]);
     ran.fails(1, &["40h"]);
-    assert!(ran.took < IN_TIME, "{ran:?}");
+    assert!(ran.took < Duration::from_secs(10), "{ran:?}");
     assert!(!bench.path("p.ron").exists());
 }
 
@@ -40,7 +40,7 @@ fn nonsense_is_never_taken_for_a_value() {
         for arguments in [&["identify", "hiperface"][..], &["read", "hiperface", "counter"]] {
             let ran = bench.run(&[arguments, &["--link", &encoder.url]].concat());
             ran.fails(1, &[]);
-            assert!(ran.took < IN_TIME, "{ran:?}");
+            assert!(ran.took < Duration::from_secs(10), "{ran:?}");
         }
     }
 }
@@ -58,7 +58,7 @@ fn unplugging_ends_polling_with_one_sentence() {
         assert_eq!(ran.status, Some(1), "{ran:?}");
         ran.says(&["lost", "unplugged"]);
         assert!(!ran.out.is_empty(), "{ran:?}");
-        assert!(ran.took < IN_TIME, "interval {interval}: {ran:?}");
+        assert!(ran.took < Duration::from_secs(4), "interval {interval}: {ran:?}");
     }
 }
 
@@ -73,7 +73,7 @@ fn an_interrupt_ends_polling_at_once() {
         let ran = going.ended();
         assert!(ran.status.is_some(), "killed by the signal instead of ending: {ran:?}");
         assert!(!ran.err.contains("panicked"), "{ran:?}");
-        assert!(ran.took < IN_TIME, "interval {interval}: {ran:?}");
+        assert!(ran.took < Duration::from_secs(4), "interval {interval}: {ran:?}");
     }
 }
 
@@ -88,7 +88,7 @@ fn power_lost_in_a_restore_names_the_backup_and_the_next_restore_completes() {
 
     let ran = bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]);
     ran.fails(1, &["backups"]);
-    assert!(ran.took < IN_TIME, "{ran:?}");
+    assert!(ran.took < Duration::from_secs(12), "{ran:?}");
     let mut words = ran.err.split_whitespace().map(|word| word.trim_end_matches([';', ',', '.']));
     let backup = words.find(|word| word.ends_with(".ron") && word.contains("backups")).unwrap();
     assert!(Path::new(backup).is_file(), "{ran:?}");
@@ -127,7 +127,7 @@ fn a_field_left_without_its_protection_is_named_and_the_next_restore_protects_it
     assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
     let ran = bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]);
     ran.fails(1, &["field 0", "protection", "backups"]);
-    assert!(ran.took < IN_TIME, "{ran:?}");
+    assert!(ran.took < Duration::from_secs(15), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4D 00 C8 55"), frame("40 4B 00 00 04 55 0A 0B 0C 0D")]);
 
     bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]).json();
@@ -146,7 +146,7 @@ fn a_search_is_interrupted() {
         signal(&child, "INT");
         let ran = ended(child, Instant::now());
         assert_eq!(ran.out.contains("address 40h at 9600"), found, "{ran:?}");
-        assert!(ran.took < IN_TIME, "{ran:?}");
+        assert!(ran.took < Duration::from_secs(5), "{ran:?}");
         assert!(ran.status == Some(1) && ran.err.contains("Cancelled: the search was cut short"), "{ran:?}");
     }
 }

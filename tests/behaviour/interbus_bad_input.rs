@@ -1,6 +1,6 @@
 //! Everything that can be wrong with what is typed, with the gateway and with the encoder: one clear sentence each.
 
-use super::support::{Bench, Foreign, IN_TIME, Ran};
+use super::support::{Bench, Foreign, Ran};
 
 fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
@@ -110,7 +110,7 @@ fn words_with_their_halves_exchanged_say_that_the_order_may_be_swapped() {
             for command in [&["identify", "interbus"][..], &["read", "interbus", "steps"]] {
                 let ran = bench.run(&[command, &["--link", &link]].concat());
                 ran.fails(1, &["word order may be swapped", "order="]);
-                assert!(ran.took < IN_TIME, "{ran:?}");
+                assert!(ran.took.as_secs() < 12, "{ran:?}");
             }
             let told = encoder.requests();
             assert!(told.iter().all(|line| !line.starts_with("STORE")), "{told:?}");
@@ -133,14 +133,14 @@ fn a_gateway_that_does_not_answer_is_told_within_its_time() {
     let Some(silent) = bench.gateway(&["--silent-after=4"]) else { return };
     let ran = ask(&bench, &silent, &["identify", "interbus"]);
     ran.fails(1, &["does not answer"]);
-    assert!(ran.took < IN_TIME, "{ran:?}");
+    assert!(ran.took.as_secs() < 12, "{ran:?}");
     let Some(gone) = bench.gateway(&["--vanish-after=4"]) else { return };
     let ran = ask(&bench, &gone, &["identify", "interbus"]);
     ran.fails(1, &[&gone.place]);
     let Some(noise) = bench.gateway(&["--garbage"]) else { return };
     let ran = ask(&bench, &noise, &["identify", "interbus"]);
     ran.fails(1, &["gateway"]);
-    assert!(ran.took < IN_TIME, "{ran:?}");
+    assert!(ran.took.as_secs() < 12, "{ran:?}");
     let file = bench.file("never.ron");
     let Some(silent) = bench.gateway(&["--silent-after=60"]) else { return };
     ask(&bench, &silent, &["save", "interbus", "-o", &file]).fails(1, &["does not answer"]);

@@ -6,7 +6,7 @@ use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 use jiff::Timestamp;
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, IN_TIME, Ran, asked};
+use super::support::{Bench, Foreign, Ran, asked};
 
 fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
@@ -319,5 +319,5 @@ fn a_gateway_that_is_gone_in_the_middle_is_told_with_the_backup() {
     let ran = ask(&bench, &encoder, &restore);
     assert_eq!((ran.status, ran.out.as_str()), (Some(1), ""), "{ran:?}");
     assert!(ran.err.contains("backups/interbus/4000") && ran.err.contains("lead-back"), "{ran:?}");
-    assert!(!ran.err.contains("panicked") && ran.took < IN_TIME, "{ran:?}");
+    assert!(!ran.err.contains("panicked") && ran.took.as_secs() < 20, "{ran:?}");
 }
