@@ -1,9 +1,7 @@
 //! An SSI encoder behind an adapter that is not our program: position and status, and what can be typed wrongly about them.
 
-use std::time::Duration;
-
 use std::io::{BufRead, BufReader, Read};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
