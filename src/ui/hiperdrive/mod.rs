@@ -13,6 +13,7 @@ mod network;
 pub(in crate::ui) mod outside;
 mod parameters;
 mod scale;
+mod state_machine;
 
 use std::collections::BTreeMap;
 

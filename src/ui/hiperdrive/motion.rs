@@ -2,6 +2,7 @@
 
 use egui::{Id, RichText, Ui, UiBuilder, vec2};
 
+use super::state_machine::{StateMachine, state_machine};
 use super::{figures, jog, outside};
 use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::{Action as Hiperdrive, Motor, Unit, forms};
@@ -13,7 +14,7 @@ use crate::ui::controls::{
     two_columns,
 };
 use crate::ui::stopping::{goes_down, means_motion, pressed_at};
-use crate::ui::widgets::{StateMachine, state_machine};
+
 use crate::ui::{Skin, icons};
 
 /// A percentage as it is typed.

@@ -8,6 +8,7 @@ mod parameters;
 mod read_outs;
 mod reader;
 mod standstill;
+mod widgets;
 
 use egui::Ui;
 

@@ -13,7 +13,7 @@ use crate::ui::controls::{
     button, card_with, choice, enabled_button, icon_button, name, paragraph, primary, problem, settled_entry,
     two_columns,
 };
-use crate::ui::widgets::{BitStrip, StripEvent, bit_strip};
+use crate::ui::ssi::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::{Skin, icons};
 
 /// What the page remembers.

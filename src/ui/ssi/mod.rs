@@ -7,6 +7,7 @@ mod form;
 mod frame;
 mod timing;
 mod trial;
+mod widgets;
 mod wiring;
 
 use egui::Ui;

@@ -9,7 +9,7 @@ use crate::app::ssi::timing::Diagram;
 use crate::app::{Action, Text, explain};
 use crate::protocol::ssi::Timing;
 use crate::ui::controls::{card, paragraph, row, two_columns};
-use crate::ui::widgets::{TimingDiagram, timing_diagram};
+use crate::ui::ssi::widgets::{TimingDiagram, timing_diagram};
 use crate::ui::{Skin, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {

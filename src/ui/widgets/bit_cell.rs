@@ -6,20 +6,20 @@ use crate::ui::Skin;
 
 /// A cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BitCell<'a> {
+pub(crate) struct BitCell<'a> {
     /// The colour of its field.
-    pub(super) ink: Color32,
+    pub(crate) ink: Color32,
     /// The bit; `None`: not known.
-    pub(super) bit: Option<bool>,
+    pub(crate) bit: Option<bool>,
     /// What stands in the place of a bit that is not known.
-    pub(super) blank: &'a str,
+    pub(crate) blank: &'a str,
     /// It tells of something wrong: filled with its colour.
-    pub(super) alarm: bool,
+    pub(crate) alarm: bool,
 }
 
 impl BitCell<'_> {
     /// Paints it.
-    pub(super) fn paint(&self, painter: &Painter, skin: &Skin, rect: Rect) {
+    pub(crate) fn paint(&self, painter: &Painter, skin: &Skin, rect: Rect) {
         let palette = skin.palette;
         let corners = CornerRadius::same(2);
         let (strength, colour) = match (self.alarm, self.bit) {

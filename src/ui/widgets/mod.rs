@@ -2,10 +2,6 @@
 //! user wants; none knows a device. They share how the keyboard's place, what is hatched and a series' colour look.
 
 mod bit_cell;
-mod bit_strip;
-mod cam_chart;
-mod cam_lanes;
-mod cam_ring;
 mod chart;
 mod field_map;
 mod frame_strip;
@@ -13,21 +9,15 @@ mod hex_editor;
 mod hold_button;
 mod lissajous;
 mod register_table;
-mod state_machine;
 mod step_ring;
 mod steps;
-mod timing_diagram;
 mod typed_view;
-mod word_layout;
 
 use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
 
 use super::Skin;
 
-pub use bit_strip::{BitStrip, StripEvent, bit_strip};
-pub use cam_chart::{CamChart, CamEvent};
-pub use cam_lanes::cam_lanes;
-pub use cam_ring::cam_ring;
+pub(crate) use bit_cell::BitCell;
 pub use chart::{Chart, Trace, chart};
 pub use field_map::{FieldMap, MapEvent, MapField, field_map};
 pub use frame_strip::{FrameStrip, StripField, frame_strip};
@@ -41,21 +31,18 @@ pub use register_table::{
     Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterOutput, RegisterRow, RegisterTable,
     RegisterView, register_table,
 };
-pub use state_machine::{StateMachine, state_machine};
 pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, Step, StepState, Steps, StepsEvent, steps};
-pub use timing_diagram::{TimingDiagram, timing_diagram};
 pub use typed_view::typed_view;
-pub use word_layout::{WordLayout, word_layout};
 
 /// The ring around what has the keyboard: two points of the accent, one point off the widget.
-fn focus_ring(painter: &Painter, skin: &Skin, rect: Rect, corners: impl Into<CornerRadius>) {
+pub(crate) fn focus_ring(painter: &Painter, skin: &Skin, rect: Rect, corners: impl Into<CornerRadius>) {
     let corners = corners.into() + CornerRadius::same(1);
     painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, skin.palette.accent), StrokeKind::Outside);
 }
 
 /// Diagonal lines.
-fn hatch(painter: &Painter, skin: &Skin, rect: Rect, colour: Color32) {
+pub(crate) fn hatch(painter: &Painter, skin: &Skin, rect: Rect, colour: Color32) {
     let painter = painter.with_clip_rect(rect.shrink(1.0).intersect(painter.clip_rect()));
     let mut x = rect.left() - rect.height();
     while x < rect.right() {
@@ -66,10 +53,10 @@ fn hatch(painter: &Painter, skin: &Skin, rect: Rect, colour: Color32) {
 }
 
 /// The colour of a series; they begin again after the eighth.
-pub(super) fn series(skin: &Skin, number: usize) -> Color32 {
+pub(crate) fn series(skin: &Skin, number: usize) -> Color32 {
     let colours = &skin.palette.series;
     colours.iter().cycle().nth(number % colours.len()).copied().map_or(skin.palette.muted.into(), Color32::from)
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

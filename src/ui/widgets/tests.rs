@@ -7,24 +7,23 @@ use egui_kittest::kittest::Queryable;
 use crate::app::{Language, Look, Theme};
 use crate::ui::{Skin, install_fonts};
 
-mod bit_strip;
-mod cams;
 mod field_map;
 mod frame_strip;
 mod hex_editor;
 mod hold_button;
 mod register_table;
 mod steps;
-mod timing_diagram;
 mod typed_view;
-mod word_layout;
 
-fn skin() -> Skin {
+pub(crate) fn skin() -> Skin {
     Skin::new(Look::built_in().unwrap(), Theme::Dark, Language::English)
 }
 
 /// A widget with its state between two buttons, in a window.
-fn window<State>(state: State, draw: impl Fn(&mut egui::Ui, &mut State) + 'static) -> Harness<'static, State> {
+pub(crate) fn window<State>(
+    state: State,
+    draw: impl Fn(&mut egui::Ui, &mut State) + 'static,
+) -> Harness<'static, State> {
     let mut harness = Harness::builder()
         .with_size(Vec2::new(900.0, 500.0))
         .with_context_setup(|ctx| {
@@ -46,7 +45,7 @@ fn window<State>(state: State, draw: impl Fn(&mut egui::Ui, &mut State) + 'stati
 }
 
 /// Presses keys one after the other.
-fn press<State>(harness: &mut Harness<'_, State>, keys: &[(Modifiers, Key)]) {
+pub(crate) fn press<State>(harness: &mut Harness<'_, State>, keys: &[(Modifiers, Key)]) {
     for (modifiers, key) in keys {
         harness.key_press_modifiers(*modifiers, *key);
         harness.run();
@@ -54,11 +53,11 @@ fn press<State>(harness: &mut Harness<'_, State>, keys: &[(Modifiers, Key)]) {
 }
 
 /// Puts the keyboard on a widget.
-fn focus<State>(harness: &mut Harness<'_, State>, label: &str) {
+pub(crate) fn focus<State>(harness: &mut Harness<'_, State>, label: &str) {
     harness.get_by_label(label).focus();
     harness.run();
 }
 
-const NONE: Modifiers = Modifiers::NONE;
-const SHIFT: Modifiers = Modifiers::SHIFT;
-const CTRL: Modifiers = Modifiers::COMMAND;
+pub(crate) const NONE: Modifiers = Modifiers::NONE;
+pub(crate) const SHIFT: Modifiers = Modifiers::SHIFT;
+pub(crate) const CTRL: Modifiers = Modifiers::COMMAND;

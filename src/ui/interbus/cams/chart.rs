@@ -7,7 +7,7 @@ use crate::app::interbus::{Action as Interbus, Edit, Encoder, Preview};
 use crate::app::{Action, Text};
 use crate::protocol::interbus::{CamNumber, StartupMode};
 use crate::ui::controls::{card_with, icon_button, name, paragraph};
-use crate::ui::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
+use crate::ui::interbus::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
 use crate::ui::{Skin, icons};
 
 /// What is looked at, and how.

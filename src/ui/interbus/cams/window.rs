@@ -7,7 +7,7 @@ use crate::app::{Action, Text};
 use crate::protocol::interbus::{StartupMode, WindowShift};
 use crate::ui::Skin;
 use crate::ui::controls::{card, choice, entry, paragraph};
-use crate::ui::widgets::{WordLayout, word_layout};
+use crate::ui::interbus::widgets::{WordLayout, word_layout};
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, skin, "ib_window.title", |ui| {

@@ -1,15 +1,12 @@
-//! A button that counts while it is held, and the diagram of a drive's states.
+//! A button that counts while it is held.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, ViewportId};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 
-use super::{NONE, focus, press, skin, window};
+use super::{focus, skin, window};
 use crate::app::HoldEvent;
-use crate::protocol::hiperdrive::State;
-use crate::ui::widgets::{
-    HoldButton, HoldSurroundings, StateMachine, hold_button, state_machine, surround_hold_buttons,
-};
+use crate::ui::widgets::{HoldButton, HoldSurroundings, hold_button, surround_hold_buttons};
 use HoldEvent::{Hold, Press, Release, Stop};
 
 #[derive(Default)]
@@ -330,35 +327,4 @@ fn a_key_stops_what_moves_already() {
         step(&mut harness, []);
     }
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
-}
-
-fn states(present: Option<State>) -> Harness<'static, Vec<State>> {
-    let names = State::ALL.map(|state| state.name().to_owned());
-    let hints = State::ALL.map(|state| (state == State::Ready).then(|| "Control word 0x0400".to_owned()));
-    let reachable: Vec<State> = match present {
-        Some(State::Operational) => vec![State::NotReady, State::Ready, State::Enabled],
-        _ => Vec::new(),
-    };
-    window(Vec::new(), move |ui, asked: &mut Vec<State>| {
-        let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
-        asked.extend(state_machine(ui, &skin(), &machine));
-    })
-}
-
-#[test]
-fn only_a_state_that_can_be_gone_to_is_asked_for() {
-    let mut harness = states(Some(State::Operational));
-    for state in State::ALL {
-        let node = harness.get_by_label(state.name());
-        let reachable = matches!(state, State::NotReady | State::Ready | State::Enabled);
-        assert_eq!(node.accesskit_node().is_disabled(), !reachable, "{state}");
-        node.click();
-        harness.run();
-        let expected: &[State] = if reachable { &[state] } else { &[] };
-        assert_eq!(std::mem::take(harness.state_mut()), expected, "{state}");
-    }
-    focus(&mut harness, "enabled");
-    press(&mut harness, &[(NONE, Key::Enter)]);
-    assert_eq!(*harness.state(), [State::Enabled]);
-    assert!(states(None).get_by_label("moving").accesskit_node().is_disabled());
 }

@@ -13,23 +13,23 @@ use egui::{
     Align2, Color32, CornerRadius, FontId, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2,
 };
 
-use super::bit_cell::BitCell;
-use super::series;
 use crate::app::Text;
 use crate::protocol::interbus::{CamBit, CamOutput, Value, WindowShift};
 use crate::ui::Skin;
+use crate::ui::widgets::BitCell;
+use crate::ui::widgets::series;
 
 /// A word.
 #[derive(Clone, Copy, Debug)]
-pub struct WordLayout<'a> {
+pub(crate) struct WordLayout<'a> {
     /// Accessible name.
-    pub label: &'a str,
+    pub(crate) label: &'a str,
     /// How far the position is shifted under its window.
-    pub shift: WindowShift,
+    pub(crate) shift: WindowShift,
     /// A cam output word as it came; `None`: the layout alone.
-    pub word: Option<u32>,
+    pub(crate) word: Option<u32>,
     /// Steps of the measuring range: bits of the position above it are always 0.
-    pub range: u32,
+    pub(crate) range: u32,
 }
 
 /// Bits that are of one kind.
@@ -203,7 +203,7 @@ impl Cells {
 }
 
 /// Draws it.
-pub fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
+pub(crate) fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
     let cells = Cells::new(ui.available_width());
     let (outer, response) = ui.allocate_exact_size(cells.size(), Sense::hover());
     let cells = cells.at(outer.min);

@@ -32,26 +32,26 @@ use rows::Rows;
 
 /// A frame.
 #[derive(Clone, Copy, Debug)]
-pub struct BitStrip<'a> {
+pub(crate) struct BitStrip<'a> {
     /// Accessible name of the cells.
-    pub label: &'a str,
+    pub(crate) label: &'a str,
     /// The frame as it is, also while something is dragged.
-    pub strip: &'a Strip,
+    pub(crate) strip: &'a Strip,
     /// Bits to show in it, right-justified.
-    pub frame: Option<u64>,
+    pub(crate) frame: Option<u64>,
     /// Which clock's cell is selected.
-    pub selected: Option<u8>,
+    pub(crate) selected: Option<u8>,
     /// Bits can be turned over.
-    pub toggles: bool,
+    pub(crate) toggles: bool,
     /// Boundaries and single bits can be moved.
-    pub movable: bool,
+    pub(crate) movable: bool,
     /// Error and parity bits directly behind the position go with its end.
-    pub following: bool,
+    pub(crate) following: bool,
 }
 
 /// What the user wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StripEvent {
+pub(crate) enum StripEvent {
     /// While something is dragged: it would come to this clock. It comes at every drawing until the drag ends.
     Preview(Handle, u8),
     /// To this clock, which it can reach and where it is not yet.
@@ -73,7 +73,7 @@ struct Drag {
 }
 
 /// Draws it and says what was done. One strip a `Ui`: another needs an id of its own (`push_id`).
-pub fn bit_strip(ui: &mut Ui, skin: &Skin, model: &BitStrip<'_>) -> Option<StripEvent> {
+pub(crate) fn bit_strip(ui: &mut Ui, skin: &Skin, model: &BitStrip<'_>) -> Option<StripEvent> {
     let base = ui.make_persistent_id("bit_strip");
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));

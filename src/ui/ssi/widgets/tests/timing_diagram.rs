@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use egui_kittest::kittest::Queryable;
 
-use super::{skin, window};
 use crate::app::ssi::timing::Diagram;
 use crate::protocol::ssi::{Families, Reads, Settings};
-use crate::ui::widgets::{TimingDiagram, timing_diagram};
+use crate::ui::ssi::widgets::{TimingDiagram, timing_diagram};
+use crate::ui::widgets::tests::{skin, window};
 
 fn diagram(clock_hz: f64, pause_us: u64) -> Diagram {
     let families = Families::built_in();

@@ -4,10 +4,10 @@ use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use super::{NONE, focus, press, skin, window};
 use crate::app::ssi::strip::{Handle, Strip};
 use crate::protocol::ssi::{ErrorBit, Families, Layout, Meaning, Settings};
-use crate::ui::widgets::{BitStrip, StripEvent, bit_strip};
+use crate::ui::ssi::widgets::{BitStrip, StripEvent, bit_strip};
+use crate::ui::widgets::tests::{NONE, focus, press, skin, window};
 
 struct Design {
     strip: Strip,

@@ -8,7 +8,7 @@ use super::paint::Grip;
 use crate::app::interbus::cams::{Hold, Lane, Stretch, words};
 use crate::profile::interbus::Edge;
 use crate::protocol::interbus::Cam;
-use crate::ui::widgets::cam_chart::{CamEvent, Drag};
+use crate::ui::interbus::widgets::cam_chart::{CamEvent, Drag};
 
 impl Lanes<'_> {
     /// All of them: what they look like, and what was done to one. Where they are taken hold of is where they were before

@@ -16,12 +16,12 @@ use egui::{
 };
 
 use super::cam_chart::{self, CamChart, CamEvent, Drag, ink};
-use super::focus_ring;
 use crate::app::Text;
 use crate::app::interbus::cams::{Chart, Hold, Lane, Snap, View, ticks, words};
 use crate::profile::interbus::Edge;
 use crate::protocol::interbus::{CamNumber, Program, Value};
 use crate::ui::Skin;
+use crate::ui::widgets::focus_ring;
 
 /// The least side of the square.
 const LEAST: f32 = 160.0;
@@ -94,7 +94,7 @@ struct Ring<'a> {
 }
 
 /// Draws it and says what was done. One ring a `Ui`: another needs an id of its own (`push_id`).
-pub fn cam_ring(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
+pub(crate) fn cam_ring(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
     let preview = model.shown(drag);

@@ -10,21 +10,21 @@
 use egui::accesskit::Role;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
 
-use super::focus_ring;
 use crate::protocol::hiperdrive::State;
 use crate::ui::Skin;
+use crate::ui::widgets::focus_ring;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct StateMachine<'a> {
+pub(crate) struct StateMachine<'a> {
     /// The state in which the drive is; `None`: it is not known.
-    pub present: Option<State>,
+    pub(crate) present: Option<State>,
     /// Where it can be led to from here.
-    pub reachable: &'a [State],
+    pub(crate) reachable: &'a [State],
     /// What the states are called, in the order of [`State::ALL`].
-    pub names: &'a [String; 7],
+    pub(crate) names: &'a [String; 7],
     /// What going there does, by state, where something is to be said.
-    pub hints: &'a [Option<String>; 7],
+    pub(crate) hints: &'a [Option<String>; 7],
 }
 
 /// Sizes in points.
@@ -72,7 +72,7 @@ impl Plan {
 }
 
 /// Draws it; the state that was asked for.
-pub fn state_machine(ui: &mut Ui, skin: &Skin, machine: &StateMachine<'_>) -> Option<State> {
+pub(crate) fn state_machine(ui: &mut Ui, skin: &Skin, machine: &StateMachine<'_>) -> Option<State> {
     let size = vec2(ui.available_width().max(240.0), 2.0 * BOX + BETWEEN);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let plan = Plan::new(rect);
@@ -192,4 +192,45 @@ fn line(painter: &Painter, points: &[Pos2], stroke: Stroke) {
     let across = along.rot90() * 0.5;
     let head = vec![*tip, *tip - along + across, *tip - along - across];
     painter.add(egui::Shape::convex_polygon(head, stroke.color, Stroke::NONE));
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::Key;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
+
+    use super::*;
+    use crate::ui::widgets::tests::{NONE, focus, press, skin, window};
+
+    fn states(present: Option<State>) -> Harness<'static, Vec<State>> {
+        let names = State::ALL.map(|state| state.name().to_owned());
+        let hints = State::ALL.map(|state| (state == State::Ready).then(|| "Control word 0x0400".to_owned()));
+        let reachable: Vec<State> = match present {
+            Some(State::Operational) => vec![State::NotReady, State::Ready, State::Enabled],
+            _ => Vec::new(),
+        };
+        window(Vec::new(), move |ui, asked: &mut Vec<State>| {
+            let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
+            asked.extend(state_machine(ui, &skin(), &machine));
+        })
+    }
+
+    #[test]
+    fn only_a_state_that_can_be_gone_to_is_asked_for() {
+        let mut harness = states(Some(State::Operational));
+        for state in State::ALL {
+            let node = harness.get_by_label(state.name());
+            let reachable = matches!(state, State::NotReady | State::Ready | State::Enabled);
+            assert_eq!(node.accesskit_node().is_disabled(), !reachable, "{state}");
+            node.click();
+            harness.run();
+            let expected: &[State] = if reachable { &[state] } else { &[] };
+            assert_eq!(std::mem::take(harness.state_mut()), expected, "{state}");
+        }
+        focus(&mut harness, "enabled");
+        press(&mut harness, &[(NONE, Key::Enter)]);
+        assert_eq!(*harness.state(), [State::Enabled]);
+        assert!(states(None).get_by_label("moving").accesskit_node().is_disabled());
+    }
 }

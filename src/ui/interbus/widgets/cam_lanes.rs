@@ -39,7 +39,7 @@ struct Lanes<'a> {
 }
 
 /// Draws a part of the range and says what was done. One chart a `Ui`: another needs an id of its own (`push_id`).
-pub fn cam_lanes(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, view: View) -> Option<CamEvent> {
+pub(crate) fn cam_lanes(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, view: View) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
     let preview = model.shown(drag);

@@ -7,7 +7,7 @@ use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, StrokeKind, Vec2, 
 use super::Lanes;
 use crate::app::Text;
 use crate::app::interbus::cams::{Lamp, Lane, words};
-use crate::ui::widgets::cam_chart::{CamEvent, ink};
+use crate::ui::interbus::widgets::cam_chart::{CamEvent, ink};
 use crate::ui::widgets::focus_ring;
 use crate::ui::{controls, icons};
 

@@ -4,37 +4,37 @@
 use egui::accesskit::{Action, ActionData, Role};
 use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Ui, Vec2, WidgetInfo};
 
-use super::series;
 use crate::app::Text;
 use crate::app::interbus::cams::{self, Chart, Hold, Snap, View, words};
 use crate::profile::interbus::{Edge, Scale};
 use crate::protocol::interbus::{Cam, CamNumber, Value};
 use crate::ui::Skin;
+use crate::ui::widgets::series;
 
 /// A program.
 #[derive(Clone, Copy, Debug)]
-pub struct CamChart<'a> {
+pub(crate) struct CamChart<'a> {
     /// Accessible name.
-    pub label: &'a str,
+    pub(crate) label: &'a str,
     /// The program as it is wanted, also while something is dragged.
-    pub chart: &'a Chart,
+    pub(crate) chart: &'a Chart,
     /// The machine's units.
-    pub scale: &'a Scale,
+    pub(crate) scale: &'a Scale,
     /// Where the encoder is; `None`: not known.
-    pub position: Option<u32>,
+    pub(crate) position: Option<u32>,
     /// The outputs as the encoder says, bit i for cam i; `None`: it does not.
-    pub own: Option<u8>,
+    pub(crate) own: Option<u8>,
     /// Which cam is selected.
-    pub selected: Option<CamNumber>,
+    pub(crate) selected: Option<CamNumber>,
     /// Cams can be changed.
-    pub movable: bool,
+    pub(crate) movable: bool,
     /// Edges are drawn to what is near; holding Alt lets go.
-    pub snaps: bool,
+    pub(crate) snaps: bool,
 }
 
 /// What the user wants.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CamEvent {
+pub(crate) enum CamEvent {
     /// While something is dragged: the cam would come to lie there. It comes at every drawing until the drag ends.
     Preview(CamNumber, Cam),
     /// The cam is to lie there, where it does not yet.

@@ -5,12 +5,12 @@ use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use super::{NONE, SHIFT, focus, press, skin, window};
 use crate::app::interbus::cams::{Chart, View};
 use crate::app::interbus::staged::{Edit, Staged};
 use crate::profile::interbus::{Direction, Image, Names, Parameters, Scale};
 use crate::protocol::interbus::{Cam, CamNumber, ProgramNumber, Value};
-use crate::ui::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
+use crate::ui::interbus::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
+use crate::ui::widgets::tests::{NONE, SHIFT, focus, press, skin, window};
 
 struct Page {
     staged: Staged,

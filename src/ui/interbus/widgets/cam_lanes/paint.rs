@@ -6,7 +6,7 @@ use super::Lanes;
 use crate::app::interbus::cams::{Hold, Lane, Tick, ticks, words};
 use crate::profile::interbus::{Edge, Scale, Unit};
 use crate::protocol::interbus::CamNumber;
-use crate::ui::widgets::cam_chart::{Drag, ink};
+use crate::ui::interbus::widgets::cam_chart::{Drag, ink};
 use crate::ui::widgets::{focus_ring, hatch};
 
 /// How far numbers of a ruler are apart at least, in points.

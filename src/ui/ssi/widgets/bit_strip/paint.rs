@@ -8,12 +8,12 @@ use super::rows::Rows;
 use super::{Drag, View, tells};
 use crate::app::ssi::strip::{self, Field, Handle, Kind};
 use crate::protocol::ssi::Meaning;
-use crate::ui::widgets::bit_cell::BitCell;
+use crate::ui::widgets::BitCell;
 use crate::ui::widgets::{focus_ring, series};
 use crate::ui::{Skin, controls};
 
 /// The colour of a field; none for zeros.
-pub(in crate::ui::widgets) fn ink(skin: &Skin, kind: Kind) -> Color32 {
+pub(crate) fn ink(skin: &Skin, kind: Kind) -> Color32 {
     match kind {
         Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => skin.palette.muted.into(),
         Kind::Turns => series(skin, 0),

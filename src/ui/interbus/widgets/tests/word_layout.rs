@@ -2,9 +2,9 @@
 
 use egui_kittest::kittest::Queryable;
 
-use super::{skin, window};
 use crate::protocol::interbus::WindowShift;
-use crate::ui::widgets::{WordLayout, word_layout};
+use crate::ui::interbus::widgets::{WordLayout, word_layout};
+use crate::ui::widgets::tests::{skin, window};
 
 fn draw(shift: u8, word: Option<u32>, width: f32) -> egui_kittest::Harness<'static, ()> {
     window((), move |ui, ()| {

@@ -16,24 +16,24 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{Color32, FontId, Galley, Painter, Rangef, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};
 
+use super::bit_strip::field_ink;
 use crate::app::Text;
 use crate::app::ssi::strip::{Shown, bare, short};
 use crate::app::ssi::timing::{Diagram, left_out};
 use crate::ui::Skin;
-use crate::ui::widgets::bit_strip::field_ink;
 
 use axis::Axis;
 use place::{Bar, Flag, Put};
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct TimingDiagram<'a> {
+pub(crate) struct TimingDiagram<'a> {
     /// Accessible name.
-    pub label: &'a str,
+    pub(crate) label: &'a str,
     /// A burst.
-    pub diagram: &'a Diagram,
+    pub(crate) diagram: &'a Diagram,
     /// Bits to show in it, right-justified.
-    pub frame: Option<u64>,
+    pub(crate) frame: Option<u64>,
 }
 
 /// Heights of the lines' rows, and of words.
@@ -56,7 +56,7 @@ struct Rows {
 }
 
 /// Draws it.
-pub fn timing_diagram(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
+pub(crate) fn timing_diagram(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
     skin.sunken().show(ui, |ui| draw(ui, skin, model));
 }
 

@@ -1,0 +1,10 @@
+//! Widgets of this tab: the bits of a frame, and a burst in time.
+
+mod bit_strip;
+mod timing_diagram;
+
+pub(crate) use bit_strip::{BitStrip, StripEvent, bit_strip};
+pub(crate) use timing_diagram::{TimingDiagram, timing_diagram};
+
+#[cfg(test)]
+mod tests;
