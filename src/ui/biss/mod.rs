@@ -3,6 +3,7 @@
 mod data;
 mod encoder;
 mod frame;
+pub(in crate::ui) mod live;
 mod motor;
 mod procedures;
 mod registers;

@@ -8,6 +8,7 @@ mod errors;
 mod figures;
 mod jog;
 mod leds;
+pub(in crate::ui) mod live;
 mod motion;
 mod network;
 pub(in crate::ui) mod outside;

@@ -2,6 +2,7 @@
 
 mod commutation;
 mod encoder;
+pub(in crate::ui) mod live;
 mod memory;
 mod setup;
 mod values;

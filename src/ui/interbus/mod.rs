@@ -3,6 +3,7 @@
 mod cams;
 mod encoder;
 mod lamps;
+pub(in crate::ui) mod live;
 mod marks;
 mod parameters;
 mod read_outs;

@@ -1,22 +1,15 @@
 //! The position, large, and the plot of what was recorded.
 
-mod biss;
-mod hiperdrive;
-mod interbus;
-mod ssi;
-
 use std::time::Duration;
 
 use egui::{RichText, Ui};
 
 use super::nothing;
-use crate::app::hiperface::{self, Action as Hiperface, Encoder};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Desk, Rgb, Studio, Text, Wish};
-use crate::device::hiperface::Watch;
-use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, paragraph, row, text_entry};
+use crate::ui::controls::{choice, enabled_button, icon_button};
 use crate::ui::page::apart;
-use crate::ui::{Skin, Views, icons, plot};
+use crate::ui::{Skin, Views, biss, hiperdrive, hiperface, icons, interbus, plot, ssi};
 
 /// Microseconds from one reading of the position to the next; back to back first.
 const RATES: [(u64, &str); 4] =
@@ -27,7 +20,7 @@ const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5
 const USUAL: u64 = 50_000;
 
 /// Height in points below which the numbers beside the position stand in one line.
-const LOW: f32 = 460.0;
+pub(crate) const LOW: f32 = 460.0;
 
 /// Seconds after which somebody notices that the position stays as it is.
 const NOTICED: f32 = 0.4;
@@ -41,11 +34,11 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     let paused = is_paused(ui, device);
     let ink = if device.is_polling() && !paused { skin.palette.text } else { skin.palette.muted };
     match device {
-        AnyDevice::Hiperface(encoder) => value(ui, skin, encoder, ink),
-        AnyDevice::Biss(encoder) => biss::value_ui(ui, skin, encoder, ink),
-        AnyDevice::Ssi(encoder) => ssi::value_ui(ui, skin, encoder, ink),
-        AnyDevice::Interbus(encoder) => interbus::value_ui(ui, skin, encoder, ink),
-        AnyDevice::Hiperdrive(unit) => hiperdrive::value_ui(ui, skin, unit, ink),
+        AnyDevice::Hiperface(encoder) => hiperface::live::value_ui(ui, skin, encoder, ink),
+        AnyDevice::Biss(encoder) => biss::live::value_ui(ui, skin, encoder, ink),
+        AnyDevice::Ssi(encoder) => ssi::live::value_ui(ui, skin, encoder, ink),
+        AnyDevice::Interbus(encoder) => interbus::live::value_ui(ui, skin, encoder, ink),
+        AnyDevice::Hiperdrive(unit) => hiperdrive::live::value_ui(ui, skin, unit, ink),
     }
     if paused {
         ui.label(skin.caption(skin.say("live.paused_by_job")));
@@ -67,35 +60,6 @@ fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     waits && share >= 1.0
 }
 
-/// What is read beside the position.
-fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, views: &mut Views, actions: &mut Vec<Action>) {
-    let word = skin.say("live.watch");
-    let watched = encoder.record.watched();
-    icon_menu(ui, icons::EYE, &word, |ui| {
-        ui.set_max_width(240.0);
-        ui.label(skin.heading(&word));
-        paragraph(ui, skin.caption(skin.say("live.watch_words")));
-        let usual = [Watch::TEMPERATURE, Watch::Counter];
-        let more = watched.iter().copied().filter(|own| !usual.contains(own));
-        for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
-            let mut on = watched.contains(&what);
-            if ui.checkbox(&mut on, skin.words(&hiperface::watch_name(what))).changed() {
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Watch(what, on)));
-            }
-        }
-        ui.horizontal(|ui| {
-            ui.label(skin.label(skin.say("analogue_card.channel")));
-            text_entry(ui, &mut views.channel, 48.0, &skin.say("analogue_card.channel"), "48");
-            let channel = hiperface::forms::channel(&views.channel);
-            if enabled_button(ui, channel.is_ok(), icons::PLUS, &skin.say("live.watch_add")).clicked()
-                && let Ok(channel) = channel
-            {
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Watch(Watch::Analogue(channel), true)));
-            }
-        });
-    });
-}
-
 /// The plot of what was recorded of a device.
 pub(in crate::ui) fn plot_ui(
     ui: &mut Ui,
@@ -115,48 +79,8 @@ pub(in crate::ui) fn plot_ui(
 }
 
 /// A word on the position beside it, cut where the panel ends: it must not make the panel wider than the window.
-fn mark(ui: &mut Ui, skin: &Skin, word: &'static str, ink: Rgb) {
+pub(crate) fn mark(ui: &mut Ui, skin: &Skin, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(skin.say(word)).color(ink)).truncate());
-}
-
-fn value(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
-    let record = &encoder.record;
-    let reading = record.last();
-    let position = reading.and_then(|reading| reading.position);
-    let number = |value: f64, decimals: usize| skin.number(value, decimals);
-    let (main, unit) = match (reading, position) {
-        (_, Some(position)) if position.millimetres().is_some() => {
-            (number(position.millimetres().unwrap_or_default(), 4), "mm".to_owned())
-        }
-        (_, Some(position)) => (number(position.degrees().unwrap_or_default(), 3), "°".to_owned()),
-        (Some(reading), None) => (reading.raw.to_string(), skin.say("live.steps")),
-        (None, None) => ("–".to_owned(), String::new()),
-    };
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
-        ui.label(skin.label(unit));
-        if record.refused() {
-            mark(ui, skin, "live.refused", skin.palette.bad);
-        } else if reading.is_some_and(|reading| !reading.valid) {
-            mark(ui, skin, "live.invalid", skin.palette.bad);
-        }
-    });
-    let Some(reading) = reading else { return };
-    let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
-    if ui.available_height() < LOW {
-        // In a low window the plot needs the room.
-        let mut words = format!("{:08X}h", reading.raw);
-        if let Some((turns, steps)) = place {
-            words = format!("{} {turns} · {} {steps} · {words}", skin.say("live.turns"), skin.say("live.step"));
-        }
-        ui.add(egui::Label::new(skin.caption(words)).truncate().selectable(true));
-        return;
-    }
-    if let Some((turns, steps)) = place {
-        row(ui, skin, &skin.say("live.turns"), skin.mono(turns.to_string()));
-        row(ui, skin, &skin.say("live.step"), skin.mono(steps.to_string()));
-    }
-    row(ui, skin, &skin.say("live.raw"), skin.mono(format!("{:08X}h  {}", reading.raw, reading.raw)));
 }
 
 fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, actions: &mut Vec<Action>) {
@@ -177,8 +101,10 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
             actions.push(device.wish(Wish::ReadPosition));
         }
         match device {
-            AnyDevice::Hiperface(encoder) => watch_menu(ui, skin, encoder, views, actions),
-            AnyDevice::Biss(encoder) => biss::watch_menu(ui, skin, encoder, actions),
+            AnyDevice::Hiperface(encoder) => {
+                hiperface::live::watch_menu(ui, skin, encoder, &mut views.channel, actions)
+            }
+            AnyDevice::Biss(encoder) => biss::live::watch_menu(ui, skin, encoder, actions),
             // They have no other values beside the position.
             AnyDevice::Ssi(_) | AnyDevice::Interbus(_) | AnyDevice::Hiperdrive(_) => {}
         }

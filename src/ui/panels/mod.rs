@@ -1,7 +1,7 @@
 //! The panels around the workspace: live values, the trace, jobs, the log.
 
 mod lists;
-mod live;
+pub(crate) mod live;
 mod trace;
 
 pub(super) use lists::{jobs_ui, log_ui};

@@ -5,6 +5,7 @@ mod export;
 mod find;
 mod form;
 mod frame;
+pub(in crate::ui) mod live;
 mod timing;
 mod trial;
 mod widgets;

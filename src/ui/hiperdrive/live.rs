@@ -2,16 +2,16 @@
 
 use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 
-use super::LOW;
+use super::outside::badge;
 use crate::app::explain::hiperdrive as explain;
 use crate::app::hiperdrive::{Measure, Unit};
 use crate::app::{Rgb, Text};
 use crate::protocol::hiperdrive::{State, turns};
 use crate::ui::Skin;
 use crate::ui::controls::row;
-use crate::ui::hiperdrive::outside::badge;
+use crate::ui::panels::live::LOW;
 
-pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
+pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
     let drive = unit.drive();
     let actual = unit.actual(drive);
     let ruler = unit.ruler(drive);

@@ -2,15 +2,15 @@
 
 use egui::{RichText, Ui};
 
-use super::LOW;
 use crate::app::biss::{Action as Biss, Encoder, Mark};
 use crate::app::{Action, Rgb, Text};
 use crate::device::biss::PositionReading;
 use crate::protocol::biss::{Register, Role};
 use crate::ui::controls::{icon_menu, paragraph, row};
+use crate::ui::panels::live::{LOW, mark as mark_ui};
 use crate::ui::{Skin, icons};
 
-pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let reading = encoder.record.last();
     let raw = |own: &PositionReading| skin.word(own.raw());
     let main = reading.map(|own| own.angle().map_or_else(|| raw(own), |angle| skin.number(angle, 3)));
@@ -25,7 +25,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
                 Mark::Invalid => ("live.invalid", palette.bad),
                 Mark::Warned => ("live.warning", palette.warn),
             };
-            super::mark(ui, skin, word, ink);
+            mark_ui(ui, skin, word, ink);
         }
     });
     let Some(reading) = reading else { return };
@@ -55,7 +55,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
 }
 
 /// What is read beside the position: the usual registers here, any other in the register table.
-pub(super) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = skin.say("live.watch");
     let Some(description) = &encoder.description else { return };
     let watched = encoder.record.watched();

@@ -2,14 +2,14 @@
 
 use egui::{RichText, Ui};
 
-use super::LOW;
 use crate::app::ssi::Encoder;
 use crate::app::{Rgb, Text};
 use crate::protocol::ssi::{Meaning, Place};
 use crate::ui::Skin;
 use crate::ui::controls::row;
+use crate::ui::panels::live::{LOW, mark as mark_ui};
 
-pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let last = encoder.last();
     let decoded = last.and_then(|seen| seen.decoded.as_ref());
     let place = decoded.and_then(|decoded| decoded.place);
@@ -30,7 +30,7 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
             (true, false) => None,
         };
         if let Some((word, ink)) = mark {
-            super::mark(ui, skin, word, ink);
+            mark_ui(ui, skin, word, ink);
         }
     });
     let Some(seen) = last else { return };

@@ -2,20 +2,20 @@
 
 use egui::{RichText, Ui};
 
-use super::LOW;
 use crate::app::Rgb;
 use crate::app::interbus::Encoder;
 use crate::device::interbus::Reading;
 use crate::protocol::interbus::StartupMode;
 use crate::ui::Skin;
 use crate::ui::controls::{dot, row};
+use crate::ui::panels::live::{LOW, mark};
 
 /// Width that eight outputs need beside each other.
 const LAMPS: f32 = 280.0;
 /// Height of a row of them.
 const LAMP: f32 = 16.0;
 
-pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let last = encoder.record.last();
     let (main, unit) = match (last.and_then(Reading::rpm), encoder.position()) {
         (Some(rpm), _) => (rpm.to_string(), skin.say("unit.revolutions_per_minute")),
@@ -27,9 +27,9 @@ pub(super) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
         ui.label(skin.label(unit));
         if last.is_some_and(|reading| !reading.is_valid()) {
-            super::mark(ui, skin, "live.invalid", palette.bad);
+            mark(ui, skin, "live.invalid", palette.bad);
         } else if last.is_some_and(|reading| reading.stray() != 0) {
-            super::mark(ui, skin, "live.warning", palette.warn);
+            mark(ui, skin, "live.warning", palette.warn);
         }
     });
     let Some(reading) = last else { return };
