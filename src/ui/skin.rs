@@ -3,9 +3,8 @@
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
-use crate::app::{Language, Look, Palette, Rgb, Spaces, Text, TextSizes, Theme, explain};
+use crate::app::{Language, Look, Palette, Rgb, Spaces, Text, TextSizes, Theme};
 use crate::bits::Word;
-use crate::protocol::biss::Name;
 
 impl From<Rgb> for Color32 {
     fn from(Rgb([red, green, blue]): Rgb) -> Self {
@@ -50,11 +49,6 @@ impl Skin {
     /// A text with its arguments in the window's language.
     pub fn words(&self, text: &Text) -> String {
         text.words(self.language)
-    }
-
-    /// What a description calls something.
-    pub fn name(&self, name: &Name) -> String {
-        self.words(&explain::name(name))
     }
 
     /// A number with the language's decimal sign.

@@ -23,10 +23,11 @@ impl Encoder {
             Decoded::Number(_) | Decoded::Hex(_) => return self.of_data_sheet(register, bytes),
             Decoded::Bits(set) if set.is_empty() => Text::new("registers.no_bit"),
             Decoded::Bits(set) => {
-                let named = |(bit, name): (u8, Option<_>)| name.map_or_else(|| plain(format!("b{bit}")), explain::name);
+                let named =
+                    |(bit, name): (u8, Option<_>)| name.map_or_else(|| plain(format!("b{bit}")), explain::biss::name);
                 Text::new("plain.words").with_list("words", set.into_iter().map(named))
             }
-            Decoded::Choice(_, Some(name)) => explain::name(name),
+            Decoded::Choice(_, Some(name)) => explain::biss::name(name),
             Decoded::Choice(_, None) => Text::new("registers.unknown_value"),
             Decoded::Text(text) => plain(text),
         })
@@ -37,7 +38,7 @@ impl Encoder {
         match (role, bytes) {
             (Role::BankSelect | Role::EdsBank, [bank]) => {
                 let group = self.table.position(Some(*bank)).and_then(|at| self.table.groups().get(at));
-                group.and_then(|group| group.name.as_ref()).map(explain::name)
+                group.and_then(|group| group.name.as_ref()).map(explain::biss::name)
             }
             (Role::Profile, [high, low]) => {
                 let is_standard = ProfileId::new(u16::from_be_bytes([*high, *low])).is_standard_encoder();

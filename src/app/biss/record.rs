@@ -264,7 +264,7 @@ impl Watchable for Register {
     }
 
     fn line(&self, group: GroupId) -> Line {
-        let name = if self.name.is_empty() { plain(self.address) } else { explain::name(&self.name) };
+        let name = if self.name.is_empty() { plain(self.address) } else { explain::biss::name(&self.name) };
         let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { plain(&self.unit) };
         let decimals = if self.is_whole() { 0 } else { 1 };
         let heading = format!("{} {}", self.address, self.name).trim_end().to_owned();

@@ -20,7 +20,7 @@ pub(super) fn job(job: &BissJob) -> Text {
         BissJob::Read(range) => Text::new("job.read").with("item", range),
         BissJob::ReadDirect => Text::new("job.read_direct"),
         BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("0x{bank:02X}")),
-        BissJob::ReadArea(area) => Text::new("job.read").with_text("item", explain::name(&area.name)),
+        BissJob::ReadArea(area) => Text::new("job.read").with_text("item", explain::biss::name(&area.name)),
         BissJob::Save | BissJob::SaveToCompare => Text::new("job.save"),
         BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", explain::biss::change(change)),
         BissJob::Commit(_) => Text::new("job.write"),
@@ -97,7 +97,7 @@ pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
 pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
     let at = RegisterAddress::banked(bank.number(), field.offset);
     let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
-    described.map_or_else(|| plain(field.name), |register| explain::name(&register.name))
+    described.map_or_else(|| plain(field.name), |register| explain::biss::name(&register.name))
 }
 
 /// The description with the manual's names, in both languages, of what every data sheet has.

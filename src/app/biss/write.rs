@@ -185,7 +185,7 @@ impl Saved for Encoder {
             };
             match area.banks().map(bank).collect::<Option<Vec<Bank>>>() {
                 Some(banks) => data.push(DataImage::of(area, banks)),
-                None => missing.push(explain::name(&area.name)),
+                None => missing.push(explain::biss::name(&area.name)),
             }
         }
         if !missing.is_empty() {

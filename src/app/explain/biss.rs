@@ -17,8 +17,13 @@ use crate::app::Text;
 use crate::device::biss::{Asked, Error};
 use crate::link::LinkError;
 use crate::profile::biss::BissProfile;
-use crate::protocol::biss::{DeviceMode, Mismatch};
+use crate::protocol::biss::{DeviceMode, Mismatch, Name};
 use crate::worker::biss::{Doing, JobError, Remark};
+
+/// What a description of an encoder calls something.
+pub fn name(name: &Name) -> Text {
+    Text::new("plain.words").with_name("words", name.english(), name.german())
+}
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {

@@ -163,11 +163,6 @@ pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
 
-/// What a description of an encoder calls something.
-pub fn name(name: &crate::protocol::biss::Name) -> Text {
-    Text::new("plain.words").with_name("words", name.english(), name.german())
-}
-
 /// What is the same in every language: a name, a number, bytes.
 pub fn plain(words: impl ToString) -> Text {
     Text::new("plain.words").with("words", words)

@@ -3,7 +3,7 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::biss::{Action as Biss, Encoder, places};
-use crate::app::{Action, AnyDevice, Studio, Text};
+use crate::app::{Action, AnyDevice, Studio, Text, explain};
 use crate::protocol::biss::{Area, RegisterAddress};
 use crate::ui::controls::{empty, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, typed_view};
@@ -36,7 +36,7 @@ pub(super) fn page_ui(
     let shown = encoder.shown(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
-            let word = skin.name(&own.name);
+            let word = skin.words(&explain::biss::name(&own.name));
             let response = ui.add(egui::Button::selectable(own == area, &word));
             if name(response, true, &word).clicked() && at != view.area {
                 *view = View { area: at, ..View::default() };
@@ -90,7 +90,7 @@ fn bytes(
     let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
     let model = HexModel { device: read, wanted, marks: &[], read_only: read_only.as_ref(), lines };
     let mut edits = Vec::new();
-    let label = skin.name(&area.name);
+    let label = skin.words(&explain::biss::name(&area.name));
     if beside {
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| edits = hex_editor(ui, skin, &label, &model, &mut view.hex));

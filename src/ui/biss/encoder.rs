@@ -192,7 +192,9 @@ fn bits(ui: &mut Ui, skin: &Skin, bits: Option<&Bits>, icon: &str, colour: crate
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
             ui.label(skin.mono(format!("b{bit}")));
-            let name = name.as_ref().map_or_else(|| skin.say("biss_status.unknown_bit"), |own| skin.name(own));
+            let name = name
+                .as_ref()
+                .map_or_else(|| skin.say("biss_status.unknown_bit"), |own| skin.words(&explain::biss::name(own)));
             paragraph(ui, name);
         });
     }

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::biss::{Action as Biss, Encoder, Mark};
-use crate::app::{Action, Rgb, Text};
+use crate::app::{Action, Rgb, Text, explain};
 use crate::device::biss::PositionReading;
 use crate::protocol::biss::{Register, Role};
 use crate::ui::controls::{icon_menu, paragraph, row};
@@ -68,7 +68,11 @@ pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &
         let more = watched.iter().filter(|own| usual.iter().all(|other| other.address != own.address)).cloned();
         for register in usual.iter().cloned().chain(more) {
             let mut on = watched.iter().any(|own| own.address == register.address);
-            let name = if register.name.is_empty() { register.address.to_string() } else { skin.name(&register.name) };
+            let name = if register.name.is_empty() {
+                register.address.to_string()
+            } else {
+                skin.words(&explain::biss::name(&register.name))
+            };
             if ui.checkbox(&mut on, name).changed() {
                 actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(register), on)));
             }

@@ -3,7 +3,7 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::biss::{Action as Biss, Encoder, Group, Shown};
-use crate::app::{Action, Text};
+use crate::app::{Action, Text, explain};
 use crate::protocol::biss::{Access, Decoding, Name};
 use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
 use crate::ui::widgets::{
@@ -109,7 +109,7 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
         let word = Text::new(if on { "registers.unwatch" } else { "registers.watch" });
         let word = skin.words(&word.with("address", row.register.address));
         let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
-        if button.on_hover_text(skin.name(&row.register.name)).clicked() {
+        if button.on_hover_text(skin.words(&explain::biss::name(&row.register.name))).clicked() {
             let register = Box::new(row.register.clone());
             actions.push(Action::Biss(encoder.session.id, Biss::Watch(register, !on)));
         }
@@ -119,7 +119,7 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
         icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
             ui.label(skin.heading(&word));
             for own in watched {
-                let name = format!("{}  {}", own.address, skin.name(&own.name));
+                let name = format!("{}  {}", own.address, skin.words(&explain::biss::name(&own.name)));
                 if ui.button(format!("{}  {name}", icons::X)).clicked() {
                     actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(own), false)));
                 }
@@ -193,7 +193,7 @@ fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
     let title = match (own.bank, &own.name) {
         (None, _) => skin.say("registers.direct"),
         (Some(bank), None) => format!("0x{bank:02X}"),
-        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", skin.name(name)),
+        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", skin.words(&explain::biss::name(name))),
     };
     let note = if own.is_read(&encoder.memory) { String::new() } else { skin.say("registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
@@ -201,7 +201,11 @@ fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
 
 fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
-    let name = if register.name.is_empty() { skin.say("registers.byte") } else { skin.name(&register.name) };
+    let name = if register.name.is_empty() {
+        skin.say("registers.byte")
+    } else {
+        skin.words(&explain::biss::name(&register.name))
+    };
     // A code is no quantity.
     let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
     RegisterRow {
@@ -235,7 +239,7 @@ fn fields(skin: &Skin, shown: &Shown<'_>) -> Vec<RegisterBits> {
         let is_set = number.map(|number| number >> bit & 1 == 1);
         RegisterBits {
             bits: format!("b{bit}"),
-            name: skin.name(name),
+            name: skin.words(&explain::biss::name(name)),
             value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
             meaning: is_set
                 .map(|set| skin.say(if set { "registers.set" } else { "registers.clear" }))

@@ -2,10 +2,11 @@
 
 use super::guide::mode;
 use super::mismatch;
+use super::name;
 use crate::app::Text;
 use crate::app::biss::words::sheet;
 use crate::app::check::CheckLine;
-use crate::app::explain::{name, plain};
+use crate::app::explain::plain;
 use crate::device::biss::check::{Finding, Line, Step};
 use crate::protocol::biss::Name;
 

@@ -7,7 +7,7 @@ use super::encoder;
 use super::guide::{blocker, mode, speeds, step, task, temperatures};
 use super::plan::kind_of;
 use crate::app::biss::words::filter;
-use crate::app::explain::{self, plain};
+use crate::app::explain::plain;
 use crate::app::review::{ChangeWords, OpWords};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
@@ -37,7 +37,7 @@ pub fn op(op: &Op, layout: &Layout) -> OpWords {
     let bits = layout.singleturn_bits();
     match op {
         Op::StoreData { area, registers } => OpWords {
-            item: Text::new("biss_op.data").with_text("area", explain::name(&area.name)),
+            item: Text::new("biss_op.data").with_text("area", super::name(&area.name)),
             changes: runs(registers),
         },
         Op::StorePreset { from, to } => {
