@@ -156,7 +156,7 @@ pub enum Done {
     /// A link to HIPERDRIVE drives was opened, or not.
     OpenedHiperdrive(Attempt<Hiperdrive>),
     /// Devices that answer in this network, or why nobody could be asked.
-    FoundDrives(u32, Result<Vec<connect::FoundDevice>, Text>),
+    FoundDrives(u32, Result<Vec<super::hiperdrive::FoundDevice>, Text>),
     /// The families of SSI encoders were read, with what is wrong with those of the user's own.
     Families(Arc<Families>, Vec<StoreError>),
     /// A link was opened for a search.

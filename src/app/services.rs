@@ -66,7 +66,7 @@ impl World {
             open_ssi: Arc::new(ssi::open),
             open_interbus: Arc::new(interbus::open),
             open_hiperdrive: Arc::new(hiperdrive::open),
-            discover: Arc::new(super::connect::ask_all),
+            discover: Arc::new(super::hiperdrive::ask_all),
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             folders: Folders::of_user(),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::action::{Action, Done, FileQuestion, Waited};
 use super::biss;
-use super::connect::{self, Connect};
+use super::connect::Connect;
 use super::devices::{AnyDevice, Shown};
 use super::diverged::Diverged;
 use super::documents::{is_capture, read_document};
@@ -239,13 +239,13 @@ impl Studio {
 
     /// Something runs or is read all the time, in any session: there is something to stop.
     pub fn can_stop(&self) -> bool {
-        let search = self.search().is_some_and(connect::Search::is_running);
+        let search = self.search().is_some_and(super::hiperface::Search::is_running);
         self.devices.iter().any(AnyDevice::is_active) || search || self.signals.can_stop()
     }
 
     /// Something runs that comes to an end by itself, or measures; being read all the time is none of that.
     pub fn works(&self) -> bool {
-        let search = self.search().is_some_and(connect::Search::is_running);
+        let search = self.search().is_some_and(super::hiperface::Search::is_running);
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
         self.devices.iter().any(device) || search || self.signals.can_stop()
     }
@@ -255,7 +255,7 @@ impl Studio {
         self.devices.iter().any(AnyDevice::is_polling) || self.is_in_control()
     }
 
-    fn search(&self) -> Option<&connect::Search> {
+    fn search(&self) -> Option<&super::hiperface::Search> {
         self.connect.as_ref()?.search.as_ref()
     }
 

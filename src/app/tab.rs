@@ -1,6 +1,9 @@
 //! The tabs of the window.
 
-use super::connect::{BissForm, HiperdriveForm, InterbusForm, SsiForm};
+use super::biss::BissForm;
+use super::hiperdrive::HiperdriveForm;
+use super::interbus::InterbusForm;
+use super::ssi::SsiForm;
 use crate::link::LinkUrl;
 use crate::worker::{OpenError, biss, hiperdrive, hiperface, interbus, ssi};
 

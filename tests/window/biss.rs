@@ -2,7 +2,8 @@
 
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::biss::{Action as Biss, Mark};
-use encoder_studio::app::connect::{Action as Connect, BissForm, BissWay};
+use encoder_studio::app::biss::{BissForm, BissWay};
+use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Tab};
 use encoder_studio::protocol::biss::Role;

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::connect::{Action as Connect, LinkForm};
+use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::hiperface::LinkForm;
 use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Tab, Theme};

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use encoder_studio::app::connect::{
-    Action as Connect, BissForm, BissWay, Connect as Dialog, LinkForm, LinkKind, Search, is_missing,
-};
+use encoder_studio::app::biss::{BissForm, BissWay};
+use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, is_missing};
 use encoder_studio::app::hiperface::Action as Hiperface;
+use encoder_studio::app::hiperface::{LinkForm, LinkKind, Search};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, FileQuestion, Language, Tab};
 use encoder_studio::device::hiperface::find::FindOptions;

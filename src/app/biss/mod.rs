@@ -2,6 +2,7 @@
 
 mod act;
 mod action;
+mod connect_form;
 mod decoded;
 mod drafts;
 mod encoder;
@@ -19,6 +20,7 @@ pub mod words;
 mod write;
 
 pub use action::Action;
+pub use connect_form::{BissForm, BissWay};
 pub use encoder::Encoder;
 pub use guide::{End, Guide, GuideStep, Reached};
 pub use mark::Mark;

@@ -1,16 +1,10 @@
 //! The connection dialog, carried out.
 
-use crossbeam_channel::Receiver;
-
-use super::{Action, Connect, Search, list_ports};
-use crate::app::action::{Done, FileQuestion};
-use crate::app::leaving::Leaver;
-use crate::app::question::{Question, Then};
-use crate::app::studio::{SessionId, Studio};
+use super::{Action, Connect, list_ports};
+use crate::app::action::FileQuestion;
+use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::app::{AnyDevice, Text};
-use crate::device::hiperface::find::FindOptions;
-use crate::worker::hiperface::{Hiperface, may_have_other_master};
 
 impl Studio {
     pub(in crate::app) fn act_connect(&mut self, action: Action) {
@@ -89,43 +83,9 @@ impl Studio {
         }
     }
 
-    fn refuse(&mut self, problem: Text) {
+    pub(in crate::app) fn refuse(&mut self, problem: Text) {
         if let Some(connect) = &mut self.connect {
             connect.problem = Some(problem);
-        }
-    }
-
-    /// Searches the line of the form; where a drive may be on it, that is asked before.
-    fn search_for(&mut self, options: FindOptions) {
-        match self.connect.as_ref().map(Connect::url) {
-            Some(Ok(url)) if may_have_other_master(&url) => {
-                self.question = Some(Question::other_master(&url, Then::Search(options)));
-            }
-            Some(_) => self.search_confirmed(options),
-            None => {}
-        }
-    }
-
-    /// The user says that no drive is on the line of the form.
-    pub(in crate::app) fn search_confirmed(&mut self, options: FindOptions) {
-        let Some(connect) = &mut self.connect else { return };
-        let url = match connect.url() {
-            Ok(url) => url,
-            Err(problem) => {
-                connect.problem = Some(problem);
-                return;
-            }
-        };
-        let earlier = match self.free_wire(&url, "session.let_go_for_search") {
-            Ok(earlier) => self.end_search().or(earlier),
-            Err(problem) => return self.refuse(problem),
-        };
-        let number = self.new_number();
-        let done = move |result| Done::OpenedForSearch { number, result };
-        let over = self.open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
-        let search = Search { number, url, options, line: None, over, found: Vec::new(), end: None };
-        if let Some(connect) = &mut self.connect {
-            connect.search = Some(search);
         }
     }
 
@@ -133,23 +93,5 @@ impl Studio {
     pub(in crate::app) fn close_dialog(&mut self) {
         self.end_search();
         self.connect = None;
-    }
-
-    /// Ends the search and forgets it. Where its link was still being opened, that is over when what is given tells so.
-    fn end_search(&mut self) -> Option<Receiver<()>> {
-        let search = self.connect.as_mut()?.search.take()?;
-        if let Some(line) = search.line {
-            let (session, about) = (SessionId(search.number), search.url.to_string());
-            let who = Leaver { session, about, url: search.url, write: None };
-            self.services.leave(line.into_worker(), who, None);
-        }
-        Some(search.over)
-    }
-
-    fn choose(&mut self, at: usize) {
-        let Some(search) = self.connect.as_ref().and_then(|connect| connect.search.as_ref()) else { return };
-        let Some(url) = search.found.get(at).map(|found| search.link_to(found)) else { return };
-        self.close_dialog();
-        self.open_found(url);
     }
 }

@@ -2,37 +2,26 @@
 //! remembers.
 
 mod act;
-mod biss_form;
-mod discovery;
-mod form;
-mod hiperdrive_form;
-mod interbus_form;
-mod parameters;
+pub(crate) mod parameters;
 mod ports;
-mod ssi_form;
-mod target;
+pub(crate) mod target;
 
-pub use biss_form::{BissForm, BissWay};
-pub(super) use discovery::ask_all;
-pub use discovery::{Discovery, FoundDevice};
-pub use form::{LinkForm, LinkKind};
-pub use hiperdrive_form::{HiperdriveForm, HiperdriveWay, VirtualHub};
-pub use interbus_form::{InterbusForm, InterbusWay};
 pub use ports::{Offer, offered_ports};
-pub use ssi_form::{SsiForm, SsiWay};
 pub use target::is_missing;
 
 use std::path::PathBuf;
 
-use super::line::Line;
+use super::biss::BissForm;
+use super::hiperdrive::{Discovery, HiperdriveForm};
+use super::hiperface::{LinkForm, Search};
+use super::interbus::InterbusForm;
 use super::services::Services;
+use super::ssi::SsiForm;
 use super::tab::Tab;
 use super::{Text, explain};
-use crate::app::action::{Done, OpenFailed, Opened};
-use crate::device::hiperface::find::{FindOptions, Findings, Found};
+use crate::app::action::Done;
+use crate::device::hiperface::find::FindOptions;
 use crate::link::LinkUrl;
-use crate::worker::hiperface::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark};
-use crate::worker::{Event, Progress};
 
 /// What can be done in the dialog.
 pub enum Action {
@@ -98,22 +87,6 @@ pub struct Connect {
     pub problem: Option<Text>,
     /// The search.
     pub search: Option<Search>,
-}
-
-/// A search for encoders.
-pub struct Search {
-    /// Its number in the studio.
-    pub(super) number: u32,
-    /// The link it searches on.
-    pub(super) url: LinkUrl,
-    pub(super) options: FindOptions,
-    pub(super) line: Option<Line<Hiperface>>,
-    /// Ends when its link is open or cannot be opened.
-    pub(super) over: crossbeam_channel::Receiver<()>,
-    /// All that answered so far.
-    pub found: Vec<Found>,
-    /// How it ended; `None` while it goes on.
-    pub end: Option<Text>,
 }
 
 impl Connect {
@@ -192,89 +165,6 @@ impl Connect {
             Tab::Interbus => "modbus:192.168.1.10",
             Tab::Hiperdrive => "enip:192.168.1.10",
             Tab::Hiperface | Tab::Biss | Tab::Signals => "serial:/dev/ttyUSB0",
-        }
-    }
-}
-
-impl Search {
-    /// How far it is.
-    pub fn progress(&self) -> Option<&Progress<Doing>> {
-        self.line.as_ref()?.running()?.progress.as_ref()
-    }
-
-    /// It goes on.
-    pub fn is_running(&self) -> bool {
-        self.end.is_none()
-    }
-
-    /// The link of an encoder that was found.
-    pub(super) fn link_to(&self, found: &Found) -> LinkUrl {
-        let mut url = self.url.clone();
-        url.query.set("baud", &found.format.baud.to_string());
-        url.query.set("parity", found.format.parity.word());
-        url.query.set("address", &format!("0x{:02X}", found.address));
-        url
-    }
-
-    pub(super) fn opened(&mut self, result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>, services: &Services) {
-        match result {
-            Ok(opened) => {
-                let mut line = Line::new(*opened);
-                let job = HiperfaceJob::Find(self.options.clone());
-                if line.submit(job, Text::new("job.find"), false, services.now()).is_err() {
-                    self.end = Some(Text::new("session.ended"));
-                }
-                self.line = Some(line);
-            }
-            Err(failed) => self.end = Some(explain::open_failed(&failed)),
-        }
-    }
-
-    pub(super) fn pump(&mut self) {
-        let dead = self.line.as_ref().is_some_and(Line::is_dead);
-        while let Some(event) = self.line.as_mut().and_then(Line::next) {
-            match event {
-                Event::Remark(Remark::Found(found)) => self.found.push(found),
-                Event::Finished(_, output) => self.finish(*output),
-                Event::Failed(_, error) | Event::Cancelled(_, error) => {
-                    self.end = explain::hiperface::job(&error).into_iter().next();
-                }
-                Event::Lost(error) => self.end = Some(explain::link(&error)),
-                Event::Started(_)
-                | Event::Progress(..)
-                | Event::Remark(Remark::Codes(_) | Remark::CodesUnheard(_) | Remark::Line(_))
-                | Event::PollFailed(_) => {}
-            }
-        }
-        if dead && self.end.is_none() {
-            self.end = Some(Text::new("session.ended"));
-        }
-    }
-
-    fn finish(&mut self, output: HiperfaceOutput) {
-        self.end = Some(match output {
-            HiperfaceOutput::Found(Findings::Searched { found, complete }) => {
-                let id = match (found.is_empty(), complete) {
-                    (true, true) => "find.nothing",
-                    (false, true) => "find.done",
-                    (_, false) => "find.cut_short",
-                };
-                let text = Text::new(id).with("count", found.len());
-                self.found = found;
-                text
-            }
-            HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => {
-                Text::new("find.foreign_traffic").with("bytes", bytes)
-            }
-            _ => Text::new("session.ended"),
-        });
-    }
-
-    pub(super) fn stop(&mut self) {
-        match &mut self.line {
-            Some(line) => line.stop(),
-            // The link is still being opened, which may take for ever.
-            None => self.end = Some(Text::new("find.cut_short").with("count", 0)),
         }
     }
 }

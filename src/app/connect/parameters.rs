@@ -5,35 +5,35 @@ use crate::app::{Text, explain};
 use crate::link::{LinkUrl, Query, Scheme};
 
 /// A parameter of a link and its value.
-pub(super) type Pair = (String, String);
+pub(crate) type Pair = (String, String);
 
 /// Those of a link that `take` finds no entry for: it fills one in and says whether it did.
-pub(super) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
+pub(crate) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
 /// The parameters of a link as the entries of its form say them, in that order. What is as usual is left out.
 #[derive(Default)]
-pub(super) struct Parameters(Vec<Pair>);
+pub(crate) struct Parameters(Vec<Pair>);
 
 impl Parameters {
     /// One that is not as usual.
-    pub(super) fn set(&mut self, name: &str, value: &str) {
+    pub(crate) fn set(&mut self, name: &str, value: &str) {
         self.0.push((name.to_owned(), value.to_owned()));
     }
 
     /// What an entry says, unless it is empty.
-    pub(super) fn entry(&mut self, name: &str, entry: &str) {
+    pub(crate) fn entry(&mut self, name: &str, entry: &str) {
         self.0.extend(filled(entry).map(|value| (name.to_owned(), value)));
     }
 
     /// The same of a number: a German keyboard has a comma where the point should be.
-    pub(super) fn decimal(&mut self, name: &str, entry: &str) {
+    pub(crate) fn decimal(&mut self, name: &str, entry: &str) {
         self.entry(name, &entry.replace(',', "."));
     }
 
     /// Those without an entry that belong to the link. What has an entry by now is what that says.
-    pub(super) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
+    pub(crate) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
                 self.set(name, value);
@@ -45,7 +45,7 @@ impl Parameters {
     ///
     /// # Errors
     /// A sentence where a character would end a part of the link, or the parts make none.
-    pub(super) fn link(&self, (scheme, target): (Scheme, String)) -> Result<LinkUrl, Text> {
+    pub(crate) fn link(&self, (scheme, target): (Scheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])
             .or_else(|| self.0.iter().find_map(|(name, value)| unfit(name, &['&']).or_else(|| unfit(value, &['&']))));
@@ -60,14 +60,11 @@ impl Parameters {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// Each link fills a form, and what that stands for is the same link; parameters may stand in another order.
-    pub(in crate::app::connect) fn assert_comes_back(
-        links: &[&str],
-        through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>,
-    ) {
+    pub(crate) fn assert_comes_back(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();
             pairs.sort();

@@ -13,13 +13,13 @@ use crate::worker::OpenError;
 ///
 /// # Errors
 /// `missing`, where it is empty.
-pub(super) fn entered(entry: &str, missing: &'static str) -> Result<String, Text> {
+pub(crate) fn entered(entry: &str, missing: &'static str) -> Result<String, Text> {
     let entry = entry.trim();
     if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
 }
 
 /// An entry, unless it is empty.
-pub(super) fn filled(entry: &str) -> Option<String> {
+pub(crate) fn filled(entry: &str) -> Option<String> {
     Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty())
 }
 
@@ -42,13 +42,13 @@ pub fn is_missing(problem: &Text) -> bool {
 ///
 /// # Errors
 /// As [`refused`].
-pub(super) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>) -> Result<LinkUrl, Text> {
+pub(crate) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>) -> Result<LinkUrl, Text> {
     check(&url).map_err(|error| refused(&url, &error))?;
     Ok(url)
 }
 
 /// Why a link cannot be used: in the words of the entry that stands for what is wrong, where there is one.
-pub(super) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
+pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     let (name, value, allowed) = match error {
         OpenError::Url(UrlError::Value { name, value, allowed })
         | OpenError::Sim(ConfigError::Value { key: name, value, allowed }) => (name, value, allowed),
@@ -70,7 +70,7 @@ pub(super) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
 }
 
 /// A link that no entry stands for cannot be used.
-pub(super) fn other(why: Text) -> Text {
+pub(crate) fn other(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
 
@@ -78,7 +78,7 @@ pub(super) fn other(why: Text) -> Text {
 ///
 /// # Errors
 /// A sentence that says which of them cannot be used.
-pub(super) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
+pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     let host = entered(host, "form.host_missing")?;
     let host = match host.parse::<Ipv6Addr>() {
         Ok(_) => format!("[{host}]"),
@@ -98,18 +98,18 @@ pub(super) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
 ///
 /// # Errors
 /// As [`host_and_port`]; `missing`, where no host is entered.
-pub(super) fn host_and_usual_port(host: &str, missing: &'static str, port: &str, usual: &str) -> Result<String, Text> {
+pub(crate) fn host_and_usual_port(host: &str, missing: &'static str, port: &str, usual: &str) -> Result<String, Text> {
     host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
 }
 
 /// Host and port of a place in the network, as a link has them; an empty port where it has none.
-pub(super) fn parted(place: &str) -> (String, String) {
+pub(crate) fn parted(place: &str) -> (String, String) {
     let (host, port) = place.rsplit_once(':').unwrap_or((place, ""));
     (host.to_owned(), port.to_owned())
 }
 
 /// The same; the port is empty where it is the usual one.
-pub(super) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
+pub(crate) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
     let (host, port) = parted(place);
     (host, Some(port).filter(|port| port != usual).unwrap_or_default())
 }
@@ -118,7 +118,7 @@ pub(super) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
 const TCP: &str = "tcp:";
 
 /// Where in the network an adapter is; `None` for one at a serial port.
-pub(super) fn adapter_in_network(target: &str) -> Option<&str> {
+pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }
 
@@ -126,6 +126,6 @@ pub(super) fn adapter_in_network(target: &str) -> Option<&str> {
 ///
 /// # Errors
 /// As [`host_and_port`].
-pub(super) fn to_adapter(host: &str, port: &str) -> Result<String, Text> {
+pub(crate) fn to_adapter(host: &str, port: &str) -> Result<String, Text> {
     Ok(format!("{TCP}{}", host_and_port(host, port)?))
 }

@@ -21,7 +21,7 @@ pub use frame::frame;
 pub use label::{LabelRow, label};
 pub use op::op;
 pub use words::{
-    field_access, field_code_required, field_status, geometry, line_settings, parity, position, raw_position, status,
+    field_access, field_code_required, field_status, geometry, line_settings, position, raw_position, status,
     status_with_number,
 };
 

@@ -22,6 +22,7 @@ use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::{Body, Document, ProfileError, SCHEMA};
 use crate::store::{FileError, FileProblem, LogbookError, StoreError};
+use crate::units::Parity;
 use crate::worker::{NotBegun, OpenError};
 
 /// A wire.
@@ -161,6 +162,15 @@ pub fn not_begun(why: &NotBegun) -> Text {
 /// What the logbook could not take.
 pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
+}
+
+/// A parity.
+pub fn parity(parity: Parity) -> Text {
+    Text::new(match parity {
+        Parity::None => "parity.none",
+        Parity::Even => "parity.even",
+        Parity::Odd => "parity.odd",
+    })
 }
 
 /// What is the same in every language: a name, a number, bytes.

@@ -4,7 +4,9 @@
 mod act;
 mod action;
 pub mod axis;
+mod connect_form;
 mod desk;
+mod discovery;
 mod drafts;
 pub mod forms;
 mod job;
@@ -29,6 +31,9 @@ pub mod words;
 mod write;
 
 pub use action::{Action, Motor};
+pub use connect_form::{HiperdriveForm, HiperdriveWay, VirtualHub};
+pub(in crate::app) use discovery::ask_all;
+pub use discovery::{Discovery, FoundDevice};
 pub use moves::Moves;
 pub use record::Record;
 pub(in crate::app) use remembered::LocksAlone;

@@ -3,6 +3,7 @@
 mod act;
 mod action;
 pub mod commutation;
+mod connect_form;
 mod drafts;
 mod encoder;
 pub mod forms;
@@ -13,13 +14,16 @@ mod record;
 mod rest;
 mod review;
 pub mod rules;
+mod search;
 mod staged;
 mod words;
 mod write;
 
 pub use action::Action;
+pub use connect_form::{LinkForm, LinkKind};
 pub use encoder::Encoder;
 pub use record::{Record, watch_name};
 pub use review::{Review, ReviewState};
 pub use rules::Allowed;
+pub use search::Search;
 pub use staged::{Staged, StagedError};

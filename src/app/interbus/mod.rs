@@ -4,6 +4,7 @@
 mod act;
 mod action;
 pub mod cams;
+mod connect_form;
 mod desk;
 mod drafts;
 mod encoder;
@@ -22,6 +23,7 @@ pub mod words;
 mod write;
 
 pub use action::Action;
+pub use connect_form::{InterbusForm, InterbusWay};
 pub use encoder::Encoder;
 pub use preview::{Differing, Preview};
 pub use record::Record;

@@ -3,6 +3,7 @@
 
 mod act;
 mod action;
+mod connect_form;
 mod design;
 mod desk;
 mod drafts;
@@ -19,6 +20,7 @@ mod trial;
 mod words;
 
 pub use action::{Action, Try};
+pub use connect_form::{SsiForm, SsiWay};
 pub use design::{Design, Designer, Edit};
 pub use encoder::Encoder;
 pub use export::Format;

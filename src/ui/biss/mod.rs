@@ -1,5 +1,6 @@
 //! The BiSS tab: its pages, each about one thing that a person wants of an encoder.
 
+pub(in crate::ui) mod connect_form;
 mod data;
 mod encoder;
 mod frame;

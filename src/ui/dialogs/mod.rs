@@ -1,7 +1,7 @@
 //! Dialogs over the window: connecting, a question, a path to type, what this program is, help.
 
 mod about;
-mod connect;
+pub(crate) mod connect;
 mod diverged;
 mod file;
 mod question;

@@ -3,6 +3,7 @@
 
 mod axis;
 mod bar;
+pub(in crate::ui) mod connect_form;
 mod device;
 mod errors;
 mod figures;

@@ -1,6 +1,7 @@
 //! The HIPERFACE tab: its pages, each about one thing that a person wants of an encoder.
 
 mod commutation;
+pub(in crate::ui) mod connect_form;
 mod encoder;
 pub(in crate::ui) mod live;
 mod memory;

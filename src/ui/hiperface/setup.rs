@@ -5,7 +5,7 @@ use egui::Ui;
 
 use crate::app::explain::hiperface as words;
 use crate::app::hiperface::{Action as Hiperface, Encoder, forms};
-use crate::app::{Action, Text};
+use crate::app::{Action, Text, explain};
 use crate::protocol::hiperface::{BAUDS, CodeNumber, LineSettings};
 use crate::ui::controls::{
     card, choice, enabled_button, entry, forget_secret, paragraph, problem, row, secret_entry, text_entry, two_columns,
@@ -189,7 +189,7 @@ fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         });
         entry(ui, skin, &skin.say("settings_card.parity"), |ui| {
             let parities = [Parity::Even, Parity::Odd, Parity::None];
-            let parities = parities.map(|parity| (parity, skin.words(&words::parity(parity))));
+            let parities = parities.map(|parity| (parity, skin.words(&explain::parity(parity))));
             choice(ui, &skin.say("settings_card.parity"), &mut chosen.format.parity, parities);
         });
         entry(ui, skin, &skin.say("settings_card.timeout"), |ui| {

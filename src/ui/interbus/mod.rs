@@ -1,6 +1,7 @@
 //! The INTERBUS tab: its pages, each about one thing that a person wants of an encoder.
 
 mod cams;
+pub(in crate::ui) mod connect_form;
 mod encoder;
 mod lamps;
 pub(in crate::ui) mod live;

@@ -1,5 +1,6 @@
 //! The SSI tab: its pages, each about one thing that a person wants of a frame or of an encoder that sends it.
 
+pub(in crate::ui) mod connect_form;
 mod encoder;
 mod export;
 mod find;

@@ -2,7 +2,6 @@
 
 use crate::app::Text;
 use crate::protocol::hiperface::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};
-use crate::units::Parity;
 
 /// Texts of the status codes.
 const STATUS: [(u8, &str); 27] = [
@@ -111,19 +110,12 @@ pub fn line_settings(settings: LineSettings) -> Text {
     }
 }
 
-/// A parity.
-pub fn parity(parity: Parity) -> Text {
-    Text::new(match parity {
-        Parity::None => "parity.none",
-        Parity::Even => "parity.even",
-        Parity::Odd => "parity.odd",
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::app::Language;
+    use crate::app::explain::parity;
+    use crate::units::Parity;
 
     #[test]
     fn codes_are_called_as_the_protocol_calls_them() {

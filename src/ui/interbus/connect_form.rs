@@ -2,14 +2,14 @@
 
 use egui::Ui;
 
-use super::{place, recording, segments, unfolded};
 use crate::app::Action;
-use crate::app::connect::{InterbusForm, InterbusWay};
+use crate::app::interbus::{InterbusForm, InterbusWay};
 use crate::ui::Skin;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
+use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
 
 /// Draws the form.
-pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm, more: &mut bool, actions: &mut Vec<Action>) {
+pub(crate) fn form_ui(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm, more: &mut bool, actions: &mut Vec<Action>) {
     let ways = [
         (InterbusWay::Virtual, "connect.virtual"),
         (InterbusWay::Gateway, "connect.gateway"),

@@ -1,8 +1,8 @@
 //! What a person fills in to connect an INTERBUS encoder, and the link it stands for. Nothing is opened here.
 
-use super::parameters::{Parameters, without_entry};
-use super::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::app::Text;
+use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::device::interbus::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
 use crate::sim::interbus::Config;

@@ -1,8 +1,8 @@
 //! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
 
-use super::parameters::{Parameters, without_entry};
-use super::target::{adapter_in_network, checked, entered, parted, to_adapter};
 use crate::app::Text;
+use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::target::{adapter_in_network, checked, entered, parted, to_adapter};
 use crate::device::bridge::SupplyAfter;
 use crate::device::ssi::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};

@@ -2,14 +2,15 @@
 
 use egui::Ui;
 
-use super::{place, recording, segments, unfolded};
-use crate::app::connect::{Action as Connect, Connect as Dialog, Discovery, HiperdriveForm, HiperdriveWay, VirtualHub};
+use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::hiperdrive::{Discovery, HiperdriveForm, HiperdriveWay, VirtualHub};
 use crate::app::{Action, Text};
 use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner, text_entry};
+use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
 use crate::ui::{Skin, icons};
 
 /// Draws the form.
-pub(super) fn form_ui(
+pub(crate) fn form_ui(
     ui: &mut Ui,
     skin: &Skin,
     dialog: &Dialog,

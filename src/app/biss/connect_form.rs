@@ -1,8 +1,8 @@
 //! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
 
-use super::parameters::{Parameters, without_entry};
-use super::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::app::Text;
+use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::bits::ByteOrder;
 use crate::device::biss::{Echo, PARAMETERS, Way};
 use crate::device::bridge::SupplyAfter;

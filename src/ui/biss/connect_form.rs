@@ -2,15 +2,18 @@
 
 use egui::Ui;
 
-use super::{Dialog, echo, leave_supply, margin, network, parity, recording, segments, serial, unfolded};
 use crate::app::Action;
-use crate::app::connect::{BissForm, BissWay};
+use crate::app::biss::{BissForm, BissWay};
+use crate::app::connect::Connect as Dialog;
 use crate::bits::ByteOrder;
 use crate::ui::Skin;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
+use crate::ui::dialogs::connect::entries::{
+    echo, leave_supply, margin, network, parity, recording, segments, serial, unfolded,
+};
 
 /// Draws the form.
-pub(super) fn form_ui(
+pub(crate) fn form_ui(
     ui: &mut Ui,
     skin: &Skin,
     dialog: &Dialog,

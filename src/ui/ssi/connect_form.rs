@@ -2,14 +2,15 @@
 
 use egui::Ui;
 
-use super::{Dialog, leave_supply, margin, network, recording, segments, serial, unfolded};
 use crate::app::Action;
-use crate::app::connect::{SsiForm, SsiWay};
+use crate::app::connect::Connect as Dialog;
+use crate::app::ssi::{SsiForm, SsiWay};
 use crate::ui::Skin;
 use crate::ui::controls::{entry, paragraph, text_entry};
+use crate::ui::dialogs::connect::entries::{leave_supply, margin, network, recording, segments, serial, unfolded};
 
 /// Draws the form.
-pub(super) fn form_ui(
+pub(crate) fn form_ui(
     ui: &mut Ui,
     skin: &Skin,
     dialog: &Dialog,

@@ -3,9 +3,9 @@
 
 use std::time::Duration;
 
-use super::parameters::{Parameters, without_entry};
-use super::target::{entered, filled, host_and_port, parted, refused};
 use crate::app::Text;
+use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::target::{entered, filled, host_and_port, parted, refused};
 use crate::device::hiperface::{Echo, PARAMETERS, Station};
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
 use crate::protocol::hiperface::{BROADCAST, DeviceAddress};

@@ -3,7 +3,7 @@
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 
-use super::HiperdriveWay;
+use super::connect_form::HiperdriveWay;
 use crate::app::action::Done;
 use crate::app::studio::Studio;
 use crate::app::{Text, explain};
@@ -75,7 +75,7 @@ pub(in crate::app) fn ask_all() -> Result<Vec<Found>, Error> {
 
 impl Studio {
     /// Asks who is there, as a task.
-    pub(super) fn discover(&mut self) {
+    pub(in crate::app) fn discover(&mut self) {
         let number = self.new_number();
         let Some(connect) = &mut self.connect else { return };
         connect.discovery = Some(Discovery { number, found: None });
@@ -99,7 +99,7 @@ impl Studio {
     }
 
     /// Fills in the device that answered; it is connected by the button for that.
-    pub(super) fn choose_device(&mut self, at: usize) {
+    pub(in crate::app) fn choose_device(&mut self, at: usize) {
         let Some(connect) = &mut self.connect else { return };
         let found = connect.discovery.as_ref().and_then(|own| own.devices().get(at)).cloned();
         let Some(device) = found else { return };
