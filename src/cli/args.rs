@@ -3,8 +3,6 @@
 mod act;
 mod analyse;
 mod decode;
-mod motion;
-mod ssi;
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -15,10 +13,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(super) use act::{Action, Do, action_name, no_action, no_option};
 pub(super) use analyse::Analyse;
 pub(super) use decode::{Decode, Direction, Protocol, Words};
-pub(super) use motion::Move;
-pub(super) use ssi::{Ssi, SsiDecode, SsiEncode, SsiExport, SsiFind, SsiFormat, SsiLayout};
 
-use super::hiperdrive::listed_parameters;
+use super::hiperdrive::{Move, listed_parameters};
+use super::ssi::Ssi;
 use crate::link::LinkUrl;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 

@@ -3,6 +3,8 @@
 use clap::{Args, ValueEnum};
 
 use super::DeviceKind;
+use crate::cli::hiperdrive::Order;
+use crate::cli::interbus::WordMode;
 use crate::protocol::{hiperdrive, interbus};
 
 #[derive(Args)]
@@ -65,15 +67,6 @@ pub(in crate::cli) struct Words {
     pub(in crate::cli) order: Option<Order>,
 }
 
-/// Which byte of a number comes first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Order {
-    /// The low one.
-    Little,
-    /// The high one.
-    Big,
-}
-
 /// Which way a word went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum Direction {
@@ -81,21 +74,6 @@ pub(in crate::cli) enum Direction {
     In,
     /// To the encoder.
     Out,
-}
-
-/// The modes of an encoder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum WordMode {
-    /// It runs.
-    Position,
-    /// Parameters are being set.
-    Parameterisation,
-    /// Something is read out.
-    ReadOut,
-    /// It sends its speed.
-    Velocity,
-    /// A cam program is selected.
-    Cam,
 }
 
 impl Protocol {
@@ -127,26 +105,5 @@ impl Words {
         ]
         .into_iter()
         .find_map(|(option, foreign, of)| foreign.then_some((option, of)))
-    }
-}
-
-impl From<Order> for hiperdrive::ByteOrder {
-    fn from(order: Order) -> Self {
-        match order {
-            Order::Little => hiperdrive::ByteOrder::Little,
-            Order::Big => hiperdrive::ByteOrder::Big,
-        }
-    }
-}
-
-impl From<WordMode> for interbus::Mode {
-    fn from(mode: WordMode) -> Self {
-        match mode {
-            WordMode::Position => interbus::Mode::Position,
-            WordMode::Parameterisation => interbus::Mode::Parameterisation,
-            WordMode::ReadOut => interbus::Mode::ReadOut,
-            WordMode::Velocity => interbus::Mode::Velocity,
-            WordMode::Cam => interbus::Mode::Cam,
-        }
     }
 }

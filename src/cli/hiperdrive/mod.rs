@@ -1,6 +1,7 @@
 //! The commands for HIPERDRIVE drives behind an adapter or a hub; words and packets are explained offline as well.
 
 mod act;
+mod args;
 mod decode;
 mod find;
 mod image;
@@ -21,6 +22,7 @@ use crate::app::Text;
 use crate::profile::hiperdrive::{Item, ItemError};
 use crate::protocol::hiperdrive::{KIND, PARAMETERS};
 
+pub(super) use args::{Move, Order};
 pub(super) use meaning::parameter_words;
 pub(super) use r#move::drive_to;
 

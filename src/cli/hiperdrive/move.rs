@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
+use super::args::Move;
 use super::inspect::error_text;
 use super::run::{Runner, drive, value};
 use crate::app::hiperdrive::Measure;
 use crate::app::{Text, explain};
-use crate::cli::args::{Common, Move};
+use crate::cli::args::Common;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::runner::{failed, unexpected};

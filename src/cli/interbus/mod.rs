@@ -1,6 +1,7 @@
 //! The commands for INTERBUS encoders behind a gateway; words of the process data are explained offline as well.
 
 mod act;
+mod args;
 mod decode;
 mod inspect;
 mod meaning;
@@ -21,6 +22,8 @@ use crate::app::Text;
 use crate::link::Scheme;
 use crate::profile::interbus::{Item, ItemError};
 use crate::protocol::interbus::KIND;
+
+pub(super) use args::WordMode;
 
 /// What can be done with INTERBUS encoders.
 pub(super) const COMMANDS: Kind = Kind {

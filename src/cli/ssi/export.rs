@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use serde_json::json;
 
+use super::args::{SsiExport, SsiFormat};
 use super::layout::{Chosen, choose};
 use super::profiles::{document, write};
 use crate::app::explain;
-use crate::cli::args::{SsiExport, SsiFormat};
 use crate::cli::output::Output;
 use crate::cli::{Done, Failure, Result};
 use crate::protocol::ssi::{

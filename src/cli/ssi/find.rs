@@ -2,10 +2,10 @@
 
 use serde_json::{Value as Json, json};
 
+use super::args::SsiFind;
 use super::layout::families;
 use crate::app::explain;
 use crate::app::ssi::{Frames, read_frames};
-use crate::cli::args::SsiFind;
 use crate::cli::output::{Lines, Output, count};
 use crate::cli::runner::failed;
 use crate::cli::{Done, Result};

@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value as Json, json};
 
+use super::args::{SsiDecode, SsiEncode};
 use super::layout::choose;
 use crate::app::explain;
-use crate::cli::args::{SsiDecode, SsiEncode};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
 use crate::cli::{Done, Failure, Result};

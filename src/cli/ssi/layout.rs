@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
+use super::args::SsiLayout;
 use crate::app::explain;
-use crate::cli::args::SsiLayout;
 use crate::cli::output::Output;
 use crate::cli::profiles::load;
 use crate::cli::runner::failed;

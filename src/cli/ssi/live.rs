@@ -2,11 +2,12 @@
 
 use serde_json::{Value as Json, json};
 
+use super::args::SsiLayout;
 use super::frames::{Told, name};
 use super::layout::{Chosen, choose};
 use super::run::{begin, words};
 use crate::app::explain;
-use crate::cli::args::{Common, Position, SsiLayout, Status};
+use crate::cli::args::{Common, Position, Status};
 use crate::cli::output::{Lines, Output, count, say};
 use crate::cli::positions::readings;
 use crate::cli::runner::Ended;

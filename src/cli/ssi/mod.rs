@@ -1,5 +1,6 @@
 //! The commands for SSI encoders: `ssi` without an encoder, and what can be done with one or its profile.
 
+mod args;
 mod export;
 mod find;
 mod frames;
@@ -8,13 +9,16 @@ mod live;
 mod profiles;
 mod run;
 
-use super::args::{Simulate, Ssi, SsiLayout};
+use super::args::Simulate;
 use super::kind::Kind;
 use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
 use crate::protocol::ssi::KIND;
 use crate::sim::bridge::{Adapter, Config, SsiEncoder};
+
+pub(super) use args::Ssi;
+use args::SsiLayout;
 
 /// What can be done with SSI encoders. They send their position and have no memory.
 pub(super) const COMMANDS: Kind = Kind {

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use serde_json::json;
 
+use super::args::SsiLayout;
 use super::layout::choose;
 use crate::app::explain;
-use crate::cli::args::{Common, Save, SsiLayout};
+use crate::cli::args::{Common, Save};
 use crate::cli::output::{Output, count};
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};

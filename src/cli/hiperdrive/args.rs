@@ -1,9 +1,10 @@
-//! `move`: the one command that moves something.
+//! What these drives have on the command line that no other device has: `move`, and the order of the bytes in `decode`.
 
-use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
 
-use super::{DeviceKind, OfDrive};
+use crate::cli::args::{DeviceKind, OfDrive};
+use crate::protocol::hiperdrive::ByteOrder;
 
 #[derive(Args)]
 pub(in crate::cli) struct Move {
@@ -27,4 +28,22 @@ pub(in crate::cli) struct Move {
     /// It is stopped after so long.
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u16).range(1..))]
     pub(in crate::cli) timeout: u16,
+}
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Order {
+    /// The low one.
+    Little,
+    /// The high one.
+    Big,
+}
+
+impl From<Order> for ByteOrder {
+    fn from(order: Order) -> Self {
+        match order {
+            Order::Little => ByteOrder::Little,
+            Order::Big => ByteOrder::Big,
+        }
+    }
 }
