@@ -13,6 +13,7 @@ use super::keep::Keeper;
 use super::question::{Question, Then};
 use super::services::{Services, World};
 use super::signals::{self, Signals};
+use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
@@ -159,8 +160,8 @@ impl Studio {
         }
         for device in &mut self.devices {
             device.pump(&mut self.services);
-            if let Some(encoder) = device.hiperface_mut() {
-                self.signals.follow(encoder);
+            if let Some(source) = device.sine_cosine_mut() {
+                self.signals.follow(source);
             }
         }
         self.signals.pump(&mut self.services);
@@ -224,6 +225,11 @@ impl Studio {
     /// The encoder that the HIPERFACE tab shows.
     pub fn hiperface(&self) -> Option<&Encoder> {
         self.device(self.shown.of(Tab::Hiperface)?)?.hiperface()
+    }
+
+    /// Sine and cosine of a device that is shown in its own tab.
+    pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
+        Tab::DEVICES.into_iter().find_map(|tab| self.device(self.shown.of(tab)?)?.sine_cosine())
     }
 
     /// The encoder that the BiSS tab shows.

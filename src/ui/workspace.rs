@@ -26,7 +26,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         Tab::Interbus => interbus_ui(ui, skin, studio, views, actions),
         Tab::Hiperdrive => hiperdrive_ui(ui, skin, studio, views, actions),
         Tab::Signals => {
-            signals::page_ui(ui, skin, &studio.signals, studio.hiperface(), &mut views.signals, actions);
+            signals::page_ui(ui, skin, &studio.signals, studio.sine_cosine(), &mut views.signals, actions);
         }
     }
 }

@@ -1,7 +1,7 @@
-//! A device on the desk as what it is: for those who know one kind.
+//! A device on the desk as what it is, for those who know one kind, and what only some kinds can do.
 
 use super::AnyDevice;
-use crate::app::{biss, hiperdrive, hiperface, interbus, ssi};
+use crate::app::{SineCosineSource, biss, hiperdrive, hiperface, interbus, ssi};
 
 impl AnyDevice {
     /// As a HIPERFACE encoder.
@@ -47,5 +47,20 @@ impl AnyDevice {
 
     pub(in crate::app) fn hiperdrive_mut(&mut self) -> Option<&mut hiperdrive::Unit> {
         if let AnyDevice::Hiperdrive(own) = self { Some(own) } else { None }
+    }
+
+    /// Its sine and cosine; `None` for a kind that gives none.
+    pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
+        match self {
+            AnyDevice::Hiperface(own) => Some(own.as_ref()),
+            AnyDevice::Biss(_) | AnyDevice::Ssi(_) | AnyDevice::Interbus(_) | AnyDevice::Hiperdrive(_) => None,
+        }
+    }
+
+    pub(in crate::app) fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource> {
+        match self {
+            AnyDevice::Hiperface(own) => Some(own.as_mut()),
+            AnyDevice::Biss(_) | AnyDevice::Ssi(_) | AnyDevice::Interbus(_) | AnyDevice::Hiperdrive(_) => None,
+        }
     }
 }

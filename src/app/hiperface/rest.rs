@@ -1,10 +1,10 @@
 //! Reading the shaft at rest, and for whom it was: a place of the commutation assistant, or whoever asked for the reading
 //! itself.
 
-use super::Encoder;
-use crate::app::Text;
+use super::{Action, Encoder};
 use crate::app::services::Services;
 use crate::app::session::OnLine;
+use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::device::hiperface::Rest;
 use crate::protocol::hiperface::Geometry;
 use crate::worker::hiperface::HiperfaceJob;
@@ -24,11 +24,6 @@ impl Encoder {
 
     pub(super) fn read_rest(&mut self, services: &mut Services) {
         self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
-    }
-
-    /// What was read for whoever asked for it, once; or why there is nothing.
-    pub(in crate::app) fn take_rest_asked(&mut self) -> Option<Result<Rest, Text>> {
-        self.rest.told.take()
     }
 
     /// The shaft was read at rest.
@@ -54,5 +49,35 @@ impl Encoder {
     pub(super) fn give_up_rest(&mut self) {
         self.rest.is_under_way = false;
         self.commutation.give_up();
+    }
+}
+
+impl SineCosineSource for Encoder {
+    fn is_ready(&self) -> bool {
+        self.session.is_ready()
+    }
+
+    fn read_action(&self) -> crate::app::Action {
+        crate::app::Action::Hiperface(self.session.id, Action::ReadRest)
+    }
+
+    fn origin(&self) -> SineCosineOrigin {
+        let range = match self.geometry() {
+            Some(Geometry::Rotary { periods, turns }) => Some(SineCosineRange { periods, turns }),
+            Some(Geometry::Linear { .. }) | None => None,
+        };
+        let serial_number = self.identity.as_ref().map(|own| own.serial.serial_number.clone());
+        SineCosineOrigin { session: self.session.id, serial_number, range }
+    }
+
+    fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>> {
+        self.rest.told.take().map(|told| told.map(SineCosineReading::from))
+    }
+}
+
+impl From<Rest> for SineCosineReading {
+    fn from(rest: Rest) -> Self {
+        let signals = rest.signals.map(|own| SineCosineVolts { sine_v: own.sine_v, cosine_v: own.cosine_v });
+        SineCosineReading { position: rest.raw, valid: rest.valid, signals }
     }
 }

@@ -7,11 +7,10 @@ use super::synchronise::Synchronise;
 use super::{
     Action, Done, Failed, Judge, Measurement, Place, Read, Results, Scope, Source, SourceAction, Table, promise,
 };
-use crate::app::hiperface::Encoder;
 use crate::app::number::MOST_PERIODS;
 use crate::app::recorder;
 use crate::app::services::Services;
-use crate::app::{Severity, Studio, Tab, Text, explain};
+use crate::app::{Severity, SineCosineSource, Studio, Tab, Text, explain};
 use crate::signal::capture::Wishes;
 use crate::signal::diagnosis::{Changes, Finding, compare};
 use crate::signal::quality::Family;
@@ -99,9 +98,9 @@ impl Signals {
         &self.synchronise
     }
 
-    /// Takes what an encoder has read at rest for this tab.
-    pub(in crate::app) fn follow(&mut self, encoder: &mut Encoder) {
-        self.synchronise.follow(encoder);
+    /// Takes what a device has read at rest for this tab.
+    pub(in crate::app) fn follow(&mut self, source: &mut dyn SineCosineSource) {
+        self.synchronise.follow(source);
     }
 
     /// The capture that is shown.

@@ -2,11 +2,8 @@
 //! ahead of the other over many readings. SICK 8010701, forming the absolute position; section 4 of the project's
 //! sine/cosine reference.
 
-use crate::app::hiperface::Encoder;
 use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
-use crate::app::{SessionId, Text};
-use crate::device::hiperface::{Rest, Signals as Volts};
-use crate::protocol::hiperface::Geometry;
+use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::signal::arctan::{Phase, exact};
 use crate::signal::quality::{Limits, Verdict};
 use crate::signal::synchronise::{STEPS, Synchronised, Synchroniser, Unsynchronisable, measure_offset};
@@ -72,15 +69,7 @@ pub struct Synchronise {
     /// Readings of one encoder: absolute positions and phases.
     readings: Vec<(u64, Phase)>,
     /// Whose they are.
-    whose: Option<Whose>,
-}
-
-/// An encoder in a session; its serial number where it was read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Whose {
-    session: SessionId,
-    serial_number: Option<String>,
-    geometry: Option<Geometry>,
+    whose: Option<SineCosineOrigin>,
 }
 
 /// What the entries come to.
@@ -241,42 +230,39 @@ impl Synchronise {
     }
 
     /// Takes what an encoder has read at rest since the last time.
-    pub(in crate::app) fn follow(&mut self, encoder: &mut Encoder) {
-        match encoder.take_rest_asked() {
-            Some(Ok(rest)) => {
-                let serial_number = encoder.identity.as_ref().map(|own| own.serial.serial_number.clone());
-                self.take(rest, Whose { session: encoder.session.id, serial_number, geometry: encoder.geometry() });
-            }
+    pub(in crate::app) fn follow(&mut self, source: &mut dyn SineCosineSource) {
+        match source.take_reading() {
+            Some(Ok(reading)) => self.take(reading, source.origin()),
             Some(Err(why)) => self.problem = Some(why),
             None => {}
         }
     }
 
-    fn take(&mut self, rest: Rest, whose: Whose) {
+    fn take(&mut self, reading: SineCosineReading, whose: SineCosineOrigin) {
         self.problem = None;
-        let geometry = whose.geometry;
+        let range = whose.range;
         if self.whose.as_ref() != Some(&whose) {
             // Those were another encoder's.
             self.readings.clear();
             self.whose = Some(whose);
         }
-        let Some(Volts { sine_v, cosine_v }) = rest.signals else {
-            self.form.absolute = rest.raw.to_string();
+        let Some(SineCosineVolts { sine_v, cosine_v }) = reading.signals else {
+            self.form.absolute = reading.position.to_string();
             self.problem = Some(Text::new("synchronise.no_channels"));
             return;
         };
-        let Some(Geometry::Rotary { periods, turns }) = geometry else {
+        let Some(SineCosineRange { periods, turns }) = range else {
             self.problem = Some(Text::new("synchronise.no_geometry"));
             return;
         };
         let form = &mut self.form;
-        form.absolute = format!("0x{:X}", rest.raw);
+        form.absolute = format!("0x{:X}", reading.position);
         form.told_as = ToldAs::Volts;
         (form.sine_v, form.cosine_v) = (format!("{sine_v:.4}"), format!("{cosine_v:.4}"));
         (form.periods, form.turns) = (periods.max(1).to_string(), turns.max(1).to_string());
         let length = sine_v.hypot(cosine_v);
         match exact(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude(length) != Verdict::Fault) {
-            Some(phase) if rest.valid => self.readings.push((rest.raw.into(), phase)),
+            Some(phase) if reading.valid => self.readings.push((reading.position.into(), phase)),
             Some(_) => self.problem = Some(Text::new("commutation.invalid")),
             None => self.problem = Some(Text::new("synchronise.no_signal")),
         }
@@ -305,6 +291,7 @@ impl Synchronise {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::SessionId;
 
     fn form(absolute: &str, phase: &str, periods: &str, turns: &str) -> Form {
         let typed = |text: &str| text.to_owned();
@@ -391,17 +378,21 @@ mod tests {
     #[test]
     fn readings_measure_the_offset() {
         let mut page = Synchronise::default();
-        let geometry = Some(Geometry::Rotary { periods: 128, turns: 4096 });
-        let at = |raw, degrees: f64| {
+        let range = Some(SineCosineRange { periods: 128, turns: 4096 });
+        let at = |position, degrees: f64| {
             let (sine, cosine) = degrees.to_radians().sin_cos();
-            Rest { raw, valid: true, signals: Some(Volts { sine_v: 0.5 * sine, cosine_v: 0.5 * cosine }) }
+            SineCosineReading {
+                position,
+                valid: true,
+                signals: Some(SineCosineVolts { sine_v: 0.5 * sine, cosine_v: 0.5 * cosine }),
+            }
         };
         assert_eq!(page.measured(), None);
         // Step 10 at 8 steps (90°), and step 31 at 28 steps (315°).
-        let whose = |number, serial: &str| Whose {
+        let whose = |number, serial: &str| SineCosineOrigin {
             session: SessionId(number),
             serial_number: Some(serial.to_owned()),
-            geometry,
+            range,
         };
         page.take(at(10, 90.0), whose(1, "A"));
         assert_eq!((page.readings(), page.measured()), (1, None));
@@ -413,10 +404,10 @@ mod tests {
         let told = page.form.told().unwrap();
         assert!((told.difference_steps - 3.0).abs() < 0.01);
         assert!((told.result.unwrap().residual_periods * 32.0 - 0.5).abs() < 0.01);
-        page.take(Rest { signals: None, ..at(10, 0.0) }, whose(1, "A"));
+        page.take(SineCosineReading { signals: None, ..at(10, 0.0) }, whose(1, "A"));
         assert_eq!(page.problem.as_ref().unwrap().id(), "synchronise.no_channels");
         assert_eq!(page.readings(), 2);
-        let small = Whose { geometry: Some(Geometry::Rotary { periods: 16, turns: 1 }), ..whose(1, "A") };
+        let small = SineCosineOrigin { range: Some(SineCosineRange { periods: 16, turns: 1 }), ..whose(1, "A") };
         for other in [small, whose(1, "A"), whose(1, "B"), whose(2, "B")] {
             page.take(at(10, 90.0), other);
             assert_eq!(page.readings(), 1, "another encoder begins anew");

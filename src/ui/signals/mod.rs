@@ -17,10 +17,9 @@ mod virtual_encoder;
 use egui::Ui;
 
 use super::{Skin, icons, page};
-use crate::app::hiperface::Encoder;
 use crate::app::signals::Signals;
 use crate::app::signals::input_circuit::Form as Circuit;
-use crate::app::{Action, Text};
+use crate::app::{Action, SineCosineSource, Text};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,12 +88,12 @@ pub(in crate::ui) struct View {
     input_circuit: Circuit,
 }
 
-/// Draws the open page; `encoder` is the one that is shown in its own tab, and can be read.
+/// Draws the open page; `device` is one that is shown in its own tab, and can be read.
 pub(super) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     signals: &Signals,
-    encoder: Option<&Encoder>,
+    device: Option<&dyn SineCosineSource>,
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
@@ -116,7 +115,7 @@ pub(super) fn page_ui(
         }
         Page::Synchronise => {
             source::problem(ui, skin, signals);
-            synchronise::page_ui(ui, skin, signals, encoder, actions);
+            synchronise::page_ui(ui, skin, signals, device, actions);
         }
         Page::InputCircuit => {
             source::problem(ui, skin, signals);

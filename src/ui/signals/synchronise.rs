@@ -2,10 +2,9 @@
 
 use egui::Ui;
 
-use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::signals::synchronise::{Action as Page, Form, Synchronise, ToldAs};
 use crate::app::signals::{Action as Signals, Signals as State, synchronise::Told};
-use crate::app::{Action, Text, explain};
+use crate::app::{Action, SineCosineSource, Text, explain};
 use crate::ui::controls::{
     card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row, split,
     verdict_ui,
@@ -21,7 +20,13 @@ const RING: f32 = 200.0;
 const COLUMNS: (f32, f32) = (0.42, 620.0);
 
 /// Draws the page.
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &State, encoder: Option<&Encoder>, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    signals: &State,
+    device: Option<&dyn SineCosineSource>,
+    actions: &mut Vec<Action>,
+) {
     let state = signals.synchronise();
     let mut form = state.form.clone();
     // What is drawn beside the entries is what they come to now.
@@ -32,7 +37,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &State, encoder: Option
         skin,
         COLUMNS,
         (&mut form, &mut *actions),
-        |ui, (form, actions)| positions(ui, skin, form, state, told.as_ref().err(), encoder, actions),
+        |ui, (form, actions)| positions(ui, skin, form, state, told.as_ref().err(), device, actions),
         |ui, _| {
             if let Ok(told) = &told {
                 result(ui, skin, told);
@@ -73,7 +78,7 @@ fn positions(
     form: &mut Form,
     state: &Synchronise,
     refused: Option<&Text>,
-    encoder: Option<&Encoder>,
+    device: Option<&dyn SineCosineSource>,
     actions: &mut Vec<Action>,
 ) {
     card(ui, skin, "synchronise.positions", |ui| {
@@ -100,10 +105,10 @@ fn positions(
         ui.checkbox(&mut form.half_step, skin.say("synchronise.half_step"))
             .on_hover_text(skin.say("synchronise.half_step_hint"));
         problem(ui, skin, refused);
-        let ready = encoder.is_some_and(|own| own.session.is_ready());
+        let ready = device.is_some_and(SineCosineSource::is_ready);
         let read = enabled_button(ui, ready, icons::CROSSHAIR, &skin.say("synchronise.read"));
         if read.on_disabled_hover_text(skin.say("synchronise.read_hint")).clicked() {
-            actions.extend(encoder.map(|encoder| Action::Hiperface(encoder.session.id, Hiperface::ReadRest)));
+            actions.extend(device.map(SineCosineSource::read_action));
         }
         problem(ui, skin, state.problem.as_ref());
     });

@@ -1,0 +1,60 @@
+//! What Signals needs of a device that gives sine and cosine beside its absolute position, whatever kind it is of.
+
+use super::action::Action;
+use super::studio::SessionId;
+use super::texts::Text;
+
+/// A position and the signals beside it, read while the shaft rested.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SineCosineReading {
+    /// The absolute position, in steps of 1/32 period.
+    pub position: u32,
+    /// The position can be used.
+    pub valid: bool,
+    /// Sine and cosine in volts, where the device gives them.
+    pub signals: Option<SineCosineVolts>,
+}
+
+/// Sine and cosine, each against its reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SineCosineVolts {
+    /// Sine in volts.
+    pub sine_v: f64,
+    /// Cosine in volts.
+    pub cosine_v: f64,
+}
+
+/// The range of an encoder that turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SineCosineRange {
+    /// Signal periods a revolution.
+    pub periods: u32,
+    /// Revolutions.
+    pub turns: u32,
+}
+
+/// The device that a reading is from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SineCosineOrigin {
+    /// Its session.
+    pub session: SessionId,
+    /// Its serial number, where it was read.
+    pub serial_number: Option<String>,
+    /// Its range, where that is known and it turns.
+    pub range: Option<SineCosineRange>,
+}
+
+/// A device whose sine and cosine can be read at rest.
+pub trait SineCosineSource {
+    /// It can be read now.
+    fn is_ready(&self) -> bool;
+
+    /// The action that reads it.
+    fn read_action(&self) -> Action;
+
+    /// Which device it is.
+    fn origin(&self) -> SineCosineOrigin;
+
+    /// The reading that was asked for, once; or why there is none.
+    fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
+}
