@@ -81,6 +81,7 @@ const STREAMED: Duration = Duration::from_secs(15);
 fn stream() {
     use encoder_studio::app::biss::Action as Biss;
     use encoder_studio::app::{Action, Look, Studio, Tab, World};
+    use encoder_studio::kinds::FORMATS;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
 
@@ -134,8 +135,10 @@ fn stream() {
         Box::new(move |cc| {
             install_fonts(&cc.egui_ctx);
             let ctx = cc.egui_ctx.clone();
-            let mut studio =
-                Studio::new(World::real(Store::at(&folder)), std::sync::Arc::new(move || ctx.request_repaint()));
+            let mut studio = Studio::new(
+                World::real(Store::at(&folder), FORMATS),
+                std::sync::Arc::new(move || ctx.request_repaint()),
+            );
             studio.act(Action::ShowTab(Tab::Biss));
             // 2 MHz: a frame of 43 clocks takes 21.5 µs beside 27 µs of waiting.
             studio.begin(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
@@ -163,6 +166,7 @@ fn write_capture(path: &std::path::Path) {
 /// The whole window with the capture in its scope: every picture another stretch, as fast as they come.
 fn plot() {
     use encoder_studio::app::{Action, Desk, Look, Studio, World, recorder, signals};
+    use encoder_studio::kinds::FORMATS;
     use encoder_studio::signal::Time;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
@@ -213,7 +217,7 @@ fn plot() {
         }
     }
     let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
-    let mut studio = Studio::new(World::real(Store::at(&folder)), std::sync::Arc::new(|| {}));
+    let mut studio = Studio::new(World::real(Store::at(&folder), FORMATS), std::sync::Arc::new(|| {}));
     studio.begin(None, None);
     studio.act(Action::Signals(signals::Action::Open(folder.join("capture.csv"))));
     let options = eframe::NativeOptions {

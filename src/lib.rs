@@ -26,3 +26,6 @@ pub mod cli;
 
 // floor 6: drawing
 pub mod ui;
+
+// above all: which devices there are
+pub mod kinds;

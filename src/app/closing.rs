@@ -144,7 +144,10 @@ impl Studio {
             }
             Some(Then::CloseSession(id)) => self.remove(id),
             Some(Then::Write(question, path)) => self.chosen(question, path),
-            Some(Then::Save(saving)) => self.services.tasks.run("save", move || saving.run()),
+            Some(Then::Save(saving)) => {
+                let formats = self.services.world.formats;
+                self.services.tasks.run("save", move || saving.run(formats));
+            }
             Some(Then::OpenLink(id)) => self.open_confirmed(id),
             Some(Then::Search(options)) => self.search_confirmed(options),
             Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::Action::Clear),

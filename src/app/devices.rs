@@ -28,7 +28,8 @@ use super::studio::SessionId;
 use super::tab::Tab;
 use super::trace::TraceLog;
 use crate::link::LinkUrl;
-use crate::profile::{Body, Document};
+use crate::profile::Document;
+use crate::protocol;
 use crate::store::{Backup, DeviceKey, Entry, FileError, StatusEntry};
 
 /// A device on the desk, or a profile of one.
@@ -84,30 +85,31 @@ impl AnyDevice {
         }
     }
 
-    /// A profile.
+    /// A profile; `None` of a kind of device that the window does not show.
     pub(super) fn in_file(
         id: SessionId,
         file: ProfileFile,
         document: Document,
         known: Known,
         services: &mut Services,
-    ) -> Self {
-        match &document.body {
-            Body::Hiperface(_) => {
+    ) -> Option<Self> {
+        Some(match document.body.kind() {
+            protocol::hiperface::KIND => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
             }
-            Body::Biss(_) => {
+            protocol::biss::KIND => {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
-            Body::Ssi(_) => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
-            Body::Interbus(_) => {
+            protocol::ssi::KIND => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
+            protocol::interbus::KIND => {
                 AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
             }
-            Body::Hiperdrive(_) => {
+            protocol::hiperdrive::KIND => {
                 AnyDevice::Hiperdrive(Box::new(hiperdrive::Unit::in_file(id, file, document, services)))
             }
-        }
+            _ => return None,
+        })
     }
 
     /// Its number in the studio.

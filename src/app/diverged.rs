@@ -7,7 +7,7 @@ use super::question::{Question, Then};
 use super::session::{Found, Guard, ProfileFile, Saving, Source};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, Wish};
-use crate::profile::{Change, Changed, Document, ProfileError, divergence};
+use crate::profile::{Change, Changed, Document, Formats, ProfileError, divergence};
 
 /// One profile in two versions.
 #[derive(Debug)]
@@ -75,7 +75,7 @@ impl Row {
 
 impl Diverged {
     /// What differs between what a file says and what is to be written there.
-    pub(super) fn new(saving: Saving, Found { text, document }: Found) -> Self {
+    pub(super) fn new(saving: Saving, Found { text, document }: Found, formats: Formats) -> Self {
         let kind = saving.document.body.kind();
         let is_of_kind = |found: Box<Document>| match found.body.kind() == kind {
             true => Ok(found),
@@ -83,7 +83,7 @@ impl Diverged {
         };
         let is_known = |found: Box<Document>| found.known().map(Box::new).map_err(ReadError::Profile);
         let document = document.and_then(is_of_kind).and_then(is_known);
-        let base = saving.opened.as_ref().and_then(|opened| Document::parse(&opened.text).ok());
+        let base = saving.opened.as_ref().and_then(|opened| Document::parse(&opened.text, formats).ok());
         let rows = match (&base, &document) {
             (Some(base), Ok(theirs)) => divergence(base, theirs, &saving.document),
             _ => Vec::new(),
@@ -138,11 +138,11 @@ impl Diverged {
     }
 
     /// The versions brought together.
-    fn merged(&self) -> Result<Document, Text> {
+    fn merged(&self, formats: Formats) -> Result<Document, Text> {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));
         let changes: Vec<Change> = mine.map(|row| row.change.clone()).collect();
-        theirs.changed(&changes).map_err(|error| match error {
+        theirs.changed(&changes, formats).map_err(|error| match error {
             Some(error) => read_error(&self.saving.path, &ReadError::Profile(error)),
             None => Text::new("diverged.unfit"),
         })
@@ -210,7 +210,7 @@ impl Studio {
             }
             Resolve::Reload => return self.reload(diverged),
             Resolve::KeepMine if diverged.can_keep_mine() => diverged.over_theirs(None),
-            Resolve::Merge if diverged.can_merge() => match diverged.merged() {
+            Resolve::Merge if diverged.can_merge() => match diverged.merged(self.services.world.formats) {
                 Ok(document) => diverged.over_theirs(Some(document)),
                 Err(why) => {
                     diverged.problem = Some(why);
@@ -223,7 +223,8 @@ impl Studio {
                 return;
             }
         };
-        self.services.tasks.run("save", move || saving.run());
+        let formats = self.services.world.formats;
+        self.services.tasks.run("save", move || saving.run(formats));
     }
 
     fn reload(&mut self, diverged: Diverged) {

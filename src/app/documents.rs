@@ -8,7 +8,7 @@ use super::action::{Action, Done, Known, ReadError};
 use super::session::{DraftDone, ProfileFile, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
-use crate::profile::{Body, Document};
+use crate::profile::{Body, Document, Formats, ProfileError};
 use crate::protocol::biss::Descriptions;
 use crate::protocol::hiperface::EncoderTypes;
 use crate::store::{Store, read_file};
@@ -34,7 +34,9 @@ impl Studio {
                 if open.is_some() {
                     self.with_device(id, |device, _| device.take_document(file, *document));
                 } else {
+                    let (path, found) = (file.path.clone(), document.device());
                     let device = AnyDevice::in_file(id, file, *document, known, &mut self.services);
+                    let Some(device) = device else { return self.cannot_show(&path, found) };
                     self.devices.push(device);
                 }
                 if let Some(tab) = self.device(id).map(AnyDevice::tab) {
@@ -43,6 +45,12 @@ impl Studio {
             }
             Err(error) => self.services.tell(Severity::Error, vec![read_error(&file.path, &error)], None),
         }
+    }
+
+    /// A profile is of a kind of device that the window does not show.
+    fn cannot_show(&mut self, path: &Path, found: &str) {
+        let error = ProfileError::Device { found: found.to_owned(), known: AnyDevice::KINDS.to_vec() };
+        self.services.tell(Severity::Error, vec![explain::profile(path, &error)], None);
     }
 
     /// The draft of a session was looked for, kept or removed.
@@ -87,8 +95,8 @@ pub(super) fn document_of(body: Body) -> Document {
 }
 
 /// Reads a profile, as a task.
-pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
-    let (text, result) = match read_text_and_profile(&path) {
+pub(super) fn read_document(path: PathBuf, store: &Store, formats: Formats) -> Action {
+    let (text, result) = match read_text_and_profile(&path, formats) {
         Ok((text, document)) => (text, Ok(Box::new(document))),
         Err(error) => (String::new(), Err(error)),
     };
@@ -102,13 +110,13 @@ pub(super) fn read_document(path: PathBuf, store: &Store) -> Action {
     Action::Done(Done::Read { file, result, known })
 }
 
-pub(super) fn read_profile(path: &Path) -> Result<Document, ReadError> {
-    read_text_and_profile(path).map(|(_, document)| document)
+pub(super) fn read_profile(path: &Path, formats: Formats) -> Result<Document, ReadError> {
+    read_text_and_profile(path, formats).map(|(_, document)| document)
 }
 
-fn read_text_and_profile(path: &Path) -> Result<(String, Document), ReadError> {
+fn read_text_and_profile(path: &Path, formats: Formats) -> Result<(String, Document), ReadError> {
     let text = read_file(path).map_err(ReadError::File)?;
-    let document = Document::parse(&text).map_err(ReadError::Profile)?;
+    let document = Document::parse(&text, formats).map_err(ReadError::Profile)?;
     Ok((text, document))
 }
 

@@ -14,6 +14,7 @@ use super::tasks::{Tasks, Wake};
 use super::{Text, explain};
 use crate::device::hiperdrive::{Error as DriveError, Found};
 use crate::link::{LinkError, LinkUrl, PortInfo};
+use crate::profile::Formats;
 use crate::protocol::hiperface::{AccessCode, CodeNumber, EncoderTypes};
 use crate::protocol::ssi::Families;
 use crate::store::{Folders, Store, StoreError};
@@ -44,6 +45,8 @@ pub struct World {
     pub open_hiperdrive: Opener<Hiperdrive>,
     /// Asks who is there in this network.
     pub discover: Arc<dyn Fn() -> Result<Vec<Found>, DriveError> + Send + Sync>,
+    /// The formats of profiles that can be read.
+    pub formats: Formats,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Access codes that the user gave at the start; sessions begin with them.
@@ -57,8 +60,8 @@ pub struct World {
 }
 
 impl World {
-    /// This machine.
-    pub fn real(store: Store) -> Self {
+    /// This machine, with the formats of profiles that can be read.
+    pub fn real(store: Store, formats: Formats) -> Self {
         World {
             store,
             open_hiperface: Arc::new(hiperface::open),
@@ -67,6 +70,7 @@ impl World {
             open_interbus: Arc::new(interbus::open),
             open_hiperdrive: Arc::new(hiperdrive::open),
             discover: Arc::new(super::hiperdrive::ask_all),
+            formats,
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),
             folders: Folders::of_user(),

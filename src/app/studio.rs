@@ -122,9 +122,9 @@ impl Studio {
                 self.signals.act(signals::Action::Open(path), &mut self.services);
             }
             Action::Open(path) => {
-                let store = self.services.world.store.clone();
+                let (store, formats) = (self.services.world.store.clone(), self.services.world.formats);
                 self.services.opening_files.push(path.clone());
-                self.services.tasks.run("open", move || read_document(path, &store));
+                self.services.tasks.run("open", move || read_document(path, &store, formats));
             }
             Action::FileNotChosen => {}
             Action::TypePath(question) => self.path_question = Some(question),

@@ -5,6 +5,7 @@ use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Read, Restore,
 use super::output::Output;
 use super::simulate::Simulated;
 use super::{Failure, Result, biss, hiperdrive, hiperface, interbus, ssi};
+use crate::app::Text;
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// A kind of device on the command line: the commands by their names.
@@ -22,11 +23,13 @@ pub(super) struct Kind {
     pub(super) decode: fn(&Output, &Decode) -> Result,
     pub(super) restore: fn(&Common, &Output, &Restore, Body) -> Result,
     /// The virtual device that is to be served.
-    pub(super) simulated: fn(&Simulate) -> Result<Box<dyn Simulated>>,
+    pub(super) simulated: fn(&Output, &Simulate) -> Result<Box<dyn Simulated>>,
     /// The device as it is, for a comparison: all of it, or at least what a profile says something about.
     pub(super) present: fn(&Common, &Output, Option<&Body>) -> Result<Body>,
     /// What differs between two profiles, or that one of them is of another kind.
     pub(super) compare: fn(&Body, &Body) -> std::result::Result<Comparison, ProfileError>,
+    /// What is to be known of a profile, whatever is done with it.
+    pub(super) remark: fn(&Body) -> Option<Text>,
     /// That two profiles are not of the same device.
     pub(super) other_device: fn(&Body, &Body) -> Option<String>,
 }
@@ -47,12 +50,11 @@ pub(super) fn of(device: DeviceKind) -> &'static Kind {
 }
 
 /// The kind of device that a profile is of.
-pub(super) fn of_profile(body: &Body) -> &'static Kind {
-    match body {
-        Body::Hiperface(_) => &hiperface::COMMANDS,
-        Body::Biss(_) => &biss::COMMANDS,
-        Body::Ssi(_) => &ssi::COMMANDS,
-        Body::Interbus(_) => &interbus::COMMANDS,
-        Body::Hiperdrive(_) => &hiperdrive::COMMANDS,
-    }
+///
+/// # Errors
+/// It has no commands.
+pub(super) fn of_profile(body: &Body) -> Result<&'static Kind> {
+    let all = [&hiperface::COMMANDS, &biss::COMMANDS, &ssi::COMMANDS, &interbus::COMMANDS, &hiperdrive::COMMANDS];
+    let of_kind = all.into_iter().find(|kind| kind.name == body.kind());
+    of_kind.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {} devices.", body.kind())]))
 }

@@ -32,6 +32,7 @@ use args::{Arguments, Command, Common, DeviceKind, OfDrive, Protocol, Words};
 use output::Output;
 
 use crate::link::LinkUrl;
+use crate::profile::Formats;
 use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
 /// How a command ended.
@@ -75,8 +76,9 @@ pub struct Window {
     pub codes: Vec<(CodeNumber, AccessCode)>,
 }
 
-/// Runs the command that the arguments of this process name; without one the window is asked for.
-pub fn run() -> Asked {
+/// Runs the command that the arguments of this process name; without one the window is asked for. Profiles are read in these
+/// formats.
+pub fn run(formats: Formats) -> Asked {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -91,7 +93,7 @@ pub fn run() -> Asked {
         }
         Some(command) => {
             output::log_to_stderr();
-            Asked::Command(end(dispatch(&common, command)))
+            Asked::Command(end(dispatch(&common, command, formats)))
         }
         None => window(common, profile),
     }
@@ -139,8 +141,8 @@ fn end(result: Result) -> ExitCode {
     }
 }
 
-fn dispatch(common: &Common, command: Command) -> Result {
-    let output = Output::new(common.json);
+fn dispatch(common: &Common, command: Command, formats: Formats) -> Result {
+    let output = Output::new(common.json, formats);
     match command {
         Command::Ports => ports::ports(&output),
         Command::Find(find) => (kind::of(find.device).find)(common, &output, &find),
@@ -188,7 +190,7 @@ fn dispatch(common: &Common, command: Command) -> Result {
         Command::Ssi(command) => ssi::ssi(&output, &command),
         Command::Simulate(simulate) => {
             no_layout(simulate.layout.as_ref(), simulate.device)?;
-            simulate::simulate(&simulate)
+            simulate::simulate(&output, &simulate)
         }
         Command::Diff(diff) => profiles::diff(common, &output, &diff),
         Command::Verify(verify) => profiles::verify(common, &output, &verify.file),

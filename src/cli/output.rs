@@ -5,10 +5,12 @@ use std::io::{self, Write};
 use serde_json::Value;
 
 use super::Failure;
+use crate::profile::Formats;
 
-/// Where results go.
+/// What a command is given: where results go, and the formats of profiles that can be read.
 pub(super) struct Output {
     json: bool,
+    formats: Formats,
 }
 
 /// Lines of label and value, aligned.
@@ -28,8 +30,18 @@ impl Lines {
 }
 
 impl Output {
-    pub(super) fn new(json: bool) -> Self {
-        Output { json }
+    pub(super) fn new(json: bool, formats: Formats) -> Self {
+        Output { json, formats }
+    }
+
+    /// The same, with results as text.
+    pub(super) fn as_text(&self) -> Self {
+        Output { json: false, formats: self.formats }
+    }
+
+    /// The formats of profiles that can be read.
+    pub(super) fn formats(&self) -> Formats {
+        self.formats
     }
 
     /// Prints a result in the form that was asked for.

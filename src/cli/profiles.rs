@@ -17,30 +17,31 @@ use crate::profile::{Body, Comparison, Document, RestoreOptions};
 use crate::store::{read_text, write_atomically};
 
 /// Reads a profile of any kind, to look at it or to compare it.
-pub(super) fn load(path: &Path) -> Result<Body> {
-    let document = read_document(path)?;
-    remark(path, &document);
+pub(super) fn load(output: &Output, path: &Path) -> Result<Body> {
+    let document = read_document(output, path)?;
+    remark(path, &document)?;
     Ok(document.body)
 }
 
 /// Reads a profile that is to be written into a device: all of it has to be known.
-pub(super) fn load_to_write(path: &Path) -> Result<Body> {
-    let document = read_document(path)?.known().map_err(|error| failed(&explain::profile(path, &error)))?;
-    remark(path, &document);
+pub(super) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
+    let document = read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error)))?;
+    remark(path, &document)?;
     Ok(document.body)
 }
 
 /// Says what is to be known of it.
-fn remark(path: &Path, document: &Document) {
+fn remark(path: &Path, document: &Document) -> Result<()> {
     explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal())));
-    if let Some(words) = document.body.biss().and_then(explain::biss::profile_unsaved) {
+    if let Some(words) = (kind::of_profile(&document.body)?.remark)(&document.body) {
         say(&format!("{}: {}\n", path.display(), words.terminal()));
     }
+    Ok(())
 }
 
-fn read_document(path: &Path) -> Result<Document> {
+fn read_document(output: &Output, path: &Path) -> Result<Document> {
     let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
-    Document::parse(&text).map_err(|error| failed(&explain::profile(path, &error)))
+    Document::parse(&text, output.formats()).map_err(|error| failed(&explain::profile(path, &error)))
 }
 
 /// Writes a profile that was read just now.
@@ -55,10 +56,10 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
     if diff.right.is_some() == common.link.is_some() {
         return Err(Failure::Usage("diff takes a second file or --link URL, one of them".to_owned()));
     }
-    let left = load(&diff.left)?;
-    let kind = kind::of_profile(&left);
+    let left = load(output, &diff.left)?;
+    let kind = kind::of_profile(&left)?;
     let (right, name) = match &diff.right {
-        Some(path) => (load(path)?, path.as_path()),
+        Some(path) => (load(output, path)?, path.as_path()),
         None => ((kind.present)(common, output, None)?, Path::new("the device")),
     };
     let comparison = (kind.compare)(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
@@ -67,8 +68,8 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
 }
 
 pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
-    let profile = load(file)?;
-    let kind = kind::of_profile(&profile);
+    let profile = load(output, file)?;
+    let kind = kind::of_profile(&profile)?;
     let device = (kind.present)(common, output, Some(&profile))?;
     // What is compared may be of two devices: that is allowed, and has to be known.
     if let Some(words) = (kind.other_device)(&profile, &device) {
@@ -81,8 +82,8 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
-    let profile = load_to_write(&restore.file)?;
-    (kind::of_profile(&profile).restore)(common, output, restore, profile)
+    let profile = load_to_write(output, &restore.file)?;
+    (kind::of_profile(&profile)?.restore)(common, output, restore, profile)
 }
 
 /// What the command line allows of a restore, for devices without data fields.

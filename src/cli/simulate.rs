@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::args::Simulate;
+use super::output::Output;
 use super::{Done, Failure, Result};
 use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
@@ -45,9 +46,9 @@ pub(super) trait Simulated: ByteDevice {
     }
 }
 
-pub(super) fn simulate(arguments: &Simulate) -> Result {
+pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
     let kind = super::kind::of(arguments.device);
-    let simulated = (kind.simulated)(arguments)?;
+    let simulated = (kind.simulated)(output, arguments)?;
     let ended = Arc::new(AtomicBool::new(false));
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))

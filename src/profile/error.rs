@@ -1,7 +1,6 @@
 //! Why a text is not a profile.
 
-use super::Body;
-use crate::protocol::ssi::LayoutError;
+use super::Cause;
 
 /// Why a text is not a profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -37,10 +36,12 @@ pub enum ProfileError {
         known: u32,
     },
     /// Not a kind of device that this program saves.
-    #[error("device {found:?}; this program knows {}", quoted_kinds())]
+    #[error("device {found:?}; this program knows {}", quoted(known))]
     Device {
         /// What the file says.
         found: String,
+        /// The kinds that are known.
+        known: Vec<&'static str>,
     },
     /// A kind of device that this program saves, and not the one that is asked for.
     #[error("a profile of a {found} device where one of a {wanted} device is needed")]
@@ -72,19 +73,20 @@ pub enum ProfileError {
         /// What is wrong, and what is allowed.
         what: String,
     },
-    /// An SSI frame that cannot work.
+    /// Values that cannot be together, as the device tells it.
     #[error("{path}: {cause}")]
-    Frame {
+    Refused {
         /// Where.
         path: String,
         /// Why not.
-        cause: LayoutError,
+        cause: Cause,
     },
 }
 
-fn quoted_kinds() -> String {
-    let kinds = Body::KINDS.map(|kind| format!("{kind:?}"));
-    let [first, between @ .., last] = &kinds;
-    let between: String = between.iter().map(|kind| format!(", {kind}")).collect();
-    format!("{first}{between} and {last}")
+fn quoted(kinds: &[&str]) -> String {
+    let kinds: Vec<String> = kinds.iter().map(|kind| format!("{kind:?}")).collect();
+    match kinds.split_last() {
+        Some((last, before)) if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+        _ => kinds.concat(),
+    }
 }

@@ -2,6 +2,8 @@
 //! `store`, devices are read and written by `device`.
 
 pub mod biss;
+mod body;
+mod cause;
 mod difference;
 mod document;
 mod error;
@@ -18,15 +20,19 @@ mod ron_text;
 mod source;
 pub mod ssi;
 #[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
 mod tests;
 mod unique_names;
 
+pub use body::{Body, Formats, Profile, ProfileBody, ProfileFormat};
+pub use cause::Cause;
 pub use difference::{Comparison, Difference};
-pub use document::{Body, Document, SCHEMA};
+pub use document::{Document, SCHEMA};
 pub use error::ProfileError;
 pub use mounting::MountingMark;
 pub use plan::{Consent, Operation, Plan, PlanId};
 pub use restore::{Restore, RestoreOptions};
 pub use rewrite::{Changed, divergence};
-pub use ron_text::Unknown;
+pub use ron_text::{Entries, Unknown, Writer};
 pub use source::{Carried, Change, Step};

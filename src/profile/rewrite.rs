@@ -1,15 +1,15 @@
 //! A profile written over a text that a person keeps, and profiles of two people brought together.
 
 use super::source::{Carried, Change, applied, carry, changes, lost};
-use super::{Document, ProfileError};
+use super::{Document, Formats, ProfileError};
 
 impl Document {
     /// Its text where `text` stood: what says the same stays as it is written, with comments, order and line ends.
-    pub fn emit_over(&self, text: &str) -> Carried {
+    pub fn emit_over(&self, text: &str, formats: Formats) -> Carried {
         let own = self.emit();
-        let before = Document::parse(text).map(|before| before.emit());
+        let before = Document::parse(text, formats).map(|before| before.emit());
         let carried = before.as_ref().ok().and_then(|before| carry(text, before, &own));
-        let says_the_same = |text: &str| Document::parse(text).is_ok_and(|read| read.emit() == own);
+        let says_the_same = |text: &str| Document::parse(text, formats).is_ok_and(|read| read.emit() == own);
         match carried {
             Some(carried) if says_the_same(&carried.text) => carried,
             _ => {
@@ -29,8 +29,8 @@ impl Document {
     ///
     /// # Errors
     /// What comes of them is no profile; `None`: one of them has no place in it.
-    pub fn changed(&self, changes: &[Change]) -> Result<Document, Option<ProfileError>> {
-        Document::parse(&applied(&self.emit(), changes).ok_or(None)?).map_err(Some)
+    pub fn changed(&self, changes: &[Change], formats: Formats) -> Result<Document, Option<ProfileError>> {
+        Document::parse(&applied(&self.emit(), changes).ok_or(None)?, formats).map_err(Some)
     }
 }
 
@@ -66,6 +66,3 @@ pub fn divergence(base: &Document, theirs: &Document, mine: &Document) -> Vec<(C
         })
         .collect()
 }
-
-#[cfg(test)]
-mod tests;

@@ -22,7 +22,7 @@ pub type Unknown = BTreeMap<String, Value>;
 const EXTRA: &str = "extra";
 
 /// The entries of a structure, taken out one by one; what is left at the end is a person's own, or misspelt.
-pub(super) struct Entries {
+pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
     /// Names that were asked for and are not there.
@@ -76,17 +76,17 @@ impl Entries {
     }
 
     /// Where the structure stands, for messages.
-    pub(super) fn path(&self) -> &str {
+    pub fn path(&self) -> &str {
         &self.path
     }
 
     /// Where an entry stands, for messages.
-    pub(super) fn path_of(&self, name: &str) -> String {
+    pub fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
     /// Takes a plain value; `None` when it is not there.
-    pub(super) fn optional<T: DeserializeOwned>(
+    pub fn optional<T: DeserializeOwned>(
         &mut self,
         name: &str,
         expected: &'static str,
@@ -99,23 +99,19 @@ impl Entries {
     }
 
     /// Takes a plain value that has to be there.
-    pub(super) fn required<T: DeserializeOwned>(
-        &mut self,
-        name: &str,
-        expected: &'static str,
-    ) -> Result<T, ProfileError> {
+    pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: &'static str) -> Result<T, ProfileError> {
         self.optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
     }
 
     /// Takes a structure that has to be there.
-    pub(super) fn structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
+    pub fn structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
         let path = self.path_of(name);
         let value = self.take(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
         Entries::open(&path, value, &self.reading)
     }
 
     /// Takes a structure; `None` when it is not there.
-    pub(super) fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
+    pub fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name) {
             None | Some(Value::Option(None)) => Ok(None),
@@ -124,7 +120,7 @@ impl Entries {
     }
 
     /// Takes bytes: a list of hex lines, or one text.
-    pub(super) fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
+    pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         const EXPECTED: &str = "a list of texts with hexadecimal bytes";
         let path = self.path_of(name);
         let Some(value) = self.optional::<Value>(name, EXPECTED)? else { return Ok(None) };
@@ -139,7 +135,7 @@ impl Entries {
     }
 
     /// Takes a list of structures that has to be there.
-    pub(super) fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
+    pub fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         if !self.entries.contains_key(name) {
             self.missed.push(name.to_owned());
             return Err(ProfileError::Missing { path: self.path_of(name) });
@@ -148,7 +144,7 @@ impl Entries {
     }
 
     /// Takes a list of structures; empty when it is not there.
-    pub(super) fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
+    pub fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name).map(unwrapped) {
             None => Ok(Vec::new()),
@@ -162,7 +158,7 @@ impl Entries {
     }
 
     /// Takes a map with whatever stands before its colons, in their order; empty when it is not there.
-    pub(super) fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
+    pub fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
         match self.take(name).map(unwrapped) {
             None | Some(Value::Unit) => Ok(Vec::new()),
             Some(Value::Map(map)) => Ok(map.into_iter().collect()),
@@ -175,7 +171,7 @@ impl Entries {
     ///
     /// # Errors
     /// [`ProfileError::Misspelt`] where one is the misspelt name of an entry that is not there.
-    pub(super) fn rest(mut self) -> Result<Unknown, ProfileError> {
+    pub fn rest(mut self) -> Result<Unknown, ProfileError> {
         let left = std::mem::take(&mut self.entries);
         if self.reading.is_newer() {
             self.tell_beyond(&left);
@@ -198,7 +194,7 @@ impl Entries {
     }
 
     /// Something at this place is beyond the schema.
-    pub(super) fn is_beyond(&self, path: String) {
+    pub fn is_beyond(&self, path: String) {
         self.reading.is_beyond(path);
     }
 
@@ -234,35 +230,35 @@ fn unwrapped(value: Value) -> Value {
 
 /// Writes a profile's text.
 #[derive(Default)]
-pub(super) struct Writer {
+pub struct Writer {
     out: String,
     depth: usize,
 }
 
 impl Writer {
     /// A comment on a line of its own.
-    pub(super) fn comment(&mut self, text: &str) {
+    pub fn comment(&mut self, text: &str) {
         self.line(&format!("// {text}"));
     }
 
     /// `name: value,` with the value as it stands, and a comment behind it.
-    pub(super) fn entry(&mut self, name: &str, value: &str, comment: &str) {
+    pub fn entry(&mut self, name: &str, value: &str, comment: &str) {
         let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
         self.line(&format!("{name}: {value},{behind}"));
     }
 
     /// An element of a list, as it stands.
-    pub(super) fn entry_in_list(&mut self, value: &str) {
+    pub fn entry_in_list(&mut self, value: &str) {
         self.line(&format!("{value},"));
     }
 
     /// `name: "text",`.
-    pub(super) fn text(&mut self, name: &str, text: &str) {
+    pub fn text(&mut self, name: &str, text: &str) {
         self.entry(name, &quoted(text), "");
     }
 
     /// Bytes as a list of lines of sixteen, with what they are as text behind them.
-    pub(super) fn bytes(&mut self, name: &str, bytes: &[u8]) {
+    pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
         self.open(name, '[');
         for row in bytes.chunks(16) {
             let printable = |byte: &u8| if matches!(byte, b' '..=b'~') { char::from(*byte) } else { '.' };
@@ -273,21 +269,21 @@ impl Writer {
     }
 
     /// A person's own entries, as they were read.
-    pub(super) fn unknown(&mut self, unknown: &Unknown) {
+    pub fn unknown(&mut self, unknown: &Unknown) {
         if !unknown.is_empty() {
             self.entry(EXTRA, &extra_text(unknown), "");
         }
     }
 
     /// Begins a structure or list; without name inside a list and at the top.
-    pub(super) fn open(&mut self, name: &str, bracket: char) {
+    pub fn open(&mut self, name: &str, bracket: char) {
         let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
         self.line(&head);
         self.depth += 1;
     }
 
     /// Ends a structure or list.
-    pub(super) fn close(&mut self, bracket: char) {
+    pub fn close(&mut self, bracket: char) {
         self.depth = self.depth.saturating_sub(1);
         let comma = if self.depth == 0 { "" } else { "," };
         self.line(&format!("{bracket}{comma}"));

@@ -1,139 +1,159 @@
-//! Names of entries: none is misspelt without a word, what today's files hold is read for ever, and a newer schema is only
-//! looked at.
+//! Documents of kinds that are invented here: a lamp with its steps, and a fan.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use super::testing::{changed_in_place, edited};
+use super::*;
 
-use super::{Body, Document, ProfileError};
-
-fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let in_kind = |kind: &str| fs::read_dir(root.join(kind)).unwrap().map(|entry| entry.unwrap().path());
-    let all = Body::KINDS.into_iter().flat_map(in_kind);
-    all.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
+/// A lamp that is lit in steps.
+#[derive(Clone, Debug, PartialEq)]
+struct Lamp {
+    colour: String,
+    steps: Vec<(u8, Unknown)>,
 }
 
-/// Names before colons, outside of texts and comments: where each begins and ends.
-fn names(text: &str) -> Vec<(usize, usize)> {
-    let bytes = text.as_bytes();
-    let (mut at, mut found) = (0, Vec::new());
-    while at < bytes.len() {
-        match bytes[at] {
-            b'"' => {
-                at += 1;
-                while bytes[at] != b'"' {
-                    at += if bytes[at] == b'\\' { 2 } else { 1 };
-                }
-                at += 1;
-            }
-            b'/' if bytes[at + 1] == b'/' => at += text[at..].find('\n').unwrap(),
-            byte if byte.is_ascii_alphabetic() => {
-                let end = at + text[at..].find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap();
-                if text[end..].trim_start().starts_with(':') {
-                    found.push((at, end));
-                }
-                at = end;
-            }
-            _ => at += 1,
+impl Profile for Lamp {
+    const KIND: &'static str = "lamp";
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let colour = entries.required("colour", "a text")?;
+        let mut steps = Vec::new();
+        for mut entries in entries.structures("steps")? {
+            steps.push((entries.required("level", "a number from 0 to 255")?, entries.rest()?));
         }
+        Ok(Lamp { colour, steps })
     }
-    found
-}
 
-/// Slips of the hand: a letter left out, doubled, exchanged with its neighbour, added.
-fn slips(name: &str) -> Vec<String> {
-    let short = name[..name.len() - 1].to_owned();
-    let doubled = format!("{name}{}", &name[name.len() - 1..]);
-    let (first, rest) = name.split_at(1);
-    let (second, rest) = rest.split_at(1);
-    [short, doubled, format!("{second}{first}{rest}"), format!("x{name}"), name.to_uppercase()]
-        .into_iter()
-        .filter(|slip| slip != name)
-        .collect()
-}
-
-/// Issue 22.17: of 393 names 153 passed unnoticed.
-#[test]
-fn no_name_of_a_ready_made_profile_is_misspelt_without_a_word() {
-    let mut misspelt = 0;
-    for (path, text) in profiles_in("profiles") {
-        for (begin, end) in names(&text) {
-            let line = text[..begin].matches('\n').count() + 1;
-            let column = begin - text[..begin].rfind('\n').map_or(0, |at| at + 1) + 1;
-            for slip in slips(&text[begin..end]) {
-                let wrong = format!("{}{slip}{}", &text[..begin], &text[end..]);
-                let error = Document::parse(&wrong).map(|_| ()).unwrap_err();
-                let place = format!("line {line}, column {column}: ");
-                assert!(error.to_string().starts_with(&place), "{}: {slip} at {place}{error}", path.display());
-                assert!(error.to_string().contains(&slip), "{}: {error}", path.display());
-            }
-            misspelt += 1;
+    fn write(&self, writer: &mut Writer) {
+        writer.text("colour", &self.colour);
+        writer.open("steps", '[');
+        for (level, unknown) in &self.steps {
+            writer.open("", '(');
+            writer.entry("level", &level.to_string(), "");
+            writer.unknown(unknown);
+            writer.close(')');
         }
-    }
-    assert!(misspelt >= 393, "{misspelt}");
-}
-
-/// Issue 22.17: profiles that were ready-made with schema 1, and one of each kind as it was saved then.
-#[test]
-fn profiles_of_schema_1_open() {
-    let files = profiles_in("tests/fixtures/schema-1");
-    assert_eq!(files.iter().filter(|(path, _)| path.file_stem().unwrap() == "saved").count(), Body::KINDS.len());
-    for (path, text) in files {
-        let document = Document::parse(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        assert!(document.beyond.is_empty() && !document.is_newer(), "{}", path.display());
-        assert_eq!(Document::parse(&document.emit()), Ok(document), "{}", path.display());
+        writer.close(']');
     }
 }
 
-/// A profile as a person may write it.
-pub(super) const SHORT: &str = r#"(
-    schema: 1, device: "hiperface",
-    identity: (serial_number: "A1", encoder_type: 0x37),
-    interface: (address: 0x40, settings: 0xE4),
-    fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")],
-)"#;
+/// A fan, of which nothing is known but that it is one.
+#[derive(Clone, Debug, PartialEq)]
+struct Fan;
 
-/// Issue 22.17: people's own entries stand in `extra`, in any structure.
-#[test]
-fn entries_of_ones_own_are_kept() {
-    let text = SHORT
-        .replace("schema: 1,", "schema: 1, extra: {\"owner\": (name: \"CK\")},")
-        .replace("serial_number:", "extra: (colour: Some(\"red\")), serial_number:")
-        .replace("fields: [", "mounting: [(item: \"field:0@0+4\", extra: {\"by\": \"CK\"})], fields: [")
-        .replace("number: 0,", "number: 0, extra: {},");
-    let document = Document::parse(&text).unwrap();
-    assert_eq!(document.beyond, [""; 0]);
-    let written = document.emit();
-    for kept in ["extra: {\"owner\": (name: \"CK\")}", "extra: {\"colour\": Some(\"red\")}", "extra: {\"by\": \"CK\"}"]
-    {
-        assert!(written.contains(kept), "{kept} is not in\n{written}");
+impl Profile for Fan {
+    const KIND: &'static str = "fan";
+
+    fn read(_: &mut Entries) -> Result<Self, ProfileError> {
+        Ok(Fan)
     }
-    assert_eq!(Document::parse(&written), Ok(document));
-    let error = Document::parse(&SHORT.replace("schema: 1,", "schema: 1, extra: 5,")).unwrap_err();
-    assert!(matches!(&error, ProfileError::Shape { path, .. } if path == "extra"), "{error}");
+
+    fn write(&self, _: &mut Writer) {}
 }
 
-/// Issue 22.17: what a file of before `extra` holds beyond the schema is taken into it, and named.
-#[test]
-fn what_older_files_hold_beyond_the_schema_is_taken_over() {
-    let text = SHORT.replace("schema: 1,", "schema: 1, owner: \"CK\",").replace("number: 0,", "number: 0, label: 3,");
-    let document = Document::parse(&text).unwrap();
-    assert_eq!(document.beyond, ["fields[0].label", "owner"]);
-    let written = document.emit();
-    assert!(written.contains("extra: {\"owner\": \"CK\"}") && written.contains("extra: {\"label\": 3}"), "{written}");
-    let again = Document::parse(&written).unwrap();
-    assert_eq!((again.beyond, again.unknown, again.body), (Vec::new(), document.unknown, document.body));
+const FORMATS: Formats = Formats::new(&[Lamp::FORMAT, Fan::FORMAT]);
+
+const TEXT: &str = r#"// hall 2
+(schema: 1, device: "lamp", // ours
+    steps: [
+        (level: 10), // night
+        (level: 0x40),
+    ],
+    colour: "red")
+"#;
+
+fn parse(text: &str) -> Result<Document, ProfileError> {
+    Document::parse(text, FORMATS)
 }
 
-/// Issue 22.17: nothing of a newer schema is lost, because nothing of it is written.
+fn lamp(colour: &str) -> Body {
+    Body::new(Lamp { colour: colour.to_owned(), steps: Vec::new() })
+}
+
 #[test]
-fn a_newer_schema_is_only_looked_at() {
-    let newer = SHORT.replace("schema: 1,", "schema: 7, feilds: 1,").replace("number: 0,", "number: 0, statsu: 3,");
-    let document = Document::parse(&newer).unwrap();
-    assert!(document.is_newer());
-    assert_eq!(document.beyond, ["fields[0].statsu", "feilds"]);
-    assert!(document.emit().contains("schema: 7,"), "never as an older one");
-    assert_eq!(document.known(), Err(ProfileError::Schema { found: 7, known: 1 }));
-    let zero = Document::parse(&SHORT.replace("schema: 1,", "schema: 0,"));
-    assert_eq!(zero, Err(ProfileError::Schema { found: 0, known: 1 }));
+fn a_document_is_read_in_the_format_of_its_kind() {
+    let document = parse(TEXT).unwrap();
+    assert_eq!(document.device(), "lamp");
+    assert_eq!(document.body.get::<Lamp>().unwrap().steps, [(10, Unknown::new()), (0x40, Unknown::new())]);
+    assert_eq!(document.body.get::<Fan>(), None);
+    assert_eq!(parse(&document.emit()), Ok(document));
+    assert_eq!(parse("(schema: 1, device: \"fan\")").unwrap().body, Body::new(Fan));
+}
+
+#[test]
+fn bodies_are_the_same_where_kind_and_content_are() {
+    assert_eq!(lamp("red"), lamp("red"));
+    assert_ne!(lamp("red"), lamp("blue"));
+    assert_ne!(lamp("red"), Body::new(Fan));
+    let mut other = lamp("red").clone();
+    other.get_mut::<Lamp>().unwrap().colour = "blue".to_owned();
+    assert_eq!(other, lamp("blue"));
+    assert_eq!(format!("{other:?}"), format!("{:?}", other.get::<Lamp>().unwrap()));
+}
+
+#[test]
+fn a_kind_that_is_not_in_the_list_is_told_with_those_that_are() {
+    let told = |formats| Document::parse("(schema: 1, device: \"tap\")", formats).unwrap_err().to_string();
+    let three = Formats::new(&[Lamp::FORMAT, Fan::FORMAT, Lamp::FORMAT]);
+    assert_eq!(told(Lamp::FORMATS), "device \"tap\"; this program knows \"lamp\"");
+    assert_eq!(told(FORMATS), "device \"tap\"; this program knows \"lamp\" and \"fan\"");
+    assert_eq!(told(three), "device \"tap\"; this program knows \"lamp\", \"fan\" and \"lamp\"");
+}
+
+#[test]
+fn a_profile_of_another_kind_names_both() {
+    let error = lamp("red").into_profile::<Fan>().unwrap_err();
+    assert_eq!(error, lamp("red").is_not(Fan::KIND));
+    assert_eq!(error.to_string(), "a profile of a lamp device where one of a fan device is needed");
+    assert_eq!(Body::new(Fan).into_profile(), Ok(Fan));
+}
+
+#[test]
+fn entries_of_ones_own_and_of_a_newer_schema_are_kept() {
+    let own = TEXT.replace("(level: 10)", "(level: 10, extra: {\"by\": \"CK\"})");
+    let document = parse(&own).unwrap();
+    assert!(document.beyond.is_empty() && document.emit().contains("extra: {\"by\": \"CK\"}"));
+    let newer = parse(&TEXT.replace("schema: 1", "schema: 7, power: 3")).unwrap();
+    assert!(newer.is_newer() && newer.beyond == ["power"]);
+    assert_eq!(newer.known(), Err(ProfileError::Schema { found: 7, known: 1 }));
+    let error = parse(&TEXT.replace("colour", "color")).unwrap_err().to_string();
+    assert_eq!(error, "line 7, column 5: color is not known, and colour is missing");
+}
+
+/// Issues 22.25 and 22.26: over a person's text, and with what another person changed.
+#[test]
+fn a_document_is_written_over_a_text_and_brought_together_with_another() {
+    changed_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");
+    let (_, carried) = edited(TEXT, |note, own: &mut Lamp| {
+        *note = Some("as of today".to_owned());
+        own.steps.remove(0);
+    });
+    assert_eq!(carried.lost, ["night"]);
+    assert!(carried.text.starts_with("// hall 2\n") && carried.text.contains("note: \"as of today\""));
+
+    let base = parse(TEXT).unwrap();
+    let theirs = parse(&TEXT.replace("red", "blue")).unwrap();
+    let mine = parse(&TEXT.replace("level: 10", "level: 20")).unwrap();
+    let found = divergence(&base, &theirs, &mine);
+    let who: Vec<Changed> = found.iter().map(|(_, who)| *who).collect();
+    assert!(
+        who.contains(&Changed::There) && who.contains(&Changed::Here) && !who.contains(&Changed::Both),
+        "{found:?}"
+    );
+    let here: Vec<Change> = found.into_iter().filter(|(_, who)| *who == Changed::Here).map(|(own, _)| own).collect();
+    let merged = theirs.changed(&here, FORMATS).unwrap();
+    assert_eq!(merged, parse(&TEXT.replace("red", "blue").replace("level: 10", "level: 20")).unwrap());
+}
+
+#[test]
+fn a_cause_reads_like_the_error_of_the_device_and_keeps_its_type() {
+    #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+    #[error("{0} lamps are too many")]
+    struct TooMany(u32);
+
+    let cause = Cause::new(TooMany(3));
+    assert_eq!((cause.to_string(), cause.get()), ("3 lamps are too many".to_owned(), Some(&TooMany(3))));
+    assert_eq!(cause.get::<ProfileError>(), None);
+    assert_eq!(cause, cause.clone());
+    assert_ne!(cause, Cause::new(TooMany(4)));
+    let error = ProfileError::Refused { path: "lamps".to_owned(), cause };
+    assert_eq!(error.to_string(), "lamps: 3 lamps are too many");
 }

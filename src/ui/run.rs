@@ -6,13 +6,14 @@ use std::time::Instant;
 use super::{Window, end, install_fonts};
 use crate::app::{Look, Studio, Wake, World, explain};
 use crate::cli::Window as Start;
+use crate::profile::Formats;
 use crate::store::{LogFile, Store};
 
-/// Opens the window and returns when it is closed.
+/// Opens the window and returns when it is closed. Profiles are read in these formats.
 ///
 /// # Errors
 /// Why there is no window, in one line.
-pub fn run(start: Start) -> Result<(), String> {
+pub fn run(start: Start, formats: Formats) -> Result<(), String> {
     let began = Instant::now();
     if !has_display() {
         return Err(NO_DISPLAY.to_owned());
@@ -28,7 +29,7 @@ pub fn run(start: Start) -> Result<(), String> {
             context.request_repaint();
         }
     });
-    let mut studio = Studio::new(World { codes: start.codes, ..World::real(store) }, wake);
+    let mut studio = Studio::new(World { codes: start.codes, ..World::real(store, formats) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
     end::prepare(&studio);

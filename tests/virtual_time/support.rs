@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use encoder_studio::device::hiperface::Station;
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{
     ByteLink, Cancel, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock,
 };
@@ -303,7 +304,7 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
 
 /// The profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
-    Document::parse(&read_text(path).unwrap()).unwrap().body.into_hiperface().unwrap()
+    Document::parse(&read_text(path).unwrap(), FORMATS).unwrap().body.into_profile().unwrap()
 }
 
 /// Bytes that repeat themselves late and differ for different seeds.

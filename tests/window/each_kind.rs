@@ -11,7 +11,12 @@ use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
-use encoder_studio::profile::{self, Body, Comparison, Document, PlanId};
+use encoder_studio::kinds::FORMATS;
+use encoder_studio::profile::biss::BissProfile;
+use encoder_studio::profile::hiperdrive::HiperdriveProfile;
+use encoder_studio::profile::hiperface::HiperfaceProfile;
+use encoder_studio::profile::interbus::InterbusProfile;
+use encoder_studio::profile::{self, Body, Comparison, Document, PlanId, Profile};
 use encoder_studio::protocol::hiperdrive::ParameterNumber;
 use encoder_studio::protocol::interbus::ProgramNumber;
 
@@ -177,13 +182,18 @@ impl Case {
 }
 
 fn compared(one: Body, other: Body) -> Comparison {
-    match one {
-        Body::Biss(one) => profile::biss::compare(&one, &other.into_biss().unwrap()),
-        Body::Interbus(one) => profile::interbus::compare(&one, &other.into_interbus().unwrap()),
-        Body::Hiperdrive(one) => profile::hiperdrive::compare(&one, &other.into_hiperdrive().unwrap()),
-        one => {
-            profile::hiperface::compare(&one.into_hiperface().unwrap().fields, &other.into_hiperface().unwrap().fields)
-        }
+    fn pair<P: Profile>(one: &Body, other: &Body) -> Option<(P, P)> {
+        Some((one.get::<P>()?.clone(), other.get::<P>().unwrap().clone()))
+    }
+    if let Some((one, other)) = pair::<BissProfile>(&one, &other) {
+        profile::biss::compare(&one, &other)
+    } else if let Some((one, other)) = pair::<InterbusProfile>(&one, &other) {
+        profile::interbus::compare(&one, &other)
+    } else if let Some((one, other)) = pair::<HiperdriveProfile>(&one, &other) {
+        profile::hiperdrive::compare(&one, &other)
+    } else {
+        let (one, other) = pair::<HiperfaceProfile>(&one, &other).unwrap();
+        profile::hiperface::compare(&one.fields, &other.fields)
     }
 }
 
@@ -520,7 +530,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
                     desk.until("it is saved", is_saved);
                     let texts = told(&desk.studio, "session.saved_as_read").unwrap();
                     assert!(texts.iter().any(|text| text.id() == "session.saved_without"), "{texts:?}");
-                    let read = |path: &Path| Document::parse(&std::fs::read_to_string(path).unwrap()).unwrap();
+                    let read = |path: &Path| Document::parse(&std::fs::read_to_string(path).unwrap(), FORMATS).unwrap();
                     let lost = read(&path);
                     assert!(lost.note.is_some_and(|note| note.contains("did not answer")));
                     if all {

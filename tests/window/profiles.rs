@@ -7,7 +7,9 @@ use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
 use encoder_studio::app::review::{Permit, Sheet, Stage};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::profile::Document;
+use encoder_studio::profile::hiperface::HiperfaceProfile;
 use encoder_studio::store::read_text;
 
 use crate::support::{Desk, OTHER_PORT, is_review};
@@ -30,7 +32,8 @@ fn open(desk: &mut Desk, path: &std::path::Path) {
 #[test]
 fn a_saved_profile_is_the_encoder() {
     let (desk, path) = saved();
-    let profile = Document::parse(&read_text(&path).unwrap()).unwrap().body.into_hiperface().unwrap();
+    let profile =
+        Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap().body.into_profile::<HiperfaceProfile>().unwrap();
     assert_eq!(profile.identity.serial_number, "GB0450179");
     assert_eq!(profile.fields, desk.encoder().staged.device());
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..], desk.wire().field(0));
@@ -56,7 +59,8 @@ fn a_profile_of_an_encoder_holds_what_it_has_and_says_what_is_not_in_it() {
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", saved);
     assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_without"]));
-    let profile = Document::parse(&read_text(&path).unwrap()).unwrap().body.into_hiperface().unwrap();
+    let profile =
+        Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap().body.into_profile::<HiperfaceProfile>().unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..2], *b"EM");
     let words = desk.studio.services.log.standing().unwrap().texts[1].words(encoder_studio::app::Language::English);
     assert!(words.contains('2'), "{words}");
@@ -156,7 +160,8 @@ fn a_profile_read_again_keeps_its_edits() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "(");
     desk.act(Action::Resolve(Resolve::KeepMine));
     desk.until("the edit is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
-    let profile = Document::parse(&read_text(&path).unwrap()).unwrap().body.into_hiperface().unwrap();
+    let profile =
+        Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap().body.into_profile::<HiperfaceProfile>().unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..3], *b"XND");
 }
 
@@ -310,9 +315,9 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
-    let document = Document::parse(&read_text(&path).unwrap()).unwrap();
+    let document = Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap();
     assert!(document.note.as_ref().is_some_and(|note| note.contains("did not answer")), "{:?}", document.note);
-    let profile = document.body.into_hiperface().unwrap();
+    let profile = document.body.into_profile::<HiperfaceProfile>().unwrap();
     assert_eq!((profile.fields, &profile.identity.serial_number[..]), (fields, "GB0450179"), "without the edit");
     let told = |studio: &Studio| studio.services.log.notices().last().map(|own| own.texts.clone()).unwrap_or_default();
     desk.until("it is told", |studio| told(studio).iter().any(|text| text.id() == "session.saved_as_read"));

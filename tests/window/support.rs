@@ -13,6 +13,7 @@ use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, Worl
 use encoder_studio::device::biss::Way;
 use encoder_studio::device::hiperdrive::Found;
 use encoder_studio::device::hiperface::Station;
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
 use encoder_studio::protocol::hiperface::EncoderTypes;
@@ -140,7 +141,7 @@ impl Outside {
             discover: Arc::new(move || Ok(found.clone())),
             patience: self.patience,
             folders: Folders::at(&self.path("work"), &self.path("home")),
-            ..World::real(self.store())
+            ..World::real(self.store(), FORMATS)
         }
     }
 

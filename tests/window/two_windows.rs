@@ -9,6 +9,7 @@ use std::{env, fs, thread};
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Measure, Motor};
 use encoder_studio::app::{Action, Language, Settings, Studio, Tab, Theme, World};
 use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::protocol::hiperdrive::{DriveNumber, Length, Value};
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
@@ -185,7 +186,7 @@ fn process(desk: &Desk, test: &str, name: &str) -> Child {
 
 fn studio_of_process() -> (Studio, String) {
     let folder = env::var_os(FOLDER).expect("run by a test of this module");
-    let world = World::real(Store::at(folder.as_ref()));
+    let world = World::real(Store::at(folder.as_ref()), FORMATS);
     (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
 }
 

@@ -3,7 +3,9 @@
 use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, forms, rules};
 use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, Severity, Text};
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::profile::Document;
+use encoder_studio::profile::hiperface::HiperfaceProfile;
 use encoder_studio::profile::hiperface::{FieldRange, Op};
 use encoder_studio::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use encoder_studio::store::{DeviceKey, Outcome, read_text};
@@ -54,7 +56,11 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     desk.write();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
     let backup = committed.backup.clone().unwrap();
-    let profile = Document::parse(&read_text(&backup).unwrap()).unwrap().body.into_hiperface().unwrap();
+    let profile = Document::parse(&read_text(&backup).unwrap(), FORMATS)
+        .unwrap()
+        .body
+        .into_profile::<HiperfaceProfile>()
+        .unwrap();
     assert_eq!(profile.identity.serial_number, "GB0450179");
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[RATED], 0x22, "as it was before");
 
@@ -269,7 +275,7 @@ fn what_comes_late_for_another_encoder_is_dropped() {
     desk.act(Action::Done(Done::Listed(id, other.clone(), listed)));
     assert_eq!(desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
     let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
-    let document = Box::new(Document::parse(&read_text(&path).unwrap()).unwrap());
+    let document = Box::new(Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap());
     desk.act(Action::Done(Done::Backup { session: id, of: other, path, result: Ok(document) }));
     assert!(desk.encoder().review.is_none() && !desk.encoder().session.is_busy());
 }

@@ -137,6 +137,6 @@ impl Encoder {
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.edits());
         let remarks = explain::biss::saved_unsaved(&profile).into_iter().collect();
-        self.session.write_read(Body::Biss(profile), edits, remarks, services);
+        self.session.write_read(Body::new(profile), edits, remarks, services);
     }
 }

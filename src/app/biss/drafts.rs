@@ -3,6 +3,7 @@
 use super::encoder::Encoder;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::profile::Document;
+use crate::profile::biss::BissProfile;
 use crate::worker::biss::Biss;
 
 /// Edited bytes: global address, byte.
@@ -38,7 +39,7 @@ impl Drafted for Encoder {
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {
-        let Some(profile) = document.body.biss() else { return };
+        let Some(profile) = document.body.get::<BissProfile>() else { return };
         self.take_profile(profile);
         self.session.take_document(file, document);
     }

@@ -16,8 +16,8 @@ use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::device::biss::{Identity, Status, Survey};
 use crate::link::LinkUrl;
+use crate::profile::Document;
 use crate::profile::biss::{BissProfile, ProfileIdentity};
-use crate::profile::{Body, Document};
 use crate::protocol::biss::{Description, Descriptions, DeviceMode, Eds, EdsBank, EdsError};
 use crate::sim::Motor;
 use crate::worker::biss::Biss;
@@ -90,7 +90,7 @@ impl Encoder {
         services: &Services,
     ) -> Self {
         let mut encoder = Encoder::with(Session::in_file(id, file, document.clone()));
-        if let Body::Biss(profile) = &document.body {
+        if let Some(profile) = document.body.get::<BissProfile>() {
             let described = types.named(&profile.identity.description).or_else(|| types.iter().last()).cloned();
             encoder.describe(described.map(Arc::new));
             encoder.take_profile(profile);
@@ -118,7 +118,7 @@ impl Encoder {
     /// The profile, where this is one.
     pub fn profile(&self) -> Option<&BissProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
-        document.body.biss()
+        document.body.get::<BissProfile>()
     }
 
     /// The profile as the user wants it, where this is one.

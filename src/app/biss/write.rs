@@ -172,7 +172,7 @@ impl Saved for Encoder {
     }
 
     fn wanted_body(&self) -> Option<Body> {
-        self.wanted_profile().map(Body::Biss)
+        self.wanted_profile().map(Body::new)
     }
 
     fn known_body(&self) -> Option<Known> {
@@ -193,11 +193,11 @@ impl Saved for Encoder {
         }
         let profile = profile_of(survey, data, survey.status.unsaved_mode());
         let remarks = without_edits(self.edits()).into_iter().chain(explain::biss::saved_unsaved(&profile)).collect();
-        Some(Ok((Body::Biss(profile), remarks)))
+        Some(Ok((Body::new(profile), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_biss()?, services);
+        self.plan_restore(body.into_profile()?, services);
         Ok(())
     }
 }

@@ -2,8 +2,18 @@
 
 use super::AnyDevice;
 use crate::app::{SineCosineSource, biss, hiperdrive, hiperface, interbus, ssi};
+use crate::protocol;
 
 impl AnyDevice {
+    /// The kinds of devices that there are, by their words in profiles.
+    pub(in crate::app) const KINDS: [&'static str; 5] = [
+        protocol::hiperface::KIND,
+        protocol::biss::KIND,
+        protocol::ssi::KIND,
+        protocol::interbus::KIND,
+        protocol::hiperdrive::KIND,
+    ];
+
     /// As a HIPERFACE encoder.
     pub fn hiperface(&self) -> Option<&hiperface::Encoder> {
         if let AnyDevice::Hiperface(own) = self { Some(own) } else { None }

@@ -193,8 +193,9 @@ pub fn document(error: &ProfileError) -> Text {
         ProfileError::Value { path, what } => {
             Text::new("detail.value").with("path", path).with_text("what", phrase(what))
         }
-        ProfileError::Frame { path, cause } => {
-            Text::new("detail.value").with("path", path).with_text("what", ssi::cannot_work(cause))
+        ProfileError::Refused { path, cause } => {
+            let what = cause.get().map_or_else(|| phrase(&cause.to_string()), ssi::cannot_work);
+            Text::new("detail.value").with("path", path).with_text("what", what)
         }
         // These have sentences of their own.
         ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),

@@ -20,7 +20,7 @@ pub use detail::{document, logbook_problem, phrase, recording, setting, type_tab
 use super::Text;
 use super::action::OpenFailed;
 use crate::link::{LinkError, LinkErrorKind};
-use crate::profile::{Body, Document, ProfileError, SCHEMA};
+use crate::profile::{Document, ProfileError, SCHEMA};
 use crate::store::{FileError, FileProblem, LogbookError, StoreError};
 use crate::units::Parity;
 use crate::worker::{NotBegun, OpenError};
@@ -118,8 +118,8 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
         ProfileError::Schema { found, known } => {
             Text::new("profile.schema").with("path", path).with("found", found).with("known", known)
         }
-        ProfileError::Device { found } => {
-            Text::new("profile.device").with("path", path).with("found", found).with("known", Body::KINDS.join(", "))
+        ProfileError::Device { found, known } => {
+            Text::new("profile.device").with("path", path).with("found", found).with("known", known.join(", "))
         }
         ProfileError::OtherKind { found, wanted } => {
             Text::new("profile.other_kind").with("path", path).with("found", found).with("wanted", wanted)

@@ -153,6 +153,6 @@ impl Unit {
         self.notice_scales(&profile.image);
         self.staged.refresh_some(&profile.image);
         let edits = self.is_dirty().then(|| self.edits());
-        self.session.write_read(Body::Hiperdrive(Box::new(profile)), edits, Vec::new(), services);
+        self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 }

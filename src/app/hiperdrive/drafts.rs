@@ -4,6 +4,7 @@ use super::staged::Kept;
 use super::unit::Unit;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::profile::Document;
+use crate::profile::hiperdrive::HiperdriveProfile;
 use crate::worker::hiperdrive::Hiperdrive;
 
 /// What is edited, each with its number.
@@ -39,7 +40,7 @@ impl Drafted for Unit {
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {
-        let Some(profile) = document.body.hiperdrive() else { return };
+        let Some(profile) = document.body.get::<HiperdriveProfile>() else { return };
         self.staged.saved(profile.image.clone());
         self.session.take_document(file, document);
     }

@@ -22,8 +22,8 @@ use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
 use crate::app::studio::SessionId;
 use crate::device::hiperdrive::{DriveIdentity, DriveLimits, DriveStatus, Identity, Network, Reading, Status, Survey};
 use crate::link::LinkUrl;
+use crate::profile::Document;
 use crate::profile::hiperdrive::{HiperdriveProfile, Image, ProfileIdentity};
-use crate::profile::{Body, Document};
 use crate::protocol::hiperdrive::{
     Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
 };
@@ -125,14 +125,14 @@ impl Unit {
 
     /// A profile of a device.
     pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
-        let staged = match &document.body {
-            Body::Hiperdrive(profile) => {
+        let staged = match document.body.get::<HiperdriveProfile>() {
+            Some(profile) => {
                 let mut staged = Staged::of_profile(profile.image.clone());
                 let drives = profile.identity.drives.iter();
                 staged.know(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
                 staged
             }
-            _ => Staged::default(),
+            None => Staged::default(),
         };
         let mut unit = Unit::with(Session::in_file(id, file, document), staged);
         unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
@@ -143,7 +143,7 @@ impl Unit {
     /// The profile, where this is one.
     pub fn profile(&self) -> Option<&HiperdriveProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
-        document.body.hiperdrive()
+        document.body.get::<HiperdriveProfile>()
     }
 
     /// The profile as the user wants it, where this is one.

@@ -98,7 +98,7 @@ impl Saved for Unit {
     }
 
     fn wanted_body(&self) -> Option<Body> {
-        Some(Body::Hiperdrive(Box::new(self.wanted_profile()?)))
+        Some(Body::new(self.wanted_profile()?))
     }
 
     fn remarks(&self) -> Vec<Text> {
@@ -117,11 +117,11 @@ impl Saved for Unit {
         let image = Image { values: kept.collect() };
         let profile = HiperdriveProfile::of(survey.identity.profile(), image);
         let remarks = without_edits(self.edits()).into_iter().collect();
-        Some(Ok((Body::Hiperdrive(Box::new(profile)), remarks)))
+        Some(Ok((Body::new(profile), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_hiperdrive()?, services);
+        self.plan_restore(body.into_profile()?, services);
         Ok(())
     }
 }

@@ -3,6 +3,7 @@
 use super::encoder::Encoder;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Session};
 use crate::profile::Document;
+use crate::profile::hiperface::HiperfaceProfile;
 use crate::worker::hiperface::Hiperface;
 
 /// Edited bytes: field, address, byte.
@@ -39,7 +40,7 @@ impl Drafted for Encoder {
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {
-        let Some(profile) = document.body.hiperface() else { return };
+        let Some(profile) = document.body.get::<HiperfaceProfile>() else { return };
         self.staged.refresh(profile.fields.clone());
         self.session.take_document(file, document);
     }

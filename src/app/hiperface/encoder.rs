@@ -102,7 +102,7 @@ impl Encoder {
         types: &EncoderTypes,
         services: &Services,
     ) -> Self {
-        let profile = document.body.hiperface();
+        let profile = document.body.get::<HiperfaceProfile>();
         let fields = profile.map(|profile| profile.fields.clone()).unwrap_or_default();
         let identity = profile.map(|profile| crate::device::hiperface::identity_of(profile, types));
         let counter = profile.and_then(|profile| profile.recorded.counter);
@@ -164,7 +164,7 @@ impl Encoder {
     /// The profile as the user wants it, where this is one.
     pub(in crate::app) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
-        let mut profile = document.body.hiperface()?.clone();
+        let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
         profile.fields = self.staged.wanted();
         // What was typed may be a commutation offset as well.
         profile.mark_mounting();

@@ -18,7 +18,7 @@ impl Encoder {
                 .collect()
         };
         match &self.session.source {
-            Source::File { document, .. } => document.body.hiperface().map(own).unwrap_or_default(),
+            Source::File { document, .. } => document.body.get::<HiperfaceProfile>().map(own).unwrap_or_default(),
             Source::Link(_) | Source::New { .. } => {
                 let Some(identity) = &self.identity else { return Vec::new() };
                 own(&profile_of(identity, self.staged.device().to_vec(), Recorded::default()))

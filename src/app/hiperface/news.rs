@@ -170,7 +170,7 @@ impl Encoder {
         let remarks = locked
             .map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number))
             .collect();
-        self.session.write_read(Body::Hiperface(saved.profile), edits, remarks, services);
+        self.session.write_read(Body::new(saved.profile), edits, remarks, services);
     }
 
     /// After a write that ended early, the session follows those operations that were carried out.

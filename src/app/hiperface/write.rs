@@ -110,7 +110,7 @@ impl Saved for Encoder {
     }
 
     fn wanted_body(&self) -> Option<Body> {
-        Some(Body::Hiperface(self.wanted_profile()?))
+        Some(Body::new(self.wanted_profile()?))
     }
 
     fn known_body(&self) -> Option<Known> {
@@ -122,11 +122,11 @@ impl Saved for Encoder {
         let remarks =
             without_edits(self.edits()).into_iter().chain(locked).chain(self.unreadable.values().cloned()).collect();
         let recorded = Recorded { counter: self.counter, ..Recorded::default() };
-        Some(Ok((Body::Hiperface(profile_of(identity, fields, recorded)), remarks)))
+        Some(Ok((Body::new(profile_of(identity, fields, recorded)), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_hiperface()?, services);
+        self.plan_restore(body.into_profile()?, services);
         Ok(())
     }
 }

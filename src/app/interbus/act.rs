@@ -98,7 +98,7 @@ impl Encoder {
             profile.names = wanted.names.clone();
         }
         let edits = self.is_dirty().then(|| self.edits());
-        self.session.write_read(Body::Interbus(Box::new(profile)), edits, Vec::new(), services);
+        self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 
     /// Everything that there is to be read of a virtual encoder is read by itself; false where there is nothing more.

@@ -4,6 +4,7 @@ use super::encoder::Encoder;
 use super::staged::Kept;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::profile::Document;
+use crate::profile::interbus::InterbusProfile;
 use crate::worker::interbus::Interbus;
 
 /// What is edited, each with its place.
@@ -39,7 +40,7 @@ impl Drafted for Encoder {
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {
-        let Some(profile) = document.body.interbus() else { return };
+        let Some(profile) = document.body.get::<InterbusProfile>() else { return };
         self.staged.saved(profile.image.clone(), profile.names.clone());
         self.session.take_document(file, document);
     }

@@ -18,8 +18,8 @@ use crate::app::studio::SessionId;
 use crate::app::{Severity, Text};
 use crate::device::interbus::{Handshake, Identity, Reading, Survey};
 use crate::link::LinkUrl;
+use crate::profile::Document;
 use crate::profile::interbus::{InterbusProfile, ProfileIdentity, Scale};
-use crate::profile::{Body, Document};
 use crate::protocol::interbus::{Mode, ProgramNumber, ReadOut, StartupMode, Value, WindowShift, WordOrder};
 use crate::sim::Motor;
 use crate::worker::interbus::Interbus;
@@ -97,9 +97,9 @@ impl Encoder {
 
     /// A profile of an encoder.
     pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
-        let staged = match &document.body {
-            Body::Interbus(profile) => Staged::of_profile(profile.image.clone(), profile.names.clone()),
-            _ => Staged::default(),
+        let staged = match document.body.get::<InterbusProfile>() {
+            Some(profile) => Staged::of_profile(profile.image.clone(), profile.names.clone()),
+            None => Staged::default(),
         };
         let mut encoder = Encoder::with(Session::in_file(id, file, document), staged);
         encoder.load_draft(services);
@@ -121,7 +121,7 @@ impl Encoder {
     /// The profile, where this is one.
     pub fn profile(&self) -> Option<&InterbusProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
-        document.body.interbus()
+        document.body.get::<InterbusProfile>()
     }
 
     /// The profile as the user wants it, where this is one.

@@ -100,7 +100,7 @@ impl Saved for Encoder {
     }
 
     fn wanted_body(&self) -> Option<Body> {
-        Some(Body::Interbus(Box::new(self.wanted_profile()?)))
+        Some(Body::new(self.wanted_profile()?))
     }
 
     fn remarks(&self) -> Vec<Text> {
@@ -120,11 +120,11 @@ impl Saved for Encoder {
         let profile = InterbusProfile::of(survey.identity.profile(), base.image.clone(), survey.recorded());
         let profile = InterbusProfile { names: base.names.clone(), ..profile };
         let remarks = without_edits(self.edits()).into_iter().collect();
-        Some(Ok((Body::Interbus(Box::new(profile)), remarks)))
+        Some(Ok((Body::new(profile), remarks)))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        self.plan_restore(body.into_interbus()?, services);
+        self.plan_restore(body.into_profile()?, services);
         Ok(())
     }
 }

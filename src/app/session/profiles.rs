@@ -51,8 +51,8 @@ impl<D: Kind> Session<D> {
     pub(in crate::app) fn read_file_again(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
-        let (path, store) = (path.clone(), services.world.store.clone());
-        services.tasks.run("read", move || read_document(path, &store));
+        let (path, store, formats) = (path.clone(), services.world.store.clone(), services.world.formats);
+        services.tasks.run("read", move || read_document(path, &store, formats));
         true
     }
 
@@ -74,7 +74,8 @@ impl<D: Kind> Session<D> {
         };
         let (document, may_lose, is_merged) = (Box::new(document), false, false);
         let saving = Saving { session: self.id, path, document, remarks, opened, may_lose, is_merged };
-        services.tasks.run("save", move || saving.run());
+        let formats = services.world.formats;
+        services.tasks.run("save", move || saving.run(formats));
     }
 
     /// Lists backups and writes of a device, as a task.
@@ -88,9 +89,9 @@ impl<D: Kind> Session<D> {
 
     /// Reads a backup of a device, as a task.
     pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
-        let session = self.id;
+        let (session, formats) = (self.id, services.world.formats);
         services.tasks.run("backup", move || {
-            let result = read_profile(&path).map(Box::new);
+            let result = read_profile(&path, formats).map(Box::new);
             Action::Done(Done::Backup { session, of, path, result })
         });
     }

@@ -8,7 +8,7 @@ use crate::app::Text;
 use crate::app::action::{Action, Done, ReadError};
 use crate::app::diverged::Diverged;
 use crate::app::studio::SessionId;
-use crate::profile::Document;
+use crate::profile::{Document, Formats};
 use crate::store::{FileError, FileProblem, read_file, write_text_over};
 
 /// A file with a profile, as it was read or written.
@@ -59,17 +59,17 @@ pub struct Saving {
 
 impl Saving {
     /// Writes the file, as a task, or tells why it is not written yet.
-    pub(in crate::app) fn run(mut self) -> Action {
+    pub(in crate::app) fn run(mut self, formats: Formats) -> Action {
         let key = file_key(&self.path);
         if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
-            match changed(&self.path, &guard.text, &self.document) {
+            match changed(&self.path, &guard.text, &self.document, formats) {
                 Ok(text) => self.opened = Some(Guard { key: key.clone(), text }),
-                Err(found) => return Action::Done(Done::Diverged(Box::new(Diverged::new(self, *found)))),
+                Err(found) => return Action::Done(Done::Diverged(Box::new(Diverged::new(self, *found, formats)))),
             }
         }
         let (text, lost) = match &self.opened {
             Some(opened) => {
-                let carried = self.document.emit_over(&opened.text);
+                let carried = self.document.emit_over(&opened.text, formats);
                 (carried.text, carried.lost)
             }
             None => (self.document.emit(), Vec::new()),
@@ -95,18 +95,18 @@ pub(in crate::app) struct Found {
 
 /// The text over which is written; or what stands there where it says something else than was opened, or is to be said. A
 /// file that is gone says nothing else.
-fn changed(path: &Path, opened: &str, wanted: &Document) -> Result<String, Box<Found>> {
+fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Result<String, Box<Found>> {
     let text = match read_file(path) {
         Ok(text) => text,
         Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(opened.to_owned()),
         Err(error) => return Err(Box::new(Found { text: String::new(), document: Err(ReadError::File(error)) })),
     };
-    let says = |text: &str| Document::parse(text).ok().map(|document| document.emit());
+    let says = |text: &str| Document::parse(text, formats).ok().map(|document| document.emit());
     let found = says(&text);
     // Somebody may have changed comments alone: those are kept like any others.
     if text == opened || found.is_some() && (found == says(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }
-    let document = Document::parse(&text).map(Box::new).map_err(ReadError::Profile);
+    let document = Document::parse(&text, formats).map(Box::new).map_err(ReadError::Profile);
     Err(Box::new(Found { text, document }))
 }

@@ -230,7 +230,7 @@ impl Encoder {
         if let Some(refusal) = only_looked_at(&self.session.source) {
             return self.session.refuse(refusal, services);
         }
-        let body = Body::Ssi(self.wanted_profile());
+        let body = Body::new(self.wanted_profile());
         let document = match &self.session.source {
             Source::File { document, .. } => Document { body, ..(**document).clone() },
             Source::Link(_) | Source::New { .. } => document_of(body),

@@ -5,7 +5,7 @@ use super::encoder::Encoder;
 use crate::app::Text;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Session, Source};
 use crate::profile::ssi::SsiProfile;
-use crate::profile::{Body, Change, Document};
+use crate::profile::{Body, Change, Document, Profile};
 use crate::worker::ssi::Ssi;
 
 /// What is changed, an entry each; none where the layout is as it was saved. Earlier versions kept the whole of it, as the
@@ -43,12 +43,14 @@ impl Drafted for Encoder {
     }
 
     fn take_edits(&mut self, edits: Drafts) {
-        let mut profiles = edits.iter().filter_map(|text| Document::parse(text).ok()?.body.into_ssi().ok());
+        let mut profiles =
+            edits.iter().filter_map(|text| Document::parse(text, SsiProfile::FORMATS).ok()?.body.into_profile().ok());
         let whole = profiles.next_back().or_else(|| {
             let changes: Vec<Change> = edits.iter().filter_map(|text| ron::from_str(text).ok()).collect();
             let all = changes.len() == edits.len();
-            let changed = document_of(self.designer.saved()).changed(&changes).ok().filter(|_| all)?;
-            changed.body.into_ssi().ok()
+            let changed =
+                document_of(self.designer.saved()).changed(&changes, SsiProfile::FORMATS).ok().filter(|_| all)?;
+            changed.body.into_profile().ok()
         });
         match whole {
             Some(profile) => self.edit(Edit::Whole(Box::new(profile))),
@@ -63,7 +65,7 @@ impl Drafted for Encoder {
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {
-        let Body::Ssi(profile) = &document.body else { return };
+        let Some(profile) = document.body.get::<SsiProfile>() else { return };
         let before = self.designer.layout().clone();
         // What was done and undone stays, unless the file holds something else by now: then what was changed stays changed.
         if self.designer.design().profile == *profile {
@@ -78,7 +80,7 @@ impl Drafted for Encoder {
     }
 
     fn written_beside(&mut self, document: Document) {
-        if let Body::Ssi(profile) = document.body {
+        if let Ok(profile) = document.body.into_profile() {
             self.designer.saved_as(profile);
         }
     }
@@ -86,5 +88,5 @@ impl Drafted for Encoder {
 
 /// A layout as a profile of no file.
 fn document_of(profile: &SsiProfile) -> Document {
-    Document { saved: None, ..Document::new(String::new(), Body::Ssi(profile.clone())) }
+    Document { saved: None, ..Document::new(String::new(), Body::new(profile.clone())) }
 }

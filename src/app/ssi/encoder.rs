@@ -15,8 +15,8 @@ use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
 use crate::app::studio::SessionId;
 use crate::device::ssi::{Asking, Identity};
 use crate::link::LinkUrl;
+use crate::profile::Document;
 use crate::profile::ssi::SsiProfile;
-use crate::profile::{Body, Document};
 use crate::protocol::ssi::{Families, Layout, Reads};
 use crate::sim::Motor;
 use crate::worker::ssi::Ssi;
@@ -74,7 +74,7 @@ impl Encoder {
     ) -> Self {
         let families = services.ssi_families();
         let mut designer = Designer::delivered(families);
-        if let Body::Ssi(profile) = &document.body {
+        if let Some(profile) = document.body.get::<SsiProfile>() {
             designer.open(profile.clone());
         }
         let mut encoder = Encoder::with(Session::in_file(id, file, document), designer);

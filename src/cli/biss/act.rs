@@ -41,7 +41,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             let run = MountingRun { wiegand: Some(!words.is_empty()), ..MountingRun::default() };
             guided(common, output, act, run)
         }
-        (Action::Mounting, words) => guided(common, output, act, mounting(words)?),
+        (Action::Mounting, words) => guided(common, output, act, mounting(output, words)?),
         (Action::Filter, [name]) => {
             let filter = match *name {
                 "balanced" => Filter::Balanced,
@@ -145,7 +145,7 @@ fn passes(outcome: &Outcome) -> bool {
 
 /// What is asked of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. With neither calibration nor
 /// test named, both are meant.
-fn mounting(words: &[&str]) -> Result<MountingRun> {
+fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
     let mut run = MountingRun::default();
     let (mut tests, mut saves) = (false, false);
     for word in words {
@@ -154,7 +154,7 @@ fn mounting(words: &[&str]) -> Result<MountingRun> {
             ("wiegand-test", _) => tests = true,
             ("save", _) => saves = true,
             (_, Some(("preset", value))) => run.preset = Some((place(value)?, PresetParts::Both)),
-            (_, Some(("data", file))) => run.data = Some(Box::new(profile(Path::new(file))?)),
+            (_, Some(("data", file))) => run.data = Some(Box::new(profile(output, Path::new(file))?)),
             _ => {
                 let form = "calibrate, wiegand-test, save, preset=ST,MT and data=FILE, as many as wanted";
                 return Err(Failure::Usage(format!("{word:?} is no part of a mounting; it takes {form}")));
@@ -168,8 +168,8 @@ fn mounting(words: &[&str]) -> Result<MountingRun> {
     Ok(run)
 }
 
-fn profile(file: &Path) -> Result<BissProfile> {
-    load_to_write(file)?.into_biss().map_err(|error| failed(&explain::profile(file, &error)))
+fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
+    load_to_write(output, file)?.into_profile().map_err(|error| failed(&explain::profile(file, &error)))
 }
 
 fn place(text: &str) -> Result<PresetValue> {

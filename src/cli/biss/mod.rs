@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use super::args::Simulate;
 use super::kind::{Kind, lacking};
+use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
 use crate::profile::biss::{ItemError, RegisterRange};
@@ -40,10 +41,11 @@ pub(super) const COMMANDS: Kind = Kind {
     simulated,
     present: profiles::present,
     compare: profiles::compare,
+    remark: profiles::remark,
     other_device: profiles::other_device,
 };
 
-fn simulated(arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     let settings = settings(arguments)?;
     let adapters = |(name, _): &&(String, String)| bridge::Config::KEYS.contains(&name.as_str());
     if let Some((name, _)) = settings.iter().find(adapters).filter(|_| !arguments.bridge) {

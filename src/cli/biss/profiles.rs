@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
-use crate::app::explain;
+use crate::app::{Text, explain};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
@@ -20,7 +20,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common, BissJob::Save)?;
     let banks = profile.banks().count();
     let (mode, unsaved) = (profile.recorded.device_mode, explain::biss::saved_unsaved(&profile));
-    keep(&save.file, Body::Biss(profile))?;
+    keep(&save.file, Body::new(profile))?;
     if let Some(words) = unsaved {
         output.remark(&words.terminal());
     }
@@ -31,17 +31,22 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 
 /// The encoder as it is, for a comparison: refused where it shows what was never saved.
 pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
-    Ok(Body::Biss(saved(common, BissJob::SaveToCompare)?))
+    Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
 }
 
 /// What differs between two profiles.
 pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(biss::compare(&left.clone().into_biss()?, &right.clone().into_biss()?))
+    Ok(biss::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
+}
+
+/// That it was read in a device mode, where it was.
+pub(super) fn remark(profile: &Body) -> Option<Text> {
+    explain::biss::profile_unsaved(profile.get()?)
 }
 
 /// That two profiles are not of the same encoder.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let (profile, device) = (&profile.biss()?.identity, &device.biss()?.identity);
+    let (profile, device) = (&profile.get::<BissProfile>()?.identity, &device.get::<BissProfile>()?.identity);
     let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());
     (who(profile) != who(device)).then(|| {
         let [profile, device] = [profile, device].map(|one| format!("{} ({})", one.serial_number, one.kind()));
@@ -57,7 +62,8 @@ fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile.into_biss().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let profile =
+        profile.into_profile::<BissProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
     let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;

@@ -42,6 +42,7 @@ pub(super) const COMMANDS: Kind = Kind {
     simulated: simulate::simulated,
     present: profiles::present,
     compare: profiles::compare,
+    remark: |_| None,
     other_device: profiles::other_device,
 };
 

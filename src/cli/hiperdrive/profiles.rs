@@ -18,7 +18,7 @@ use crate::worker::hiperdrive::{Change, HiperdriveJob, HiperdriveOutput, Prepare
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common)?;
     let (parameters, drives) = (profile.image.values.len(), profile.identity.drives.len());
-    keep(&save.file, Body::Hiperdrive(Box::new(profile)))?;
+    keep(&save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "parameters": parameters, "drives": drives});
     let counted = format!("{} of the device and {}", count(parameters, "parameter"), count(drives, "drive"));
     output.show(&json, &format!("{}: {counted}\n", save.file.display()))?;
@@ -27,7 +27,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 
 /// The device as it is, for a comparison: all of it.
 pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
-    Ok(Body::Hiperdrive(Box::new(saved(common)?)))
+    Ok(Body::new(saved(common)?))
 }
 
 fn saved(common: &Common) -> Result<HiperdriveProfile> {
@@ -39,12 +39,14 @@ fn saved(common: &Common) -> Result<HiperdriveProfile> {
 
 /// What differs between two profiles.
 pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(hiperdrive::compare(&left.clone().into_hiperdrive()?, &right.clone().into_hiperdrive()?))
+    Ok(hiperdrive::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
 }
 
 /// That two profiles are not of the same device, or of the same drives. One without a serial number is of none.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let error = hiperdrive::check_device(profile.hiperdrive()?, &device.hiperdrive()?.identity).err()?;
+    let error =
+        hiperdrive::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
+            .err()?;
     Some(match error {
         hiperdrive::PlanError::OtherDevice { profile, device } => {
             format!("The profile is of serial number {profile}, the device has {device}.")
@@ -66,7 +68,9 @@ fn absent(prepared: &Prepared) -> Vec<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile.into_hiperdrive().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let profile = profile
+        .into_profile::<HiperdriveProfile>()
+        .map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
     let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;

@@ -3,13 +3,14 @@
 use std::net::{Ipv4Addr, SocketAddrV4};
 
 use crate::cli::args::Simulate;
+use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::sim::DatagramDevice;
 use crate::sim::hiperdrive::{Config, Target};
 use crate::units::{CharacterFormat, Moment};
 
-pub(super) fn simulated(arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
         let what = "HIPERDRIVE is reached over EtherNet/IP: use --listen HOST:PORT instead of --pty";
         return Err(Failure::Usage(what.to_owned()));

@@ -10,6 +10,7 @@ mod write;
 
 use super::args::Simulate;
 use super::kind::Kind;
+use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
 use crate::profile::hiperface::Item;
@@ -33,10 +34,11 @@ pub(super) const COMMANDS: Kind = Kind {
     simulated,
     present: profiles::present,
     compare: profiles::compare,
+    remark: |_| None,
     other_device: profiles::other_device,
 };
 
-fn simulated(arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.bridge {
         return Err(Failure::Usage("--bridge is for biss: hiperface has a serial line of its own".to_owned()));
     }

@@ -15,6 +15,7 @@ use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperface::SaveOptions;
+use crate::profile::hiperface::HiperfaceProfile;
 use crate::profile::hiperface::{self, FieldRange, Item, RestoreOptions, UnknownField};
 use crate::profile::{Body, Comparison, ProfileError};
 use crate::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
@@ -25,7 +26,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     name_locked(output, &saved, "saved without its bytes");
     let fields = saved.profile.fields.len();
     let locked: Vec<u8> = saved.locked.iter().map(|(field, _)| *field).collect();
-    keep(&save.file, Body::Hiperface(saved.profile))?;
+    keep(&save.file, Body::new(saved.profile))?;
     let json = json!({"file": save.file, "fields": fields, "locked": locked});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(fields, "data field")))?;
     Ok(Done::Well)
@@ -50,18 +51,19 @@ fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
 pub(super) fn present(common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
     let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
     name_locked(output, &saved, "compared without its bytes");
-    Ok(Body::Hiperface(saved.profile))
+    Ok(Body::new(saved.profile))
 }
 
 /// What differs between two profiles.
 pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    let (left, right) = (left.clone().into_hiperface()?, right.clone().into_hiperface()?);
+    let (left, right) =
+        (left.clone().into_profile::<HiperfaceProfile>()?, right.clone().into_profile::<HiperfaceProfile>()?);
     Ok(hiperface::compare(&left.fields, &right.fields))
 }
 
 /// That two profiles are not of the same encoder.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let (profile, device) = (&profile.hiperface()?.identity, &device.hiperface()?.identity);
+    let (profile, device) = (&profile.get::<HiperfaceProfile>()?.identity, &device.get::<HiperfaceProfile>()?.identity);
     let same = (&profile.serial_number, profile.encoder_type) == (&device.serial_number, device.encoder_type);
     (!same).then(|| {
         format!(
@@ -72,7 +74,8 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile.into_hiperface().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let profile =
+        profile.into_profile::<HiperfaceProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }

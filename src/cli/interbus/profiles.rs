@@ -19,7 +19,7 @@ use crate::worker::interbus::{Change, InterbusJob, InterbusOutput};
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common, output)?;
     let programs = profile.image.known().count();
-    keep(&save.file, Body::Interbus(Box::new(profile)))?;
+    keep(&save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "programs": programs});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
     Ok(Done::Well)
@@ -28,11 +28,11 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 /// The encoder as it is, for a comparison: all of it, or as much as a profile says something about. Each program that is
 /// read switches the encoder's outputs.
 pub(super) fn present(common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
-    let profile = match profile.and_then(Body::interbus) {
+    let profile = match profile.and_then(Body::get::<InterbusProfile>) {
         None => saved(common, output)?,
         Some(profile) => as_far_as(common, output, profile)?,
     };
-    Ok(Body::Interbus(Box::new(profile)))
+    Ok(Body::new(profile))
 }
 
 fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
@@ -65,12 +65,13 @@ fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Res
 
 /// What differs between two profiles.
 pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(interbus::compare(&left.clone().into_interbus()?, &right.clone().into_interbus()?))
+    Ok(interbus::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
 }
 
 /// That two profiles are not of the same encoder. One without a serial number is of none.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let error = interbus::check_device(profile.interbus()?, &device.interbus()?.identity).err()?;
+    let error =
+        interbus::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity).err()?;
     Some(match error {
         PlanError::OtherType(types) => explain::interbus::other_type(types).terminal(),
         PlanError::OtherDevice { profile, device } => {
@@ -81,7 +82,8 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile.into_interbus().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let profile =
+        profile.into_profile::<InterbusProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
     let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;

@@ -3,12 +3,13 @@
 use std::net::Ipv4Addr;
 
 use crate::cli::args::Simulate;
+use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::sim::interbus::{Config, Gateway};
 use crate::units::{CharacterFormat, Moment};
 
-pub(super) fn simulated(arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
         let what =
             "an INTERBUS encoder is reached through a Modbus/TCP gateway: use --listen HOST:PORT instead of --pty";

@@ -69,7 +69,7 @@ fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Re
 fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let path = Path::new(spec);
     let told = |error| failed(&explain::profile(path, &error));
-    let profile = load(path)?.into_ssi().map_err(told)?;
+    let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(told)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
     let family = profile.family.as_deref().and_then(|key| families.named(key));

@@ -36,6 +36,7 @@ pub(super) const COMMANDS: Kind = Kind {
     simulated,
     present: |_, _, _| refuse("reading a profile from a link", "compare two files with diff FILE FILE"),
     compare: profiles::compare,
+    remark: |_| None,
     other_device: |_, _| None,
 };
 
@@ -52,14 +53,14 @@ pub(super) fn ssi(output: &Output, command: &Ssi) -> Result {
 }
 
 /// The adapter before a virtual encoder that sends the frames of `--layout`.
-fn simulated(arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     let settings = settings(arguments)?;
     let encoder = match &arguments.layout {
         Some(_) if settings.iter().any(|(name, _)| name == "ssi") => {
             return Err(Failure::Usage("--layout and --set ssi= say the same: give one of them".to_owned()));
         }
         Some(spec) => {
-            let chosen = layout::choose(&Output::new(false), &SsiLayout { spec: spec.clone() })?;
+            let chosen = layout::choose(&output.as_text(), &SsiLayout { spec: spec.clone() })?;
             let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
             Some(SsiEncoder { layout: chosen.layout, direction, preset })
         }

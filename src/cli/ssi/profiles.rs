@@ -33,7 +33,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 
 /// The document of a layout. It was read from no device, so that nothing in it tells when.
 pub(super) fn document(profile: SsiProfile) -> Document {
-    Document { saved: None, ..Document::new(String::new(), Body::Ssi(profile)) }
+    Document { saved: None, ..Document::new(String::new(), Body::new(profile)) }
 }
 
 pub(super) fn write(path: &Path, text: &str) -> Result<()> {
@@ -42,5 +42,5 @@ pub(super) fn write(path: &Path, text: &str) -> Result<()> {
 
 /// What differs between two profiles.
 pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(ssi::compare(&left.clone().into_ssi()?, &right.clone().into_ssi()?))
+    Ok(ssi::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
 }

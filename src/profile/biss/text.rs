@@ -4,17 +4,19 @@ use super::{
     Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,
 };
 use crate::bits::hex;
-use crate::profile::ProfileError;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{BYTE, Entries, Writer, quoted};
-use crate::protocol::biss::{DeviceMode, Filter, Firmware, PresetValue, ProfileId, WiegandResult};
+use crate::profile::{Profile, ProfileError};
+use crate::protocol::biss::{self, DeviceMode, Filter, Firmware, PresetValue, ProfileId, WiegandResult};
 
 /// Three registers hold a preset value.
 const PRESET_NUMBER: &str = "a number from 0 to 16777215";
 const FOUR_TENTHS: &str = "a list of four numbers from 0 to 255, in tenths of a volt";
 
-impl BissProfile {
-    pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+impl Profile for BissProfile {
+    const KIND: &'static str = biss::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = read_identity(entries.structure("identity")?)?;
         let filter = entries.optional("filter", BYTE)?.map(Filter::from_byte);
         let preset = entries.optional_structure("preset")?.map(read_preset).transpose()?;
@@ -34,7 +36,7 @@ impl BissProfile {
         Ok(BissProfile { identity, filter, preset, recorded, mounting, data })
     }
 
-    pub(in crate::profile) fn write(&self, writer: &mut Writer) {
+    fn write(&self, writer: &mut Writer) {
         self.write_identity(writer);
         if let Some(filter) = self.filter {
             let name = match filter {
@@ -64,7 +66,9 @@ impl BissProfile {
         }
         writer.close(']');
     }
+}
 
+impl BissProfile {
     fn write_identity(&self, writer: &mut Writer) {
         let identity = &self.identity;
         writer.open("identity", '(');

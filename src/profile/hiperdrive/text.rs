@@ -4,9 +4,9 @@
 //! which are below 100; there a number of another drive is its own.
 
 use super::{HiperdriveProfile, Image, Item, Kept, MountingMark, ProfileDrive, ProfileIdentity};
-use crate::profile::ProfileError;
 use crate::profile::ron_text::{Entries, Writer, value_text};
-use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber, Topology, Travel, Variant};
+use crate::profile::{Profile, ProfileError};
+use crate::protocol::hiperdrive::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
 
 const TEXT: &str = "a text";
 const PLACE: &str = "a number from 1 to 8";
@@ -14,8 +14,10 @@ const VARIANT: &str = "a number from 0 to 65535";
 const NUMBER: &str = "a whole number";
 const CATEGORY: &str = "\"HIPERDRIVE SINGLE\", \"HIPERDRIVE HUB-4\" or \"HIPERDRIVE HUB-8\"";
 
-impl HiperdriveProfile {
-    pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+impl Profile for HiperdriveProfile {
+    const KIND: &'static str = hiperdrive::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let mut identity = match entries.optional_structure("identity")? {
             Some(entries) => read_identity(entries)?,
             None => ProfileIdentity::default(),
@@ -37,7 +39,7 @@ impl HiperdriveProfile {
         Ok(HiperdriveProfile { identity, image, mounting, unknown })
     }
 
-    pub(in crate::profile) fn write(&self, writer: &mut Writer) {
+    fn write(&self, writer: &mut Writer) {
         // A profile that was made by hand is of no device.
         if !self.identity.is_of_no_device() {
             self.identity.write(writer);
@@ -67,7 +69,9 @@ impl HiperdriveProfile {
         }
         writer.close(']');
     }
+}
 
+impl HiperdriveProfile {
     /// Parameters of the device, or of a drive.
     fn write_parameters(&self, writer: &mut Writer, drive: Option<DriveNumber>) {
         let unknown = self.unknown.0.get(&drive).map(Vec::as_slice).unwrap_or_default();

@@ -1,10 +1,10 @@
 //! What is saved of a HIPERFACE encoder. An access code is never part of it.
 
 use super::{FieldRange, Item};
-use crate::profile::ProfileError;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer};
-use crate::protocol::hiperface::{DataFieldStatus, LineSettings};
+use crate::profile::{Profile, ProfileError};
+use crate::protocol::hiperface::{self, DataFieldStatus, LineSettings};
 
 /// A HIPERFACE encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,7 +115,28 @@ impl HiperfaceProfile {
         self.mounting.iter().any(|mark| mark.item.contains(field, address))
     }
 
-    pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+    fn write_identity(&self, writer: &mut Writer) {
+        let identity = &self.identity;
+        writer.open("identity", '(');
+        writer.text("serial_number", &identity.serial_number);
+        writer.entry("encoder_type", &format!("0x{:02X}", identity.encoder_type), "");
+        writer.text("encoder_name", &identity.encoder_name);
+        writer.text("firmware_version", &identity.firmware_version);
+        writer.text("firmware_date", &identity.firmware_date);
+        writer.entry("eeprom_bytes", &identity.eeprom_bytes.to_string(), "");
+        writer.entry("options", &format!("0x{:02X}", identity.options), "");
+        if let Some(label) = &identity.extended_label {
+            writer.bytes("extended_label", label);
+        }
+        writer.unknown(&identity.unknown);
+        writer.close(')');
+    }
+}
+
+impl Profile for HiperfaceProfile {
+    const KIND: &'static str = hiperface::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = read_identity(entries.structure("identity")?)?;
         let interface = read_interface(entries.structure("interface")?)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
@@ -141,7 +162,7 @@ impl HiperfaceProfile {
         Ok(HiperfaceProfile { identity, interface, recorded, mounting, fields, created, unknown_in_fields })
     }
 
-    pub(in crate::profile) fn write(&self, writer: &mut Writer) {
+    fn write(&self, writer: &mut Writer) {
         self.write_identity(writer);
         writer.open("interface", '(');
         writer.entry("address", &format!("0x{:02X}", self.interface.address), "");
@@ -175,23 +196,6 @@ impl HiperfaceProfile {
             write_field(writer, field, None);
         }
         writer.close(']');
-    }
-
-    fn write_identity(&self, writer: &mut Writer) {
-        let identity = &self.identity;
-        writer.open("identity", '(');
-        writer.text("serial_number", &identity.serial_number);
-        writer.entry("encoder_type", &format!("0x{:02X}", identity.encoder_type), "");
-        writer.text("encoder_name", &identity.encoder_name);
-        writer.text("firmware_version", &identity.firmware_version);
-        writer.text("firmware_date", &identity.firmware_date);
-        writer.entry("eeprom_bytes", &identity.eeprom_bytes.to_string(), "");
-        writer.entry("options", &format!("0x{:02X}", identity.options), "");
-        if let Some(label) = &identity.extended_label {
-            writer.bytes("extended_label", label);
-        }
-        writer.unknown(&identity.unknown);
-        writer.close(')');
     }
 }
 
@@ -271,3 +275,6 @@ fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileErro
     }
     Ok((FieldImage { number, status, bytes }, entries.rest()?))
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,10 +4,10 @@ use super::{
     Direction, Image, InterbusProfile, Item, ItemError, Kept, MountingMark, Names, Parameters, ProfileIdentity,
     Recorded,
 };
-use crate::profile::ProfileError;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer, entries_text, quoted};
-use crate::protocol::interbus::{Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift};
+use crate::profile::{Profile, ProfileError};
+use crate::protocol::interbus::{self, Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift};
 
 const NUMBER: &str = "a number from 0 to 33554431";
 const WHOLE: &str = "a whole number";
@@ -15,8 +15,10 @@ const TEXT: &str = "a text";
 const DIRECTION: &str = "cw or ccw";
 const SHIFT: &str = "a number from 0 to 25";
 
-impl InterbusProfile {
-    pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+impl Profile for InterbusProfile {
+    const KIND: &'static str = interbus::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = match entries.optional_structure("identity")? {
             Some(entries) => read_identity(entries)?,
             None => ProfileIdentity::default(),
@@ -41,7 +43,7 @@ impl InterbusProfile {
         Ok(InterbusProfile { identity, image, names, mounting, recorded, unknown })
     }
 
-    pub(in crate::profile) fn write(&self, writer: &mut Writer) {
+    fn write(&self, writer: &mut Writer) {
         // A profile that was made by hand is of no encoder.
         if self.identity != ProfileIdentity::default() {
             self.identity.write(writer);
@@ -62,7 +64,9 @@ impl InterbusProfile {
             writer.close(']');
         }
     }
+}
 
+impl InterbusProfile {
     fn write_parameters(&self, writer: &mut Writer) {
         let Parameters { steps, revolutions, direction, preset, zero_shift } = self.image.parameters;
         writer.open("parameters", '(');

@@ -7,10 +7,10 @@ use std::str::FromStr;
 use ron::Value;
 
 use super::{Kept, ReadingSettings, SsiProfile};
-use crate::profile::ProfileError;
 use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::{Cause, Profile, ProfileError};
 use crate::protocol::ssi::{
-    Code, Coded, Coding, Descriptor, Direction, ErrorBit, Fraction, Layout, Parity, Pattern, Range, Repeat, Word,
+    self, Code, Coded, Coding, Descriptor, Direction, ErrorBit, Fraction, Layout, Parity, Pattern, Range, Repeat, Word,
 };
 
 const SMALL: &str = "a number from 0 to 255";
@@ -25,15 +25,18 @@ const WORD: &str = "ones, or a number with the bits of a whole frame";
 /// The word for a frame of ones alone.
 const ONES: &str = "ones";
 
-impl SsiProfile {
-    pub(in crate::profile) fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+impl Profile for SsiProfile {
+    const KIND: &'static str = ssi::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let name = entries.optional("name", TEXT)?.unwrap_or_default();
         // Keys have small letters; a person may write the type's name.
         let family = entries.optional("family", TEXT)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = Kept::default();
         let path = entries.path_of("frame");
         let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
-        let layout = Layout::new(descriptor.clone()).map_err(|cause| ProfileError::Frame { path, cause })?;
+        let layout = Layout::new(descriptor.clone())
+            .map_err(|cause| ProfileError::Refused { path, cause: Cause::new(cause) })?;
         let direction = word(entries, "direction")?.unwrap_or_default();
         let preset = entries.optional("preset", NUMBER)?.unwrap_or(0);
         let last = layout.coding().last();
@@ -48,7 +51,7 @@ impl SsiProfile {
         Ok(SsiProfile { name, family, descriptor, direction, preset, reading, unknown })
     }
 
-    pub(in crate::profile) fn write(&self, writer: &mut Writer) {
+    fn write(&self, writer: &mut Writer) {
         if !self.name.is_empty() {
             writer.text("name", &self.name);
         }
@@ -64,7 +67,9 @@ impl SsiProfile {
         }
         self.write_reading(writer);
     }
+}
 
+impl SsiProfile {
     fn write_frame(&self, writer: &mut Writer) {
         let frame = &self.descriptor;
         writer.open("frame", '(');

@@ -112,7 +112,7 @@ fn before_image(prepared: &Prepared) -> String {
         data: touched.filter(|image| image.all().next().is_some()).collect(),
     };
     profile.mark_mounting();
-    let mut document = backup_of(Body::Biss(profile));
+    let mut document = backup_of(Body::new(profile));
     let note = document.note.get_or_insert_default();
     for (address, value) in &base.registers {
         // A profile has no place for them.

@@ -83,5 +83,5 @@ impl Interruption for Interrupted {
 /// A profile of all that the device keeps, as it was.
 fn before_image(prepared: &Prepared) -> String {
     let profile = HiperdriveProfile::of(prepared.identity.profile(), prepared.image.clone());
-    backup_of(Body::Hiperdrive(Box::new(profile))).emit()
+    backup_of(Body::new(profile)).emit()
 }

@@ -100,5 +100,5 @@ fn before_image(prepared: &Prepared) -> String {
     }
     let mut profile = profile_of(&prepared.identity, base.fields.clone(), recorded);
     profile.created = created_by(&prepared.plan);
-    backup_of(Body::Hiperface(profile)).emit()
+    backup_of(Body::new(profile)).emit()
 }

@@ -93,5 +93,5 @@ fn before_image(prepared: &Prepared) -> String {
         }
     }
     let profile = InterbusProfile::of(identity.profile(), image, Recorded::default());
-    backup_of(Body::Interbus(Box::new(profile))).emit()
+    backup_of(Body::new(profile)).emit()
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use encoder_studio::device::biss::Error;
 use encoder_studio::device::biss::procedure::{Failure, Outcome};
 use encoder_studio::device::biss::write::Left;
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::profile::biss::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::protocol::biss::{Filter, PresetValue};
@@ -80,9 +81,9 @@ fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
 
     // The before-image gives it back.
     let text = read_text(&committed.backup.unwrap()).unwrap();
-    let kept = Document::parse(&text).unwrap();
+    let kept = Document::parse(&text, FORMATS).unwrap();
     assert_eq!(kept.note.as_deref(), Some("before-image of a write"));
-    let kept = kept.body.into_biss().unwrap();
+    let kept = kept.body.into_profile::<BissProfile>().unwrap();
     assert_eq!((kept.banks().count(), kept.bank(0x24).unwrap().bytes), (1, [0; 64]));
     bench.change(restore_of(&kept)).unwrap();
     assert_eq!(bench.save(), saved);

@@ -2,6 +2,7 @@
 
 use encoder_studio::device::hiperdrive::dead_man::Lock;
 use encoder_studio::device::hiperdrive::{Asked, Error, LimitsSeen};
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::Clock;
 use encoder_studio::profile::Document;
 use encoder_studio::profile::hiperdrive::{HiperdriveProfile, PlanError, RestoreOptions, Service};
@@ -33,8 +34,8 @@ fn what_differs_is_written_read_back_and_saved_once() {
     let now = stand.clock.now();
     stand.target.with(|station| station.power_cycle(now));
     assert_eq!(stand.value(166), 200);
-    let before = Document::parse(&read_text(&done.backup.unwrap()).unwrap()).unwrap();
-    assert_eq!(before.body.hiperdrive().unwrap().image.get(number(166)), Some(350));
+    let before = Document::parse(&read_text(&done.backup.unwrap()).unwrap(), FORMATS).unwrap();
+    assert_eq!(before.body.get::<HiperdriveProfile>().unwrap().image.get(number(166)), Some(350));
     let done = stand.change(Change::Write(image(&[(24, 7)]))).unwrap();
     assert!(done.backup.is_none() && stand.sets().len() == 3, "what is so already is not written");
     let prepared = stand.prepare(Change::Write(image(&[(24, 8)]))).unwrap();

@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use encoder_studio::device::interbus::Error;
 use encoder_studio::device::interbus::write::Left;
+use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{Cancel, Clock};
-use encoder_studio::profile::Body;
+use encoder_studio::profile::interbus::InterbusProfile;
 use encoder_studio::profile::interbus::{Image, Item, ItemValue, Op, RestoreOptions};
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber, StartupMode};
@@ -69,8 +70,8 @@ fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
         // The session knows the gear from then on.
         assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
         let backup = done.backup.unwrap();
-        let document = Document::parse(&read_text(&backup).unwrap()).unwrap();
-        assert!(matches!(document.body, Body::Interbus(own) if own.image.parameters.preset == 10));
+        let document = Document::parse(&read_text(&backup).unwrap(), FORMATS).unwrap();
+        assert_eq!(document.body.get::<InterbusProfile>().unwrap().image.parameters.preset, 10);
     }
 }
 

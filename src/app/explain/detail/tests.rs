@@ -7,7 +7,11 @@ use crate::app::Language::{English, German};
 use crate::device::hiperface::Station;
 use crate::device::{biss, ssi};
 use crate::link::{LinkUrl, Query, read_trace};
-use crate::profile::Document;
+use crate::profile::biss::BissProfile;
+use crate::profile::hiperface::HiperfaceProfile;
+use crate::profile::interbus::InterbusProfile;
+use crate::profile::ssi::SsiProfile;
+use crate::profile::{Document, Profile};
 use crate::protocol::hiperface::EncoderTypes;
 use crate::sim::hiperface::Config;
 
@@ -105,7 +109,7 @@ fn a_wrong_setting_of_a_virtual_encoder_is_told_in_both_languages() {
 fn a_wrong_profile_is_told_in_both_languages() {
     let good = r#"(schema: 1, device: "hiperface", identity: (serial_number: "A1", encoder_type: 0x37),
         interface: (address: 0x40, settings: 0xE4), fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")])"#;
-    assert!(Document::parse(good).is_ok());
+    assert!(Document::parse(good, HiperfaceProfile::FORMATS).is_ok());
     let cases = [
         ("fields:", "feilds:"),
         ("identity: (", "identity: 7, was: ("),
@@ -124,7 +128,7 @@ fn a_wrong_profile_is_told_in_both_languages() {
         ("schema: 1", "schema: 1, schema: 1"),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+        let error = Document::parse(&good.replacen(from, to, 1), HiperfaceProfile::FORMATS).unwrap_err();
         check(&document(&error), &error);
     }
 }
@@ -136,7 +140,7 @@ fn a_wrong_biss_profile_is_told_in_both_languages() {
         device_id: "01 01 68 11 00 01", manufacturer: "46 72"), recorded: (wiegand_last: [1, 2, 3, 4]),
         mounting: [(item: "calibration")], data: [(banks: (0x24, 0x43), listed: [(bank: 0x25, bytes: "BYTES")])])"#
         .replace("BYTES", &bytes);
-    assert!(Document::parse(&good).is_ok());
+    assert!(Document::parse(&good, BissProfile::FORMATS).is_ok());
     let cases = [
         ("0x6129", "0x16129"),
         ("1.6.0", "1.6"),
@@ -150,7 +154,7 @@ fn a_wrong_biss_profile_is_told_in_both_languages() {
         ("data: [", "data: [(banks: (0, 0x24)), "),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+        let error = Document::parse(&good.replacen(from, to, 1), BissProfile::FORMATS).unwrap_err();
         check(&document(&error), &error);
     }
 }
@@ -160,7 +164,7 @@ fn a_wrong_interbus_profile_is_told_in_both_languages() {
     let good = r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0,
         zero_shift: 0), shift: 8, mounting: [(item: "preset")], programs: [(program: 1, mask: 1, cams: [(cam: 0,
         start: 1, stop: 2)])])"#;
-    assert!(Document::parse(good).is_ok());
+    assert!(Document::parse(good, InterbusProfile::FORMATS).is_ok());
     let cases = [
         ("parameters:", "parametres:"),
         ("3600", "-1"),
@@ -179,7 +183,7 @@ fn a_wrong_interbus_profile_is_told_in_both_languages() {
         ("start: 1, ", ""),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+        let error = Document::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
         check(&document(&error), &error);
     }
 }
@@ -189,7 +193,7 @@ fn a_wrong_ssi_profile_is_told_in_both_languages() {
     let good = r#"(schema: 1, device: "ssi", direction: "cw", preset: 0, reading: (clock_hz: 1000), frame: (clocks: 15,
         singleturn: 14, errors: [(name: "ERROR", clock: 15, meaning: "invalid")], patterns: [(name: "fault",
         word: "ones", meaning: "invalid")]))"#;
-    assert!(Document::parse(good).is_ok());
+    assert!(Document::parse(good, SsiProfile::FORMATS).is_ok());
     let cases = [
         ("frame:", "fram:"),
         ("clocks: 15", "clocks: 256"),
@@ -223,7 +227,7 @@ fn a_wrong_ssi_profile_is_told_in_both_languages() {
         ("\"ones\"", "0x8000"),
     ];
     for (from, to) in cases {
-        let error = Document::parse(&good.replacen(from, to, 1)).unwrap_err();
+        let error = Document::parse(&good.replacen(from, to, 1), SsiProfile::FORMATS).unwrap_err();
         check(&document(&error), &error);
     }
 }

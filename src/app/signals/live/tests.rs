@@ -5,13 +5,14 @@ use std::time::{Duration, Instant};
 use super::*;
 use crate::app::services::World;
 use crate::app::signals::{Action, Judge};
+use crate::profile::Formats;
 use crate::signal::capture::Capture;
 use crate::signal::quality::Family;
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    (Services::new(World::real(Store::at(folder.path())), Arc::new(|| ())), folder)
+    (Services::new(World::real(Store::at(folder.path()), Formats::new(&[])), Arc::new(|| ())), folder)
 }
 
 fn started(services: &mut Services) -> Signals {

@@ -1,6 +1,7 @@
 //! What a person writes is read, what is written is read again, and what is wrong is named.
 
 use super::*;
+use crate::profile::testing::changed_in_place;
 use crate::profile::{Body, Document};
 use crate::protocol::biss::{Access, Area, DeviceMode, RegisterAddress};
 
@@ -15,7 +16,7 @@ const SHORT: &str = r#"(
 )"#;
 
 fn profile(text: &str) -> BissProfile {
-    Document::parse(text).unwrap().body.into_biss().unwrap()
+    Document::parse(text, BissProfile::FORMATS).unwrap().body.into_profile().unwrap()
 }
 
 #[test]
@@ -61,10 +62,10 @@ fn full() -> BissProfile {
 
 #[test]
 fn what_is_written_is_read() {
-    let mut document = Document::new("2026-11-21T13:20:18Z".to_owned(), Body::Biss(full()));
+    let mut document = Document::new("2026-11-21T13:20:18Z".to_owned(), Body::new(full()));
     document.note = Some("two\nlines".to_owned());
     let text = document.emit();
-    assert_eq!(Document::parse(&text), Ok(document));
+    assert_eq!(Document::parse(&text, BissProfile::FORMATS), Ok(document));
     // What a person looks for.
     for line in [
         "    device: \"biss\",",
@@ -93,7 +94,7 @@ fn what_is_not_known_is_kept() {
         .replace("bank: 0x25,", "bank: 0x25, label: \"motor\",")
         .replace("data:", "recorded: (place: \"d\", eds: [(bank: 2, bytes: ZEROS, from: \"e\")]), data:");
     let zeros = format!("\"{}\"", "00".repeat(64));
-    let document = Document::parse(&text.replace("ZEROS", &zeros)).unwrap();
+    let document = Document::parse(&text.replace("ZEROS", &zeros), BissProfile::FORMATS).unwrap();
     let written = document.emit();
     for kept in [
         "extra: {\"owner\": (floors: [1, 2], name: \"CK\")}",
@@ -108,7 +109,7 @@ fn what_is_not_known_is_kept() {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
     assert_eq!(document.beyond.len(), 8);
-    assert_eq!(Document::parse(&written), Ok(Document { beyond: Vec::new(), ..document }));
+    assert_eq!(Document::parse(&written, BissProfile::FORMATS), Ok(Document { beyond: Vec::new(), ..document }));
 }
 
 #[test]
@@ -158,11 +159,13 @@ fn a_wrong_profile_is_told_where() {
     ];
     for (old, new, message) in cases {
         assert!(SHORT.contains(old), "{old}");
-        let error = Document::parse(&SHORT.replacen(old, new, 1)).unwrap_err().to_string();
+        let error = Document::parse(&SHORT.replacen(old, new, 1), BissProfile::FORMATS).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error:?} does not begin with {message:?}");
     }
     let bank = SHORT.split("listed: [").nth(1).unwrap().split(")])]").next().unwrap();
-    let error = Document::parse(&SHORT.replace("listed: [", &format!("listed: [{bank}), "))).unwrap_err().to_string();
+    let error = Document::parse(&SHORT.replace("listed: [", &format!("listed: [{bank}), ")), BissProfile::FORMATS)
+        .unwrap_err()
+        .to_string();
     assert_eq!(error, "data[0].listed[1].bank: bank 0x25 stands twice");
 }
 
@@ -202,4 +205,12 @@ fn a_mark_covers_its_registers() {
     let count = profile.mounting.len();
     profile.mark_mounting();
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");
+}
+
+/// Issue 22.26: one value changed is one place changed.
+#[test]
+fn a_change_touches_nothing_else() {
+    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));
+    let edit = |own: &mut BissProfile| own.filter = Some(Filter::from_byte(0));
+    changed_in_place(text, edit, "filter: 4", "filter: 0x00");
 }

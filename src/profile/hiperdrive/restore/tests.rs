@@ -3,6 +3,7 @@
 use super::*;
 use crate::profile::hiperdrive::test_profiles::{drive, identity, image, image_of, number, profile};
 use crate::profile::hiperdrive::{MountingMark, Op, Service, compare};
+use crate::profile::{Document, Profile};
 use crate::protocol::hiperdrive::{Topology, Variant};
 
 fn device() -> DeviceState {
@@ -130,7 +131,7 @@ fn the_ready_made_profiles_do_what_they_say() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive").join(name);
         let text = std::fs::read_to_string(path).unwrap();
-        crate::profile::Document::parse(&text).unwrap().body.into_hiperdrive().unwrap()
+        Document::parse(&text, HiperdriveProfile::FORMATS).unwrap().body.into_profile().unwrap()
     };
     let mut now = device();
     now.positions = [(drive(1), 0), (drive(3), 0)].into();

@@ -2,22 +2,16 @@
 
 use super::super::test_profiles::{drive, identity, image_of, number, profile};
 use super::*;
+use crate::profile::testing::{changed_in_place, edited};
 use crate::profile::{Body, Document};
 
 fn document(profile: HiperdriveProfile) -> Document {
     let saved = Some("2024-06-03T14:05:00Z".to_owned());
-    Document {
-        saved,
-        note: None,
-        body: Body::Hiperdrive(Box::new(profile)),
-        unknown: Default::default(),
-        schema: 1,
-        beyond: Vec::new(),
-    }
+    Document { saved, note: None, body: Body::new(profile), unknown: Default::default(), schema: 1, beyond: Vec::new() }
 }
 
 fn parse(text: &str) -> Result<HiperdriveProfile, ProfileError> {
-    Document::parse(text)?.body.into_hiperdrive()
+    Document::parse(text, HiperdriveProfile::FORMATS)?.body.into_profile()
 }
 
 /// As a person writes it, with no device in mind.
@@ -38,7 +32,7 @@ fn replaced(from: &str, to: &str) -> String {
 #[test]
 fn what_is_written_is_what_is_read() {
     let text = document(profile()).emit();
-    assert_eq!(Document::parse(&text).unwrap(), document(profile()));
+    assert_eq!(Document::parse(&text, HiperdriveProfile::FORMATS).unwrap(), document(profile()));
     for line in [
         "        category: \"HIPERDRIVE HUB-4\",\n",
         "        serial_number: \"100\",\n",
@@ -80,8 +74,8 @@ fn what_is_not_known_is_kept() {
         .replace("number: 2,", "number: 2, axis: \"feed\",")
         .replace("154: 400,", "154: 400, \"spare\": Some(3),")
         .replace("schema: 1,", "schema: 1, identity: (colour: \"red\"), mounting: [(item: \"258\", by: \"CK\")],");
-    let document = Document::parse(&text).unwrap();
-    let profile = document.body.hiperdrive().unwrap();
+    let document = Document::parse(&text, HiperdriveProfile::FORMATS).unwrap();
+    let profile = document.body.get::<HiperdriveProfile>().unwrap();
     assert!(profile.is_mounting(Item(number(258))) && profile.is_mounting(Item(number(398))));
     let written = document.emit();
     for kept in [
@@ -94,7 +88,7 @@ fn what_is_not_known_is_kept() {
         assert!(written.contains(kept), "{kept} is not in\n{written}");
     }
     assert_eq!(document.beyond.len(), 5);
-    let again = Document::parse(&written).unwrap();
+    let again = Document::parse(&written, HiperdriveProfile::FORMATS).unwrap();
     assert_eq!(
         (again.emit(), again.beyond.len()),
         (written, 2),
@@ -140,4 +134,26 @@ fn a_slip_is_told_where_it_stands() {
 fn who_it_is_is_kept() {
     let profile = HiperdriveProfile::of(identity("7", &[(8, "1")]), image_of(&[(898, 64)]));
     assert_eq!(parse(&document(profile.clone()).emit()), Ok(profile));
+}
+
+/// As a person writes it, with comments.
+const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperdrive.ron"));
+
+/// Issue 22.26: one value changed is one place changed.
+#[test]
+fn a_change_touches_nothing_else() {
+    let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(number(166), 40), Some(50));
+    changed_in_place(COMMENTED, edit, "166: 50", "166: 40");
+}
+
+/// Issue 22.26: what comes and what goes takes its line and no other.
+#[test]
+fn entries_come_and_go() {
+    let (_, carried) = edited(COMMENTED, |_, own: &mut HiperdriveProfile| {
+        own.image.values.remove(&number(158));
+        own.image.values.insert(number(24), 1);
+    });
+    assert!(carried.text.contains("\n166: 50, // slow\n})],\n"), "{}", carried.text);
+    assert!(carried.text.contains("parameters: {"), "{}", carried.text);
+    assert_eq!(carried.lost, ["to the wall"]);
 }

@@ -3,6 +3,7 @@
 use super::super::test_profiles::{edges, identity, image, profile, value, with};
 use super::super::{Base, ItemValue, Op, compare};
 use super::*;
+use crate::profile::{Document, Profile};
 use crate::protocol::interbus::{Flags, WindowShift};
 
 use ItemValue::{Cam, Mask, Number};
@@ -151,9 +152,9 @@ fn the_ready_made_profiles_do_what_they_say() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/interbus").join(name);
         let text = std::fs::read_to_string(path).unwrap();
-        let document = crate::profile::Document::parse(&text).unwrap();
+        let document = Document::parse(&text, InterbusProfile::FORMATS).unwrap();
         assert_eq!(document.emit(), text, "as this program writes it");
-        document.body.into_interbus().unwrap()
+        document.body.into_profile().unwrap()
     };
     let machine = read("packaging-machine.ron");
     let now = device(MINE, &[]);

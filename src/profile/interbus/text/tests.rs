@@ -2,22 +2,16 @@
 
 use super::super::test_profiles::{cam, edges, profile, program};
 use super::*;
-use crate::profile::{Body, Document};
+use crate::profile::testing::{changed_in_place, edited};
+use crate::profile::{Body, Carried, Change, Changed, Document, divergence};
 
 fn document(profile: InterbusProfile) -> Document {
     let saved = Some("2024-06-03T14:05:00Z".to_owned());
-    Document {
-        saved,
-        note: None,
-        body: Body::Interbus(Box::new(profile)),
-        unknown: Default::default(),
-        schema: 1,
-        beyond: Vec::new(),
-    }
+    Document { saved, note: None, body: Body::new(profile), unknown: Default::default(), schema: 1, beyond: Vec::new() }
 }
 
 fn parse(text: &str) -> Result<InterbusProfile, ProfileError> {
-    Document::parse(text)?.body.into_interbus()
+    Document::parse(text, InterbusProfile::FORMATS)?.body.into_profile()
 }
 
 /// As a person writes it, with the least that has to be there.
@@ -43,7 +37,7 @@ fn what_is_written_is_what_is_read() {
     full.names.set_program(program(8), "\"best\" cartons".to_owned());
     full.names.set_cam(program(8), cam(0), "Leimdüse".to_owned());
     let text = document(full.clone()).emit();
-    assert_eq!(Document::parse(&text).unwrap(), document(full));
+    assert_eq!(Document::parse(&text, InterbusProfile::FORMATS).unwrap(), document(full));
     for line in [
         "        steps: 3600, // over all turns: the measuring range",
         "        direction: \"cw\",",
@@ -74,8 +68,8 @@ fn a_short_one_says_nothing_of_the_rest() {
 fn what_is_not_known_is_kept_where_it_stands() {
     let text = replaced("zero_shift: 0", "zero_shift: 0, gearbox: 3");
     let text = text.replace("mask: 0b101", "mask: 5, colour: \"red\"").replace("stop: 0x28", "stop: 40, lamp: 7");
-    let once = Document::parse(&text).unwrap().emit();
-    assert_eq!(Document::parse(&once).unwrap().emit(), once);
+    let once = Document::parse(&text, InterbusProfile::FORMATS).unwrap().emit();
+    assert_eq!(Document::parse(&once, InterbusProfile::FORMATS).unwrap().emit(), once);
     for line in
         ["        extra: {\"gearbox\": 3},", "            extra: {\"colour\": \"red\"},", "extra: {\"lamp\": 7}),"]
     {
@@ -107,4 +101,72 @@ fn what_is_wrong_names_its_entry() {
     for (from, to, message) in cases {
         assert_eq!(parse(&replaced(from, to)).unwrap_err().to_string(), message);
     }
+}
+
+fn parse_document(text: &str) -> Document {
+    Document::parse(text, InterbusProfile::FORMATS).unwrap()
+}
+
+/// As a person writes it, with comments.
+const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/interbus.ron"));
+
+/// Issue 22.26: one value changed is one place changed.
+#[test]
+fn a_change_touches_nothing_else() {
+    let edit = |own: &mut InterbusProfile| {
+        let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
+        program.set_cam(cam(1), Some(edges(15, 20)));
+    };
+    changed_in_place(COMMENTED, edit, "start: 10,", "start: 15,");
+}
+
+/// Issue 22.26: what comes and what goes takes its line and no other.
+#[test]
+fn entries_come_and_go() {
+    let (_, carried) = edited(COMMENTED, |note, own: &mut InterbusProfile| {
+        let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
+        program.set_cam(cam(1), None);
+        program.set_cam(cam(4), Some(edges(300, 400)));
+        *note = Some("as of today".to_owned());
+    });
+    let expected = COMMENTED
+        .replace("(cam: 1, start: 10, stop: 20), // knife\n", "")
+        .replace("name: \"glue\"),\n", "name: \"glue\"),\n(cam: 4, start: 300, stop: 400),\n")
+        .replace("device: \"interbus\", schema: 1,\n", "device: \"interbus\",\nnote: \"as of today\",\nschema: 1,\n");
+    let lines = |text: &str| text.lines().map(|line| line.trim().to_owned()).collect::<Vec<_>>();
+    assert_eq!(lines(&carried.text), lines(&expected));
+    assert_eq!(carried.lost, ["knife"]);
+}
+
+/// Issue 22.26: what the ready-made profiles say about their own values goes with the values.
+#[test]
+fn comments_of_the_program_follow_their_values() {
+    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/packaging-machine.ron"));
+    let (document, carried) = edited(text, |_, own: &mut InterbusProfile| {
+        let program = own.image.program_mut(ProgramNumber::new(1).unwrap()).unwrap().as_mut().unwrap();
+        program.mask = 0x03;
+    });
+    assert_eq!(carried, Carried { text: document.emit(), lost: Vec::new() });
+    assert!(carried.text.contains("mask: 0x03, // these cams work: 0, 1\n"));
+}
+
+/// Issue 22.25: what two people changed since they had the same profile.
+#[test]
+fn who_changed_what_is_told_entry_by_entry() {
+    let base = parse_document(COMMENTED);
+    let theirs = parse_document(&COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1"));
+    let mine = parse_document(&COMMENTED.replace("start: 10,", "start: 14,").replace("stop: 200", "stop: 222"));
+    let found = divergence(&base, &theirs, &mine);
+    let told: Vec<(String, Changed)> = found.iter().map(|(change, who)| (change.place(), *who)).collect();
+    let place = |rest: &str| format!("programs[program: 2].{rest}");
+    let expected = [
+        (place("mask"), Changed::There),
+        (place("cams[cam: 0].stop"), Changed::Here),
+        (place("cams[cam: 1].start"), Changed::Both),
+    ];
+    assert_eq!(told, expected);
+    let here: Vec<Change> = found.into_iter().filter(|(_, who)| *who == Changed::Here).map(|(own, _)| own).collect();
+    let merged = theirs.changed(&here, InterbusProfile::FORMATS).unwrap();
+    let expected = COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1");
+    assert_eq!(merged, parse_document(&expected.replace("stop: 200", "stop: 222")));
 }

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::profile::testing::changed_in_place;
 use crate::profile::{Body, Document};
 use crate::protocol::ssi::{Families, Meaning, Settings, any_layouts};
 
@@ -12,14 +13,14 @@ const SHORT: &str = r#"(
 )"#;
 
 fn profile(text: &str) -> SsiProfile {
-    Document::parse(text).unwrap().body.into_ssi().unwrap()
+    Document::parse(text, SsiProfile::FORMATS).unwrap().body.into_profile().unwrap()
 }
 
 fn document(profile: SsiProfile) -> Document {
     Document {
         saved: None,
         note: None,
-        body: Body::Ssi(profile),
+        body: Body::new(profile),
         unknown: Default::default(),
         schema: 1,
         beyond: Vec::new(),
@@ -170,7 +171,7 @@ proptest! {
         let profile = SsiProfile { name, direction, preset, reading, ..SsiProfile::new(descriptor) };
         let document = document(profile);
         let text = document.emit();
-        prop_assert_eq!(Document::parse(&text), Ok(document), "{}", text);
+        prop_assert_eq!(Document::parse(&text, SsiProfile::FORMATS), Ok(document), "{}", text);
     }
 }
 
@@ -201,8 +202,8 @@ proptest! {
             entry(has(4), format!("patterns: [(name: \"P\", word: {pattern}, meaning: \"invalid\")],")),
         ];
         let text = format!("(schema: 1, device: \"ssi\", frame: ({}))", frame.concat());
-        match Document::parse(&text) {
-            Ok(document) => prop_assert_eq!(Document::parse(&document.emit()), Ok(document)),
+        match Document::parse(&text, SsiProfile::FORMATS) {
+            Ok(document) => prop_assert_eq!(Document::parse(&document.emit(), SsiProfile::FORMATS), Ok(document)),
             Err(error) => prop_assert!(error.to_string().starts_with("frame: "), "{}", error),
         }
     }
@@ -218,7 +219,7 @@ fn what_is_not_known_is_kept() {
         .replace("word: 25,", "word: 25, by: \"d\",")
         .replace("(name: \"fault\",", "(name: \"fault\", seen: \"e\",")
         .replace("clock_hz:", "module: \"f\", clock_hz:");
-    let read = Document::parse(&text).unwrap();
+    let read = Document::parse(&text, SsiProfile::FORMATS).unwrap();
     let written = read.emit();
     for kept in [
         "    extra: {\"owner\": (floors: [1, 2], name: \"CK\")},",
@@ -233,9 +234,9 @@ fn what_is_not_known_is_kept() {
     }
     assert_eq!(read.beyond.len(), 7);
     let read = Document { beyond: Vec::new(), ..read };
-    assert_eq!(Document::parse(&written).unwrap(), read);
+    assert_eq!(Document::parse(&written, SsiProfile::FORMATS).unwrap(), read);
     // What stood at a bit stays with it, also where another comes before it.
-    let mut moved = read.body.into_ssi().unwrap();
+    let mut moved = read.body.into_profile::<SsiProfile>().unwrap();
     moved.descriptor.errors.reverse();
     let written = document(moved).emit();
     assert!(written.contains(
@@ -308,7 +309,18 @@ fn a_wrong_profile_is_told_where() {
     ];
     for (old, new, message) in cases {
         assert!(SHORT.contains(old), "{old}");
-        let error = Document::parse(&SHORT.replacen(old, new, 1)).unwrap_err().to_string();
+        let error = Document::parse(&SHORT.replacen(old, new, 1), SsiProfile::FORMATS).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error:?} does not begin with {message:?}");
     }
+}
+
+/// Issue 22.26: one value changed is one place changed.
+#[test]
+fn a_change_touches_nothing_else() {
+    let edit = |own: &mut SsiProfile| {
+        own.preset = 9;
+        own.reading.clock_hz = 250_000;
+    };
+    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/ssi.ron"));
+    changed_in_place(text, edit, "preset: 7", "preset: 9, reading: (\n    clock_hz: 250000,\n)");
 }

@@ -1,0 +1,20 @@
+//! The kinds of devices that this program knows: the one file that names them all.
+
+use crate::profile::biss::BissProfile;
+use crate::profile::hiperdrive::HiperdriveProfile;
+use crate::profile::hiperface::HiperfaceProfile;
+use crate::profile::interbus::InterbusProfile;
+use crate::profile::ssi::SsiProfile;
+use crate::profile::{Formats, Profile};
+
+/// The formats of their profiles.
+pub const FORMATS: Formats = Formats::new(&[
+    HiperfaceProfile::FORMAT,
+    BissProfile::FORMAT,
+    SsiProfile::FORMAT,
+    InterbusProfile::FORMAT,
+    HiperdriveProfile::FORMAT,
+]);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,118 @@
+//! What holds of the profiles of every kind: those that ship, those of schema 1, and the names of their entries.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::FORMATS;
+use crate::profile::{Document, ProfileError};
+
+mod rewrite;
+
+fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let in_kind = |kind: &str| fs::read_dir(root.join(kind)).unwrap().map(|entry| entry.unwrap().path());
+    let all = FORMATS.kinds().flat_map(in_kind);
+    all.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
+}
+
+/// Names before colons, outside of texts and comments: where each begins and ends.
+fn names(text: &str) -> Vec<(usize, usize)> {
+    let bytes = text.as_bytes();
+    let (mut at, mut found) = (0, Vec::new());
+    while at < bytes.len() {
+        match bytes[at] {
+            b'"' => {
+                at += 1;
+                while bytes[at] != b'"' {
+                    at += if bytes[at] == b'\\' { 2 } else { 1 };
+                }
+                at += 1;
+            }
+            b'/' if bytes[at + 1] == b'/' => at += text[at..].find('\n').unwrap(),
+            byte if byte.is_ascii_alphabetic() => {
+                let end = at + text[at..].find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap();
+                if text[end..].trim_start().starts_with(':') {
+                    found.push((at, end));
+                }
+                at = end;
+            }
+            _ => at += 1,
+        }
+    }
+    found
+}
+
+/// Slips of the hand: a letter left out, doubled, exchanged with its neighbour, added.
+fn slips(name: &str) -> Vec<String> {
+    let short = name[..name.len() - 1].to_owned();
+    let doubled = format!("{name}{}", &name[name.len() - 1..]);
+    let (first, rest) = name.split_at(1);
+    let (second, rest) = rest.split_at(1);
+    [short, doubled, format!("{second}{first}{rest}"), format!("x{name}"), name.to_uppercase()]
+        .into_iter()
+        .filter(|slip| slip != name)
+        .collect()
+}
+
+/// Issue 22.17: of 393 names 153 passed unnoticed.
+#[test]
+fn no_name_of_a_ready_made_profile_is_misspelt_without_a_word() {
+    let mut misspelt = 0;
+    for (path, text) in profiles_in("profiles") {
+        for (begin, end) in names(&text) {
+            let line = text[..begin].matches('\n').count() + 1;
+            let column = begin - text[..begin].rfind('\n').map_or(0, |at| at + 1) + 1;
+            for slip in slips(&text[begin..end]) {
+                let wrong = format!("{}{slip}{}", &text[..begin], &text[end..]);
+                let error = Document::parse(&wrong, FORMATS).map(|_| ()).unwrap_err();
+                let place = format!("line {line}, column {column}: ");
+                assert!(error.to_string().starts_with(&place), "{}: {slip} at {place}{error}", path.display());
+                assert!(error.to_string().contains(&slip), "{}: {error}", path.display());
+            }
+            misspelt += 1;
+        }
+    }
+    assert!(misspelt >= 393, "{misspelt}");
+}
+
+/// Issue 22.17: profiles that were ready-made with schema 1, and one of each kind as it was saved then.
+#[test]
+fn profiles_of_schema_1_open() {
+    let files = profiles_in("tests/fixtures/schema-1");
+    assert_eq!(files.iter().filter(|(path, _)| path.file_stem().unwrap() == "saved").count(), FORMATS.kinds().count());
+    for (path, text) in files {
+        let document = Document::parse(&text, FORMATS).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        assert!(document.beyond.is_empty() && !document.is_newer(), "{}", path.display());
+        assert_eq!(Document::parse(&document.emit(), FORMATS), Ok(document), "{}", path.display());
+    }
+}
+
+#[test]
+fn the_profiles_that_ship_are_read() {
+    for kind in FORMATS.kinds() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles").join(kind);
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+            let document = Document::parse(&text, FORMATS).unwrap();
+            assert_eq!((document.device(), document.emit()), (kind, text), "as the program writes it");
+            count += 1;
+        }
+        // Of SSI, each family as delivered and one more.
+        let expected = match kind {
+            "ssi" => 12,
+            "interbus" => 2,
+            "hiperdrive" => 5,
+            _ => 3,
+        };
+        assert_eq!(count, expected, "{kind}");
+    }
+}
+
+#[test]
+fn a_kind_that_is_not_known_is_told_with_those_that_are() {
+    let error = Document::parse("(schema: 1, device: \"sse\")", FORMATS).unwrap_err();
+    let known = "\"hiperface\", \"biss\", \"ssi\", \"interbus\" and \"hiperdrive\"";
+    assert_eq!(error.to_string(), format!("device \"sse\"; this program knows {known}"));
+    assert!(matches!(error, ProfileError::Device { found, .. } if found == "sse"));
+}

@@ -1,0 +1,139 @@
+//! Profiles over texts of a person, of every kind.
+
+use super::FORMATS;
+use crate::profile::{Carried, Document};
+
+/// The ready-made profiles, by their kinds.
+fn ready_made() -> Vec<(&'static str, String)> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
+    let mut found = Vec::new();
+    for kind in FORMATS.kinds() {
+        for file in std::fs::read_dir(root.join(kind)).unwrap() {
+            found.push((kind, std::fs::read_to_string(file.unwrap().path()).unwrap()));
+        }
+    }
+    assert!(found.len() > 20, "{}", found.len());
+    found
+}
+
+/// A profile of this kind as a person writes it, with comments.
+fn commented(kind: &str) -> String {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/commented");
+    std::fs::read_to_string(folder.join(kind).with_extension("ron")).unwrap()
+}
+
+/// Issue 22.26: a save of what was not changed leaves the text as it is, for every kind, whatever its line ends are.
+#[test]
+fn what_is_not_changed_stays_as_it_is_written() {
+    for kind in FORMATS.kinds() {
+        let text = commented(kind);
+        for text in [text.replace('\n', "\r\n"), text] {
+            let carried = Document::parse(&text, FORMATS).unwrap().emit_over(&text, FORMATS);
+            assert_eq!(carried, Carried { text, lost: Vec::new() });
+        }
+    }
+}
+
+/// Issue 22.26: whatever a profile becomes, it says that and nothing else, and each comment of a person stays or is named.
+#[test]
+fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
+    let all = ready_made();
+    for (kind, text) in &all {
+        for line_end in ["\n", "\r\n"] {
+            let lines = text.lines().enumerate().map(|(at, line)| format!("{line}{line_end}// own {at}.{line_end}"));
+            let commented: String = lines.collect();
+            for (_, other) in all.iter().filter(|(own, _)| own == kind) {
+                let document = Document::parse(other, FORMATS).unwrap();
+                let carried = document.emit_over(&commented, FORMATS);
+                assert_eq!(Document::parse(&carried.text, FORMATS).unwrap().emit(), document.emit());
+                for at in 0..text.lines().count() {
+                    let own = format!("own {at}.");
+                    let stays = carried.text.contains(&format!("// {own}"));
+                    assert_eq!(stays, !carried.lost.contains(&own), "{own}");
+                }
+                if line_end == "\r\n" {
+                    assert!(!carried.text.replace("\r\n", "").contains('\n'));
+                }
+            }
+            let own = Document::parse(text, FORMATS).unwrap().emit_over(&commented, FORMATS);
+            assert_eq!(own, Carried { text: commented, lost: Vec::new() });
+        }
+    }
+}
+
+/// A text with other blanks between its words: those of `picks` in turn. Comments are numbered.
+fn spaced(text: &str, picks: &[usize]) -> (String, usize) {
+    const WAYS: usize = 9;
+    let (mut out, mut comments, mut at, mut pick) = (String::new(), 0, 0, picks.iter().cycle());
+    let mut quoted = false;
+    let letters: Vec<char> = text.chars().collect();
+    while at < letters.len() {
+        let letter = letters[at];
+        let between = !quoted && (letter.is_whitespace() || "([{,".contains(letter));
+        if quoted && letter == '\\' {
+            out.extend([letter, letters[at + 1]]);
+            at += 2;
+            continue;
+        }
+        if letter == '"' {
+            quoted = !quoted;
+        }
+        if !quoted && letters[at..].starts_with(&['/', '/']) {
+            at += letters[at..].iter().position(|own| *own == '\n').unwrap_or(letters.len() - at);
+            continue;
+        }
+        if !letter.is_whitespace() || quoted {
+            out.push(letter);
+        }
+        at += 1;
+        if !between {
+            continue;
+        }
+        let own = format!("own {comments}.");
+        let blank = match pick.next().unwrap() % WAYS {
+            0 => " ".to_owned(),
+            1 => "\n".to_owned(),
+            2 => "\t\r\n  ".to_owned(),
+            3 => format!(" // {own}\n"),
+            4 => format!("// {own}\r\n"),
+            5 => format!(" /* {own} */ "),
+            6 => format!("/* {own} */"),
+            7 => format!("\n/* \"( /* ,[ */ {{\n{own} */\n"),
+            _ => format!(" // \u{1F527} ü\" ( , {own}\n"),
+        };
+        comments += usize::from(blank.contains(&own));
+        out.push_str(&blank);
+    }
+    (out, comments)
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::test_runner::Config { cases: 256, ..Default::default() })]
+
+    /// Issue 22.26: wherever a person puts comments and line ends, and whatever is saved over that.
+    #[test]
+    fn comments_between_any_words_stay_or_are_named(
+        from in 0_usize..100,
+        to in 0_usize..100,
+        picks in proptest::collection::vec(0_usize..9, 1..200),
+    ) {
+        let mut all = ready_made();
+        all.extend(FORMATS.kinds().map(|kind| (kind, commented(kind))));
+        let (kind, text) = &all[from % all.len()];
+        let others: Vec<&String> = all.iter().filter(|(own, _)| own == kind).map(|(_, text)| text).collect();
+        let document = Document::parse(others[to % others.len()], FORMATS).unwrap();
+        let (spaced, comments) = spaced(text, &picks);
+        let before = Document::parse(&spaced, FORMATS).unwrap();
+        proptest::prop_assert_eq!(before.emit(), Document::parse(text, FORMATS).unwrap().emit());
+        let same = before.emit_over(&spaced, FORMATS);
+        proptest::prop_assert_eq!(same, Carried { text: spaced.clone(), lost: Vec::new() });
+        let carried = document.emit_over(&spaced, FORMATS);
+        proptest::prop_assert_eq!(Document::parse(&carried.text, FORMATS).unwrap().emit(), document.emit());
+        for at in 0..comments {
+            let own = format!("own {at}.");
+            let stays = carried.text.contains(&own);
+            let is_named = carried.lost.iter().any(|lost| lost.contains(&own));
+            proptest::prop_assert!(stays != is_named, "{own}\n{spaced}\n----\n{}", carried.text);
+        }
+    }
+}

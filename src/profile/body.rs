@@ -1,0 +1,184 @@
+//! What a profile holds, whatever the kind of device. A device implements [`Profile`] for a type of its own; here that
+//! becomes the traits without types that documents carry, once for all devices.
+
+use std::any::Any;
+use std::fmt;
+use std::marker::PhantomData;
+
+use super::ProfileError;
+use super::ron_text::{Entries, Writer};
+
+/// The profile of one kind of device, as the device implements it.
+pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
+    /// The word for the kind of device, as on the command line and in profiles.
+    const KIND: &'static str;
+
+    /// Its format, for the list of [`Formats`].
+    const FORMAT: &'static dyn ProfileFormat = &FormatOf::<Self>(PhantomData);
+
+    /// Formats with nothing but its own: where no other kind can be meant.
+    const FORMATS: Formats = Formats::new(&[Self::FORMAT]);
+
+    /// Reads it: takes its entries out of those of the document.
+    ///
+    /// # Errors
+    /// With the entry that is wrong.
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError>;
+
+    /// Writes its entries into the document.
+    fn write(&self, writer: &mut Writer);
+}
+
+/// How the profiles of one kind of device are read.
+pub trait ProfileFormat: fmt::Debug + Sync {
+    /// The word for the kind of device.
+    fn kind(&self) -> &'static str;
+
+    /// Reads a profile.
+    ///
+    /// # Errors
+    /// With the entry that is wrong.
+    fn parse(&self, entries: &mut Entries) -> Result<Body, ProfileError>;
+}
+
+/// What is saved of a device of some kind. Implemented for every [`Profile`].
+pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
+    /// The word for the kind of device.
+    fn kind(&self) -> &'static str;
+
+    /// Writes its entries into the document.
+    fn emit(&self, writer: &mut Writer);
+
+    /// It once more.
+    fn boxed(&self) -> Box<dyn ProfileBody>;
+
+    /// It says the same as another one.
+    fn equals(&self, other: &dyn ProfileBody) -> bool;
+}
+
+impl<P: Profile> ProfileBody for P {
+    fn kind(&self) -> &'static str {
+        P::KIND
+    }
+
+    fn emit(&self, writer: &mut Writer) {
+        self.write(writer);
+    }
+
+    fn boxed(&self) -> Box<dyn ProfileBody> {
+        Box::new(self.clone())
+    }
+
+    fn equals(&self, other: &dyn ProfileBody) -> bool {
+        let other: &dyn Any = other;
+        other.downcast_ref::<P>() == Some(self)
+    }
+}
+
+/// The format of a [`Profile`].
+struct FormatOf<P>(PhantomData<fn() -> P>);
+
+impl<P: Profile> fmt::Debug for FormatOf<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(P::KIND)
+    }
+}
+
+impl<P: Profile> ProfileFormat for FormatOf<P> {
+    fn kind(&self) -> &'static str {
+        P::KIND
+    }
+
+    fn parse(&self, entries: &mut Entries) -> Result<Body, ProfileError> {
+        P::read(entries).map(Body::new)
+    }
+}
+
+/// What is saved: the profile of some kind of device.
+pub struct Body(Box<dyn ProfileBody>);
+
+impl Body {
+    /// A profile of a kind of device.
+    pub fn new<P: Profile>(profile: P) -> Self {
+        Body(Box::new(profile))
+    }
+
+    /// The word for the kind of device.
+    pub fn kind(&self) -> &'static str {
+        self.0.kind()
+    }
+
+    /// Writes its entries into the document.
+    pub(super) fn emit(&self, writer: &mut Writer) {
+        self.0.emit(writer);
+    }
+
+    /// It is of another kind of device than the one asked for.
+    pub fn is_not(&self, wanted: &'static str) -> ProfileError {
+        ProfileError::OtherKind { found: self.kind(), wanted }
+    }
+
+    /// The profile of a kind of device; `None`: it is of another one.
+    pub fn get<P: Profile>(&self) -> Option<&P> {
+        let any: &dyn Any = self.0.as_ref();
+        any.downcast_ref()
+    }
+
+    /// The same, to be changed.
+    pub fn get_mut<P: Profile>(&mut self) -> Option<&mut P> {
+        let any: &mut dyn Any = self.0.as_mut();
+        any.downcast_mut()
+    }
+
+    /// The profile of a kind of device.
+    ///
+    /// # Errors
+    /// [`ProfileError::OtherKind`].
+    pub fn into_profile<P: Profile>(self) -> Result<P, ProfileError> {
+        let found = self.kind();
+        let any: Box<dyn Any> = self.0;
+        any.downcast().map(|profile| *profile).map_err(|_| ProfileError::OtherKind { found, wanted: P::KIND })
+    }
+}
+
+impl Clone for Body {
+    fn clone(&self) -> Self {
+        Body(self.0.boxed())
+    }
+}
+
+impl fmt::Debug for Body {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl PartialEq for Body {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.equals(other.0.as_ref())
+    }
+}
+
+/// The formats of profiles that can be read, in the order in which messages list them.
+#[derive(Clone, Copy, Debug)]
+pub struct Formats(&'static [&'static dyn ProfileFormat]);
+
+impl Formats {
+    /// These.
+    pub const fn new(formats: &'static [&'static dyn ProfileFormat]) -> Self {
+        Formats(formats)
+    }
+
+    /// The words for the kinds of devices.
+    pub fn kinds(self) -> impl Iterator<Item = &'static str> {
+        self.0.iter().map(|format| format.kind())
+    }
+
+    /// Reads what is saved of a device of the kind that a document names.
+    pub(super) fn parse(self, kind: String, entries: &mut Entries) -> Result<Body, ProfileError> {
+        match self.0.iter().find(|format| format.kind() == kind) {
+            Some(format) => format.parse(entries),
+            None => Err(ProfileError::Device { found: kind, known: self.kinds().collect() }),
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! An error of a device's own type, on its way through code that knows no device.
+
+use std::any::Any;
+use std::error::Error;
+use std::fmt;
+
+/// Why a text is refused, in the type of the device that refuses it. It reads like that error, and is equal to one like it.
+pub struct Cause(Box<dyn Fact>);
+
+trait Fact: Any + Error + Send + Sync {
+    fn boxed(&self) -> Box<dyn Fact>;
+    fn equals(&self, other: &dyn Fact) -> bool;
+}
+
+impl<E: Error + Clone + Eq + Send + Sync + 'static> Fact for E {
+    fn boxed(&self) -> Box<dyn Fact> {
+        Box::new(self.clone())
+    }
+
+    fn equals(&self, other: &dyn Fact) -> bool {
+        let other: &dyn Any = other;
+        other.downcast_ref::<E>() == Some(self)
+    }
+}
+
+impl Cause {
+    /// An error of a device.
+    pub fn new<E: Error + Clone + Eq + Send + Sync + 'static>(error: E) -> Self {
+        Cause(Box::new(error))
+    }
+
+    /// The error, where it is of this type.
+    pub fn get<E: Error + 'static>(&self) -> Option<&E> {
+        let any: &dyn Any = self.0.as_ref();
+        any.downcast_ref()
+    }
+}
+
+impl Clone for Cause {
+    fn clone(&self) -> Self {
+        Cause(self.0.boxed())
+    }
+}
+
+impl fmt::Debug for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&self.0, f)
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
+
+impl PartialEq for Cause {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.equals(other.0.as_ref())
+    }
+}
+
+impl Eq for Cause {}
+
+impl Error for Cause {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.0.source()
+    }
+}

@@ -1,0 +1,167 @@
+//! What a person writes is read, what is written is read again, and what is wrong is named.
+
+use super::*;
+use crate::profile::testing::{changed_in_place, edited};
+use crate::profile::{Document, ProfileError};
+
+/// A profile as a person may write it.
+const SHORT: &str = r#"(
+    schema: 1, device: "hiperface",
+    identity: (serial_number: "A1", encoder_type: 0x37),
+    interface: (address: 0x40, settings: 0xE4),
+    fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")],
+)"#;
+
+/// The same, as another one wrote it, with comments; on a computer whose lines end with both letters.
+fn commented() -> String {
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperface.ron")).replace('\n', "\r\n")
+}
+
+fn parse(text: &str) -> Result<Document, ProfileError> {
+    Document::parse(text, HiperfaceProfile::FORMATS)
+}
+
+fn profile(text: &str) -> HiperfaceProfile {
+    parse(text).unwrap().body.into_profile().unwrap()
+}
+
+#[test]
+fn a_profile_written_by_hand_is_read() {
+    let profile = profile(SHORT);
+    assert_eq!(profile.identity.serial_number, "A1");
+    let bytes = Some((0..16).collect());
+    let status = DataFieldStatus::from_byte(0xC8);
+    assert_eq!(profile.fields, [FieldImage { number: 0, status, bytes }]);
+    assert_eq!(profile.recorded.position, None);
+}
+
+#[test]
+fn a_slip_of_the_hand_is_no_profile() {
+    let cases = [
+        ("fields: [(", "fields: [], fields: [(", "fields stands twice"),
+        ("status: 0xC8", "status: 0xC9, status: 0xC8", "status stands twice"),
+        ("fields:", "feilds:", "fields is missing"),
+    ];
+    for (from, to, why) in cases {
+        let error = parse(&SHORT.replace(from, to)).unwrap_err().to_string();
+        assert!(error.ends_with(why), "{to}: {error}");
+    }
+}
+
+#[test]
+fn what_is_written_is_read() {
+    let mut document = parse(SHORT).unwrap();
+    let profile = document.body.get_mut::<HiperfaceProfile>().unwrap();
+    profile.recorded.position = Some(0x000E_0531);
+    profile.identity.extended_label = Some(vec![0x53; 64]);
+    profile.identity.serial_number = "quote \" and \\ and ä".to_owned();
+    let mut offset = b"CO1".to_vec();
+    offset.resize(32, 0);
+    let status = DataFieldStatus::from_byte(0x89);
+    profile.fields.push(FieldImage { number: 1, status, bytes: Some(offset) });
+    let status = DataFieldStatus::from_byte(0xE8);
+    profile.fields.push(FieldImage { number: 2, status, bytes: None });
+    profile.mark_mounting();
+    assert_eq!(profile.mounting[0].item, FieldRange::new(1, 0, 16));
+    document.note = Some("two\nlines".to_owned());
+    assert_eq!(parse(&document.emit()), Ok(document));
+}
+
+#[test]
+fn a_wrong_profile_is_told_where() {
+    let cases = [
+        ("", "", "line 1, column 1: "),
+        ("schema: 1,", "schema: 1,,", "line 2, column 15: "),
+        ("schema: 1,", "", "schema is missing"),
+        ("schema: 1,", "schema: 0,", "schema 0; this program knows schema 1 to 1"),
+        ("\"hiperface\"", "\"sse\"", "device \"sse\"; this program knows \"hiperface\""),
+        ("\"A1\"", "17", "identity.serial_number must be a text"),
+        ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
+        ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
+        ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes where the status says 32"),
+        ("00 01", "0G 01", "fields[0].bytes: 'G' is not a hexadecimal digit"),
+        ("00 01", "00 1", "fields[0].bytes: \"1\" has an odd number of hexadecimal digits"),
+        ("bytes:", "byts:", "line 5, column 40: fields[0].byts is not known, and bytes is missing"),
+        (
+            "bytes: \"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"",
+            "",
+            "fields[0].bytes: missing; a field without them is",
+        ),
+        ("bytes:", "locked: true, bytes:", "fields[0].bytes: a locked field has none"),
+        ("fields: [", "fields: [5, ", "fields[0] must be a structure: (name: value, …)"),
+        ("fields: [", "mounting: [(item: \"counter\")], fields: [", "mounting[0].item: \"counter\" is not"),
+    ];
+    for (old, new, message) in cases {
+        let text = if old.is_empty() { String::new() } else { SHORT.replacen(old, new, 1) };
+        let error = parse(&text).unwrap_err().to_string();
+        assert!(error.starts_with(message), "{error:?} does not begin with {message:?}");
+    }
+}
+
+/// Issue 22.17: people's own entries stand in `extra`, in any structure.
+#[test]
+fn entries_of_ones_own_are_kept() {
+    let text = SHORT
+        .replace("schema: 1,", "schema: 1, extra: {\"owner\": (name: \"CK\")},")
+        .replace("serial_number:", "extra: (colour: Some(\"red\")), serial_number:")
+        .replace("fields: [", "mounting: [(item: \"field:0@0+4\", extra: {\"by\": \"CK\"})], fields: [")
+        .replace("number: 0,", "number: 0, extra: {},");
+    let document = parse(&text).unwrap();
+    assert_eq!(document.beyond, [""; 0]);
+    let written = document.emit();
+    for kept in ["extra: {\"owner\": (name: \"CK\")}", "extra: {\"colour\": Some(\"red\")}", "extra: {\"by\": \"CK\"}"]
+    {
+        assert!(written.contains(kept), "{kept} is not in\n{written}");
+    }
+    assert_eq!(parse(&written), Ok(document));
+    let error = parse(&SHORT.replace("schema: 1,", "schema: 1, extra: 5,")).unwrap_err();
+    assert!(matches!(&error, ProfileError::Shape { path, .. } if path == "extra"), "{error}");
+}
+
+/// Issue 22.17: what a file of before `extra` holds beyond the schema is taken into it, and named.
+#[test]
+fn what_older_files_hold_beyond_the_schema_is_taken_over() {
+    let text = SHORT.replace("schema: 1,", "schema: 1, owner: \"CK\",").replace("number: 0,", "number: 0, label: 3,");
+    let document = parse(&text).unwrap();
+    assert_eq!(document.beyond, ["fields[0].label", "owner"]);
+    let written = document.emit();
+    assert!(written.contains("extra: {\"owner\": \"CK\"}") && written.contains("extra: {\"label\": 3}"), "{written}");
+    let again = parse(&written).unwrap();
+    assert_eq!((again.beyond, again.unknown, again.body), (Vec::new(), document.unknown, document.body));
+}
+
+/// Issue 22.17: nothing of a newer schema is lost, because nothing of it is written.
+#[test]
+fn a_newer_schema_is_only_looked_at() {
+    let newer = SHORT.replace("schema: 1,", "schema: 7, feilds: 1,").replace("number: 0,", "number: 0, statsu: 3,");
+    let document = parse(&newer).unwrap();
+    assert!(document.is_newer());
+    assert_eq!(document.beyond, ["fields[0].statsu", "feilds"]);
+    assert!(document.emit().contains("schema: 7,"), "never as an older one");
+    assert_eq!(document.known(), Err(ProfileError::Schema { found: 7, known: 1 }));
+    let zero = parse(&SHORT.replace("schema: 1,", "schema: 0,"));
+    assert_eq!(zero, Err(ProfileError::Schema { found: 0, known: 1 }));
+}
+
+/// Issue 22.26: one value changed is one place changed.
+#[test]
+fn a_change_touches_nothing_else() {
+    let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
+    changed_in_place(&commented(), edit, "address: 64", "address: 0x41");
+}
+
+/// Issue 22.26: bytes that a person keeps in lines of another length are written anew, which is said; the rest stays.
+#[test]
+fn bytes_in_lines_of_a_persons_own_are_written_anew() {
+    let (_, carried) = edited(&commented(), |_, own: &mut HiperfaceProfile| {
+        own.fields[0].bytes.as_mut().unwrap()[1] = 0xFF;
+    });
+    assert_eq!(carried.lost, ["name plate"]);
+    let rest = [
+        "// bench 3, Monday\r\n",
+        "status: 0xC8, number: 0, // ours\r\n",
+        "(settings: 0xE4, address: 64), /* as wired */",
+    ];
+    rest.iter().for_each(|kept| assert!(carried.text.contains(kept), "{kept}\n{}", carried.text));
+    assert!(carried.text.contains("\"00 FF 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\""));
+}
