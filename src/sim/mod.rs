@@ -4,6 +4,7 @@
 //! Never in here: a clock, a thread, a socket or a port (time is handed in), nor anything of `device/` or `link/`; only
 //! the tables of `protocol/` are shared with the host's side.
 
+mod at_adapter;
 pub mod biss;
 pub mod bridge;
 mod fault;
@@ -14,7 +15,9 @@ mod line;
 mod motor;
 mod setting;
 pub mod sine_cosine;
+pub mod ssi;
 
+pub use at_adapter::AT_ADAPTER;
 pub use fault::{Carried, FaultError, Faults, Passage};
 pub use motor::Motor;
 pub use setting::ConfigError;

@@ -6,8 +6,9 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use encoder_studio::protocol::bridge::{Receiver, Request};
+use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::bridge::{Adapter, Config};
+use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::units::Moment;
 
 /// An adapter behind a TCP port, one connection after the other.
@@ -67,7 +68,7 @@ impl Served {
 fn adapter(query: &str) -> Adapter {
     let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
     let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
-    Adapter::new(&Config::from_pairs(&pairs).unwrap())
+    Adapter::from_pairs(&pairs, &AT_ADAPTER).unwrap()
 }
 
 fn serve(

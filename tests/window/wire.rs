@@ -8,7 +8,7 @@ use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::sim::hiperdrive::Target;
 use encoder_studio::sim::hiperface::Bus;
 use encoder_studio::sim::interbus::Gateway;
-use encoder_studio::sim::{ByteDevice, biss, bridge, hiperdrive, hiperface, interbus};
+use encoder_studio::sim::{AT_ADAPTER, ByteDevice, biss, hiperdrive, hiperface, interbus};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;
@@ -96,7 +96,7 @@ impl Wire {
 
     /// To an adapter on the bus of a BiSS encoder.
     pub(crate) fn to_adapter(target: &str, query: &str) -> Arc<Self> {
-        let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs(query)).unwrap());
+        let adapter = Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap();
         Self::to(target, End::Adapter(Arc::new(Mutex::new(adapter))))
     }
 

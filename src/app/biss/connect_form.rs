@@ -8,7 +8,7 @@ use crate::device::biss::{Echo, PARAMETERS, Way};
 use crate::device::bridge::SupplyAfter;
 use crate::link::{LinkUrl, Scheme};
 use crate::protocol::ubicom::FORMAT;
-use crate::sim::{biss, bridge};
+use crate::sim::{AT_ADAPTER, biss, bridge};
 use crate::units::Parity;
 use crate::worker::biss::check;
 
@@ -258,7 +258,7 @@ impl BissForm {
     /// What only another way has is not taken along; what nothing has is, so that it is refused by its name.
     fn belongs(&self, name: &str) -> bool {
         let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
-        let (encoder, adapter) = (biss::Config::KEYS.contains(&name), bridge::Config::KEYS.contains(&name));
+        let (encoder, adapter) = (biss::Config::KEYS.contains(&name), bridge::keys(&AT_ADAPTER).contains(&name));
         let of_the_virtual = self.way == BissWay::Virtual && (encoder || (adapter && self.behind_adapter));
         let elsewhere = PARAMETERS.contains(&name) || encoder || adapter || name == BRIDGE.0;
         way.parameters().contains(&name) || of_the_virtual || !elsewhere

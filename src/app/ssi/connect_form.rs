@@ -6,7 +6,7 @@ use crate::app::connect::target::{adapter_in_network, checked, entered, parted, 
 use crate::device::bridge::SupplyAfter;
 use crate::device::ssi::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
-use crate::sim::{biss, bridge};
+use crate::sim::{AT_ADAPTER, bridge};
 use crate::worker::ssi::check;
 
 /// How the encoder is reached.
@@ -140,7 +140,7 @@ impl SsiForm {
 
 /// A setting of the virtual encoder or of the virtual adapter before it.
 fn is_of_the_virtual(name: &str) -> bool {
-    biss::Config::KEYS.contains(&name) || bridge::Config::KEYS.contains(&name)
+    bridge::keys(&AT_ADAPTER).contains(&name)
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::profile::ssi::{ReadingSettings, SsiProfile};
 use crate::protocol::ssi::{
     Advice, Code, Descriptor, Direction, ErrorPlace, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,
 };
-use crate::sim::bridge::DELIVERED;
+use crate::sim::ssi::DELIVERED;
 
 /// A layout to begin with.
 const TO_BEGIN_WITH: &str = "ahm36";

@@ -19,7 +19,7 @@ use super::{Failure, Result};
 use crate::profile::biss::{ItemError, RegisterRange};
 use crate::protocol::biss::KIND;
 use crate::protocol::ubicom;
-use crate::sim::{ConfigError, biss, bridge};
+use crate::sim::{AT_ADAPTER, ConfigError, biss, bridge};
 use crate::units::{CharacterFormat, Moment};
 
 /// How long is waited for a motor, or a shaft at rest, where nobody can be told.
@@ -47,13 +47,14 @@ pub(super) const COMMANDS: Kind = Kind {
 
 fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     let settings = settings(arguments)?;
-    let adapters = |(name, _): &&(String, String)| bridge::Config::KEYS.contains(&name.as_str());
-    if let Some((name, _)) = settings.iter().find(adapters).filter(|_| !arguments.bridge) {
+    let known = bridge::keys(&AT_ADAPTER);
+    let needs_adapter = |name: &str| known.contains(&name) && !biss::Config::KEYS.contains(&name);
+    if let Some((name, _)) = settings.iter().find(|(name, _)| needs_adapter(name)).filter(|_| !arguments.bridge) {
         return Err(Failure::Usage(format!("{name} is a setting of the adapter: it needs --bridge")));
     }
     let refused = |error: ConfigError| Failure::Usage(error.to_string());
     Ok(match arguments.bridge {
-        true => Box::new(bridge::Adapter::new(&bridge::Config::from_pairs(&settings).map_err(refused)?)),
+        true => Box::new(bridge::Adapter::from_pairs(&settings, &AT_ADAPTER).map_err(refused)?),
         false => Box::new(biss::Port::new(&biss::Config::from_pairs(&settings).map_err(refused)?)),
     })
 }

@@ -15,7 +15,9 @@ use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
 use crate::protocol::ssi::KIND;
-use crate::sim::bridge::{Adapter, Config, SsiEncoder};
+use crate::sim::AT_ADAPTER;
+use crate::sim::bridge::{Adapter, Attachable};
+use crate::sim::ssi::{AtAdapter, Encoder};
 
 pub(super) use args::Ssi;
 use args::SsiLayout;
@@ -62,12 +64,15 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
         Some(spec) => {
             let chosen = layout::choose(&output.as_text(), &SsiLayout { spec: spec.clone() })?;
             let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
-            Some(SsiEncoder { layout: chosen.layout, direction, preset })
+            AtAdapter::sending(Encoder { layout: chosen.layout, direction, preset })
         }
-        None => None,
+        None => AtAdapter::DELIVERED,
     };
-    let config = Config::with_encoder(&settings, encoder).map_err(|error| Failure::Usage(error.to_string()))?;
-    Ok(Box::new(Adapter::new(&config)))
+    // In place of the one that is as delivered, which has the same settings.
+    let others = AT_ADAPTER.into_iter().filter(|device| device.keys() != encoder.keys());
+    let devices: Vec<&dyn Attachable> = [&encoder as &dyn Attachable].into_iter().chain(others).collect();
+    let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;
+    Ok(Box::new(adapter))
 }
 
 /// A command that SSI encoders do not have, and what there is instead.

@@ -12,7 +12,9 @@
 //! | `entry` | the three that enter and save something: data, filter, preset |
 //! | `encoder` | registers, modes, restarts: what a read or a write does at a moment |
 //! | `ubicom` | the line of the configuration pin, byte for byte |
+//! | `at_adapter` | the bus behind a virtual adapter |
 
+mod at_adapter;
 mod calibration;
 mod config;
 mod encoder;
@@ -25,6 +27,7 @@ mod tests;
 mod ubicom;
 mod wiegand;
 
+pub use at_adapter::AtAdapter;
 pub use config::Config;
 pub use encoder::Encoder;
 pub use flash::Flash;

@@ -2,10 +2,12 @@
 //! says nothing: a reply comes a quarter of a millisecond after its request, one that needs a control frame after the 47
 //! cycles of that; HELLO ends all streams and leaves the supply as it is; SSI and BiSS share their wires, so that a stream of one keeps both busy.
 
+use std::any::Any;
 use std::time::Duration;
 
 use fastrand::Rng;
 
+use super::attached::{Attached, BissDevice};
 use super::bus::Bus;
 use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, actual_clock};
 use super::config::Config;
@@ -14,13 +16,12 @@ use super::uart::Uart;
 use crate::protocol::bridge::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
 };
-use crate::sim::biss::Encoder;
 use crate::sim::line::Queue;
 use crate::sim::sine_cosine::{Checked, Quantity, Settings};
-use crate::sim::{ByteDevice, Faults};
+use crate::sim::{ByteDevice, Faults, Motor};
 use crate::units::{CharacterFormat, Moment};
 
-/// The adapter with its encoders, seen from the host. Made of a [`Config`].
+/// The adapter with what hangs on it, seen from the host.
 #[derive(Clone)]
 pub struct Adapter {
     bus: Bus,
@@ -65,22 +66,22 @@ impl Adapter {
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
 
-    /// The virtual adapter as `config` wants it.
-    pub fn new(config: &Config) -> Self {
+    /// The virtual adapter as `config` wants it, with these devices; of several at one connector the last.
+    pub(super) fn new(config: &Config, attached: Vec<Attached>) -> Self {
         let mut adapter = Adapter {
             bus: Bus::new(config),
-            faults: config.encoder.faults().clone(),
-            rng: Rng::with_seed(config.encoder.seed()),
+            faults: config.faults.clone(),
+            rng: Rng::with_seed(config.seed),
             switched_supply: config.switched_supply,
             is_supplied: true,
             version: config.version,
             receiver: Receiver::default(),
             biss: None,
             ssi: None,
-            analog: Settings { seed: config.encoder.seed(), ..Settings::default() }.with(Quantity::Speed, config.rpm),
+            analog: Settings { seed: config.seed, ..Settings::default() },
             clocked: None,
             sampled: None,
-            uart: config.uart.then(Uart::new),
+            uart: None,
             requests: 0,
             pushed: 0,
             now: Moment::START,
@@ -88,33 +89,51 @@ impl Adapter {
             to_host: Queue::default(),
             inbox: Vec::new(),
         };
+        for device in attached {
+            match device {
+                Attached::Biss(device) => adapter.bus.biss = Some(device),
+                Attached::Ssi(device) => adapter.bus.ssi = Some(device),
+                Attached::Serial(device) => adapter.uart = Some(Uart::new(device)),
+            }
+        }
         adapter.switch_off();
+        let rpm = adapter.motor().map_or(0.0, |motor| motor.rpm());
+        adapter.analog = adapter.analog.with(Quantity::Speed, rpm);
         if let Some(uart) = &mut adapter.uart {
-            uart.set_rpm(Moment::START, config.rpm);
+            uart.set_rpm(Moment::START, rpm);
         }
         adapter
     }
 
-    /// The encoder at the clocked bus.
-    pub const fn encoder(&self) -> &Encoder {
-        &self.bus.encoder
+    /// The device on BiSS, where it is such a one: to look into it, to warm it or to give it errors.
+    pub fn device<T: BissDevice>(&self) -> Option<&T> {
+        let device: &dyn Any = &**self.bus.biss.as_ref()?;
+        device.downcast_ref()
     }
 
-    /// The encoder, to warm it or to give it errors. Its motor turns the shaft that all encoders share.
-    pub const fn encoder_mut(&mut self) -> &mut Encoder {
-        &mut self.bus.encoder
+    /// The same, to change it.
+    pub fn device_mut<T: BissDevice>(&mut self) -> Option<&mut T> {
+        let device: &mut dyn Any = &mut **self.bus.biss.as_mut()?;
+        device.downcast_mut()
+    }
+
+    /// What turns the shaft that all encoders share; `None` where nothing hangs on BiSS.
+    pub fn motor(&self) -> Option<Motor> {
+        self.bus.biss.as_ref().map(|device| device.motor())
     }
 
     /// Turns that shaft at another speed from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.advance(now);
-        self.bus.encoder.set_rpm(self.now, rpm);
+        if let Some(device) = &mut self.bus.biss {
+            device.set_rpm(self.now, rpm);
+        }
         self.follow_motor();
     }
 
     /// The sine/cosine encoder is on the same shaft.
     fn follow_motor(&mut self) {
-        let rpm = self.bus.encoder.motor().rpm();
+        let Some(rpm) = self.motor().map(|motor| motor.rpm()) else { return };
         if rpm == self.analog.speed_rpm {
             return;
         }
@@ -130,7 +149,9 @@ impl Adapter {
     /// Other faults from now on; requests and stores are counted on.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.faults = faults.clone();
-        self.bus.encoder.set_faults(faults);
+        if let Some(device) = &mut self.bus.biss {
+            device.set_faults(faults);
+        }
     }
 
     fn advance(&mut self, to: Moment) {
@@ -141,8 +162,8 @@ impl Adapter {
             let biss_bits = self.biss.map_or(0, |setting| setting.bits);
             let ssi_bits = self.ssi.map_or(0, |setting| setting.clocks);
             packets.extend(stream.run(self.now, |at| match kind {
-                Kind::Biss => bus.biss(at, biss_bits),
-                Kind::Ssi => (BissStatus::OK, bus.ssi(at, ssi_bits)),
+                Kind::Biss => bus.frame(at, biss_bits),
+                Kind::Ssi => (BissStatus::OK, bus.word(at, ssi_bits)),
             }));
         }
         if let Some(stream) = &mut self.sampled {
@@ -224,7 +245,7 @@ impl Adapter {
             }
             Request::SsiRead => {
                 let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
-                Ok(Reply::SsiRead { t_us, raw: self.bus.ssi(self.now, setting.clocks) })
+                Ok(Reply::SsiRead { t_us, raw: self.bus.word(self.now, setting.clocks) })
             }
             Request::SsiStream { period_us } => {
                 let setting = self.ssi.ok_or(NOT_CONFIGURED)?;
@@ -239,7 +260,7 @@ impl Adapter {
             }
             Request::BissRead => {
                 let setting = self.biss.ok_or(NOT_CONFIGURED)?;
-                let (status, raw) = self.bus.biss(self.now, setting.bits);
+                let (status, raw) = self.bus.frame(self.now, setting.bits);
                 Ok(Reply::BissRead { t_us, status, raw })
             }
             Request::BissRegisterRead { slave, address } => {
@@ -311,7 +332,9 @@ impl Adapter {
     fn switch_off(&mut self) {
         if self.switched_supply {
             self.is_supplied = false;
-            self.bus.encoder.disconnect();
+            if let Some(device) = &mut self.bus.biss {
+                device.disconnect();
+            }
         }
     }
 
@@ -327,7 +350,9 @@ impl Adapter {
             return Err(OUT_OF_RANGE);
         }
         self.is_supplied = true;
-        self.bus.encoder.connect(self.now);
+        if let Some(device) = &mut self.bus.biss {
+            device.connect(self.now);
+        }
         let milliampere = u16::try_from(Self::SUPPLY_MILLIWATT * 1000 / u32::from(millivolt)).unwrap_or(u16::MAX);
         Ok(Reply::Supply { on, millivolt, milliampere })
     }
@@ -335,21 +360,23 @@ impl Adapter {
     /// Reads a register, or writes it and reads it back.
     fn register(&mut self, slave: u8, address: u8, value: Option<u8>) -> Result<u8, Refusal> {
         self.biss.ok_or(NOT_CONFIGURED)?;
-        let place = self.bus.encoder.address(address).filter(|_| slave < 8).ok_or(OUT_OF_RANGE)?;
-        if slave != 0 || !self.bus.answers(self.now) {
-            return Err(SILENT);
+        let has_address = self.bus.biss.as_ref().is_none_or(|device| device.has_address(address));
+        if !has_address || slave >= 8 {
+            return Err(OUT_OF_RANGE);
         }
+        let now = self.now;
+        let device = self.bus.answering(now).filter(|_| slave == 0).ok_or(SILENT)?;
         if let Some(value) = value {
-            let accepted = self.bus.encoder.write(self.now, place, value);
-            if !self.bus.encoder.has_power() {
+            let accepted = device.write_register(now, address, value);
+            if !device.has_power() {
                 return Err(SILENT);
             }
-            if accepted && !self.bus.answers(self.now) {
+            if accepted && !device.answers(now) {
                 // It has given the value back before it restarted or began to calibrate.
                 return Ok(value);
             }
         }
-        self.bus.encoder.read(self.now, place).ok_or((ErrorCode::NO_ANSWER, "the encoder refuses the register"))
+        device.read_register(now, address).ok_or((ErrorCode::NO_ANSWER, "the encoder refuses the register"))
     }
 
     /// Starts or ends a stream and gives its period.
@@ -409,8 +436,10 @@ impl ByteDevice for Adapter {
     fn connect(&mut self, now: Moment) {
         self.advance(now);
         self.inbox.clear();
-        if !self.switched_supply {
-            self.bus.encoder.connect(self.now);
+        if !self.switched_supply
+            && let Some(device) = &mut self.bus.biss
+        {
+            device.connect(self.now);
         }
     }
 }

@@ -3,83 +3,56 @@
 
 use fastrand::Rng;
 
-use super::config::{Config, Line, SsiEncoder};
-use super::trouble::Trouble;
+use super::attached::{BissDevice, SsiDevice};
+use super::config::{Config, Line};
 use crate::protocol::bridge::BissStatus;
-use crate::protocol::ssi::Flags;
-use crate::sim::biss::Encoder;
 use crate::units::Moment;
 
-/// The wires with their encoder.
+/// The wires with their encoders.
 #[derive(Clone)]
 pub(super) struct Bus {
-    pub(super) encoder: Encoder,
+    pub(super) biss: Option<Box<dyn BissDevice>>,
+    pub(super) ssi: Option<Box<dyn SsiDevice>>,
     line: Line,
     noise: f64,
-    ssi: Option<SsiEncoder>,
-    troubles: Vec<Trouble>,
-    /// The last SSI word.
-    transferred: Option<Moment>,
     rng: Rng,
 }
 
 impl Bus {
+    /// Nothing hangs on it yet.
     pub(super) fn new(config: &Config) -> Self {
-        Bus {
-            encoder: Encoder::new(&config.encoder),
-            line: config.line,
-            noise: config.noise,
-            ssi: config.ssi.clone(),
-            troubles: config.troubles.clone(),
-            transferred: None,
-            rng: Rng::with_seed(config.encoder.seed()),
-        }
+        Bus { biss: None, ssi: None, line: config.line, noise: config.noise, rng: Rng::with_seed(config.seed) }
     }
 
-    /// The encoder's registers can be asked at `now`.
-    pub(super) fn answers(&mut self, now: Moment) -> bool {
-        self.line == Line::Good && self.encoder.answers(now)
+    /// The device whose registers can be asked at `now`.
+    pub(super) fn answering(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
+        let is_good = self.line == Line::Good;
+        self.biss.as_mut().filter(|_| is_good)?.answers(now).then_some(())?;
+        self.biss.as_mut()
     }
 
     /// `bits` bits behind the control bit of a BiSS frame taken at a moment.
-    pub(super) fn biss(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
-        match (self.line, self.encoder.reading(at)) {
+    pub(super) fn frame(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
+        match (self.line, self.biss.as_mut().and_then(|device| device.frame(at))) {
             (Line::Low, _) => (BissStatus::STUCK_LOW, 0),
             (Line::High, _) => (BissStatus::STUCK_HIGH, ones(bits)),
             (Line::Open, _) | (Line::Good, None) => (BissStatus::NO_ACKNOWLEDGE, 0),
-            (Line::Good, Some(reading)) => {
-                let layout = self.encoder.layout();
-                let frame = clocked(layout.emit(&reading), layout.bits(), bits);
-                (BissStatus::OK, self.damaged(frame, bits))
-            }
+            (Line::Good, Some((frame, own))) => (BissStatus::OK, self.damaged(clocked(frame, own, bits), bits)),
         }
     }
 
     /// The first `bits` bits of an SSI word taken at a moment.
-    pub(super) fn ssi(&mut self, at: Moment, bits: u8) -> u64 {
+    pub(super) fn word(&mut self, at: Moment, bits: u8) -> u64 {
         // Without power neither encoder sends.
-        let place = self.encoder.reading(at).map(|_| self.encoder.shaft_place(at));
-        match (self.line, place, &self.ssi) {
+        let place = self.biss.as_mut().and_then(|device| device.place(at));
+        match (self.line, place, &mut self.ssi) {
             (Line::Low, _, _) => 0,
             (Line::Good, Some(place), Some(ssi)) => {
-                let frame = clocked(self.ssi_frame(ssi, place, at), ssi.layout.clocks(), bits);
-                self.transferred = Some(at);
-                self.damaged(frame, bits)
+                let (word, own) = ssi.word(at, place);
+                self.damaged(clocked(word, own, bits), bits)
             }
             _ => ones(bits),
         }
-    }
-
-    /// The frame of an SSI encoder on the same shaft.
-    fn ssi_frame(&self, ssi: &SsiEncoder, (raw, per_turn): (u64, u64), at: Moment) -> u64 {
-        let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
-        if let Some(word) = happening().find_map(Trouble::word) {
-            return word;
-        }
-        let flags = happening().fold(Flags::NONE, |flags, trouble| flags.with(trouble.flag()));
-        let range = ssi.layout.descriptor().range;
-        let position = range.of_shaft_set(raw, per_turn, ssi.direction, ssi.preset);
-        ssi.layout.encode(position, flags).unwrap_or(0)
     }
 
     /// One bit is inverted in some frames.

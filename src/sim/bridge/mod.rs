@@ -1,26 +1,29 @@
-//! A virtual adapter that speaks the bridge protocol, with the virtual kit encoder, an SSI encoder on the same shaft and
-//! a sine/cosine encoder behind it (the project's own reference, `protocol/bridge.md`). Where it is asked for, there is a
-//! HIPERFACE encoder at its serial line; else that is refused as not supported.
+//! A virtual adapter that speaks the bridge protocol (the project's own reference, `protocol/bridge.md`), with a
+//! sine/cosine encoder behind it on the shaft of what hangs on its buses and its serial line. Without anything at the
+//! serial line that is refused as not supported.
 //!
 //! | file | what it is |
 //! |---|---|
-//! | `config` | the settings of a `sim:` link |
+//! | `attached` | what can hang on it, as it sees that |
+//! | `config` | the settings of a `sim:` link that are its own |
+//! | `settings` | all settings of such a link, and the adapter as they say |
 //! | `bus` | what one frame of BiSS or SSI carries |
-//! | `trouble` | error bits that speak, and words that stand for a fault |
 //! | `clocking` | clocks and how long a frame takes |
 //! | `stream` | samples at equal distances, in packets |
 //! | `uart` | the serial line |
 //! | `adapter` | requests and replies, byte for byte |
 
 mod adapter;
+mod attached;
 mod bus;
 mod clocking;
 mod config;
+mod settings;
 mod stream;
 #[cfg(test)]
-mod tests;
-mod trouble;
+pub(in crate::sim) mod tests;
 mod uart;
 
 pub use adapter::Adapter;
-pub use config::{Config, DELIVERED, SsiEncoder};
+pub use attached::{Attachable, Attached, BissDevice, SerialDevice, SsiDevice};
+pub use settings::keys;

@@ -1,16 +1,16 @@
-//! The adapter's serial line, with a virtual HIPERFACE encoder at its end. Chosen here: the time-out counts from the end
+//! The adapter's serial line with what is at its end. Chosen here: the time-out counts from the end
 //! of what is sent.
 
 use std::time::Duration;
 
+use super::attached::SerialDevice;
 use crate::protocol::bridge::MAX_BODY;
-use crate::sim::{ByteDevice, hiperface};
 use crate::units::{Baud, CharacterFormat, Moment, Parity};
 
 /// The line, as it is set.
 #[derive(Clone)]
 pub(super) struct Uart {
-    line: hiperface::Bus,
+    line: Box<dyn SerialDevice>,
     format: Option<CharacterFormat>,
 }
 
@@ -27,14 +27,12 @@ impl Uart {
     /// Bytes that fit into a reply beside its time.
     const MAX_RX: usize = MAX_BODY - 8;
 
-    pub(super) fn new() -> Self {
-        Uart { line: hiperface::Bus::new(&hiperface::Config::default()), format: None }
+    pub(super) fn new(line: Box<dyn SerialDevice>) -> Self {
+        Uart { line, format: None }
     }
 
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
-        if let Some(encoder) = self.line.encoder_mut(0) {
-            encoder.set_rpm(now, rpm);
-        }
+        self.line.turn(now, rpm);
     }
 
     /// Sets speed and parity; `false` where there are none such.

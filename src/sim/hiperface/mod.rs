@@ -10,7 +10,9 @@
 //! | `electronics` | the twenty commands: what they do, without time |
 //! | `encoder` | hearing, processing, talking, power-up: when it happens |
 //! | `bus` | the line: characters in both directions, echo, noise, collisions |
+//! | `at_adapter` | the serial line of a virtual adapter |
 
+mod at_adapter;
 mod bus;
 mod config;
 mod electronics;
@@ -21,6 +23,7 @@ mod shaft;
 #[cfg(test)]
 mod tests;
 
+pub use at_adapter::AtAdapter;
 pub use bus::Bus;
 pub use config::Config;
 pub use electronics::Wear;

@@ -6,10 +6,9 @@ use super::Biss;
 use crate::device::biss::{Echo, Station, Way};
 use crate::device::bridge::SupplyAfter;
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
-use crate::sim::ConfigError;
-use crate::sim::Motor;
 use crate::sim::biss::{Config, Port};
 use crate::sim::bridge::{self, Adapter};
+use crate::sim::{AT_ADAPTER, ConfigError, Motor};
 use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
@@ -40,7 +39,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     let wire = open_bytes(url, station.format, &clock, || {
         let (mut link, turning) = simulated.connect(&clock);
         link.set_format(station.format)?;
-        motor = Some(turning);
+        motor = turning;
         Ok(link)
     })?;
     Ok(Session::over(wire, clock, station, store, motor))
@@ -83,10 +82,9 @@ fn way(url: &LinkUrl) -> Result<Way, OpenError> {
 /// Refuses what neither the line nor the virtual device has, and tells what needs an adapter in between.
 fn check_virtual(query: &Query, way: Way) -> Result<(), UrlError> {
     let own = |way: Way| {
-        let adapter = if way == Way::Adapter { &bridge::Config::KEYS[..] } else { &[] };
-        let line = way.parameters().iter().filter(|name| !Config::KEYS.contains(name));
-        let own = [BRIDGE].iter().chain(line).chain(adapter).chain(&Config::KEYS);
-        own.copied().collect::<Vec<_>>()
+        let line = way.parameters().iter().copied().filter(|name| !Config::KEYS.contains(name));
+        let device = if way == Way::Adapter { bridge::keys(&AT_ADAPTER) } else { Config::KEYS.to_vec() };
+        [BRIDGE].into_iter().chain(line).chain(device).collect::<Vec<_>>()
     };
     let known = own(way);
     let Some((name, _)) = query.without(&known).into_iter().next() else { return Ok(()) };
@@ -101,28 +99,27 @@ fn check_virtual(query: &Query, way: Way) -> Result<(), UrlError> {
 /// The virtual encoder as its parameters say, at the end of either way.
 enum Simulated {
     Pin(Box<Config>),
-    Bus(Box<bridge::Config>),
+    Bus(Box<Adapter>),
 }
 
 impl Simulated {
     fn new(way: Way, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         Ok(match way {
             Way::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
-            Way::Adapter => Simulated::Bus(Box::new(bridge::Config::from_pairs(pairs)?)),
+            Way::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, &AT_ADAPTER)?)),
         })
     }
 
-    fn connect(&self, clock: &Arc<dyn Clock>) -> (Box<dyn ByteLink>, Motor) {
+    fn connect(self, clock: &Arc<dyn Clock>) -> (Box<dyn ByteLink>, Option<Motor>) {
         match self {
             Simulated::Pin(config) => {
-                let port = Port::new(config);
+                let port = Port::new(&config);
                 let motor = port.encoder().motor();
-                (inside(port, clock), motor)
+                (inside(port, clock), Some(motor))
             }
-            Simulated::Bus(config) => {
-                let adapter = Adapter::new(config);
-                let motor = adapter.encoder().motor();
-                (inside(adapter, clock), motor)
+            Simulated::Bus(adapter) => {
+                let motor = adapter.motor();
+                (inside(*adapter, clock), motor)
             }
         }
     }

@@ -6,7 +6,8 @@ use super::Ssi;
 use crate::device::ssi::{PARAMETERS, Station};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::protocol::ubicom::FORMAT;
-use crate::sim::bridge::{Adapter, Config};
+use crate::sim::AT_ADAPTER;
+use crate::sim::bridge::Adapter;
 use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
@@ -25,31 +26,31 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
-    let (station, config) = read(url)?;
+    let (station, adapter) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
     // What a serial port of an adapter is set to matters only behind a converter; it is that of all adapters.
     let wire = open_bytes(url, FORMAT, &clock, || {
-        let adapter = Adapter::new(&config);
-        motor = Some(adapter.encoder().motor());
+        motor = adapter.motor();
         Ok(inside(adapter, &clock))
     })?;
     Ok(Session::to_adapter(wire, clock, station, store, motor))
 }
 
 /// The line, and the virtual adapter, which counts for a link to it alone.
-fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    let config = match url.scheme {
-        Scheme::Sim => Config::from_pairs(&url.query.without(&PARAMETERS))?,
+fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
+    let query = match url.scheme {
+        Scheme::Sim => url.query.without(&PARAMETERS),
         Scheme::Bridge | Scheme::Replay => {
             check_parameters(&url.query, url.scheme, &PARAMETERS)?;
-            Config::default()
+            Vec::new()
         }
         Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => {
             return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));
         }
     };
-    Ok((Station::from_query(&url.query, margin(url.scheme))?, config))
+    let adapter = Adapter::from_pairs(&query, &AT_ADAPTER)?;
+    Ok((Station::from_query(&url.query, margin(url.scheme))?, adapter))
 }
 
 #[cfg(test)]

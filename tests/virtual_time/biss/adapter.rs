@@ -6,6 +6,7 @@ use encoder_studio::device::biss::{Error, Supply};
 use encoder_studio::device::bridge::AdapterError;
 use encoder_studio::protocol::biss::{Crc, Layout};
 use encoder_studio::protocol::bridge::Operation;
+use encoder_studio::sim::biss::Encoder;
 use encoder_studio::units::Moment;
 
 use super::support::{Bus, at};
@@ -80,7 +81,7 @@ fn a_restart_is_noticed_by_its_silence() {
     let (now, device) = (Moment::after_start(bus.now()), bus.device.clone());
     let mut master = bus.master();
     assert_eq!(master.read(at("0x03:0x0A")), Ok(16));
-    device.lock().unwrap().encoder_mut().power_cycle(now);
+    device.lock().unwrap().device_mut::<Encoder>().unwrap().power_cycle(now);
     let error = master.read(at("0x03:0x0A")).unwrap_err();
     assert!(matches!(error, Error::NoAcknowledge { .. }), "{error}");
     assert_eq!(master.with_patience(Duration::from_secs(2), |master| master.read(at("0x03:0x0A"))), Ok(16));

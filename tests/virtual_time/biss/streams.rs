@@ -8,8 +8,9 @@ use encoder_studio::device::bridge::AdapterError;
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::profile::biss::RegisterRange;
 use encoder_studio::protocol::bridge::{Operation, Receiver};
+use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::bridge::{Adapter, Config};
+use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
 use encoder_studio::worker::biss::{Biss, BissJob, JobError};
@@ -42,7 +43,7 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(VirtualClock::default());
     let tap = Arc::<Mutex<Tap>>::default();
-    let adapter = Arc::new(Mutex::new(Adapter::new(&Config::from_pairs(&pairs(query)).unwrap())));
+    let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap()));
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
     let mut station = Station::new(Way::Adapter, MARGIN);
     (station.clock_hz, station.supply) = (clock_hz, supply);
@@ -198,7 +199,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
         let mut stand = stand_with(query, Some(supply));
         stand.session.pace(Some(FAST));
         stand.runs(Duration::from_millis(100));
-        *stand.adapter.lock().unwrap() = Adapter::new(&Config::from_pairs(&pairs(query)).unwrap());
+        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap();
         if by_job {
             stand.session.run_inline(BissJob::Status).unwrap();
         } else {

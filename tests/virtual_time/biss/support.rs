@@ -10,10 +10,11 @@ use encoder_studio::device::bridge::{SupplyAfter, Tap as Stream, Wanted};
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
 use encoder_studio::protocol::biss::{Descriptions, RegisterAddress};
 use encoder_studio::protocol::bridge::{Operation, Receiver};
+use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::sim::Motor;
 use encoder_studio::sim::biss::{Config, Encoder, Port};
-use encoder_studio::sim::bridge::{self, Adapter};
+use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::store::Store;
 use encoder_studio::units::{Moment, SupplyVoltage};
 use encoder_studio::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError};
@@ -57,7 +58,7 @@ impl Pin {
 impl Bus {
     /// An encoder as `sim:?bridge=on&…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
-        Self::with(Adapter::new(&bridge::Config::from_pairs(&pairs(query)).unwrap()), Way::Adapter)
+        Self::with(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap(), Way::Adapter)
     }
 
     /// How many requests of an operation were sent.
@@ -124,7 +125,7 @@ impl Handle {
         let now = self.clock.now();
         match &self.end {
             End::Pin(port) => look(port.lock().unwrap().encoder_mut(), now),
-            End::Bus(adapter) => look(adapter.lock().unwrap().encoder_mut(), now),
+            End::Bus(adapter) => look(adapter.lock().unwrap().device_mut().unwrap(), now),
         }
     }
 }
@@ -160,9 +161,7 @@ impl Bench {
     fn made(way: Way, query: &str, store: Store, folder: tempfile::TempDir) -> Self {
         let end = match way {
             Way::ConfigPin => End::Pin(Arc::new(Mutex::new(Port::new(&Config::from_pairs(&pairs(query)).unwrap())))),
-            Way::Adapter => {
-                End::Bus(Arc::new(Mutex::new(Adapter::new(&bridge::Config::from_pairs(&pairs(query)).unwrap()))))
-            }
+            Way::Adapter => End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap()))),
         };
         Self::plugged(end, way, Arc::new(VirtualClock::default()), store, Arc::new(folder))
     }
@@ -185,7 +184,7 @@ impl Bench {
                 (TestLink::new(port.clone(), clock.clone(), tap.clone()), motor)
             }
             End::Bus(adapter) => {
-                let motor = adapter.lock().unwrap().encoder().motor();
+                let motor = adapter.lock().unwrap().motor().unwrap();
                 (TestLink::new(adapter.clone(), clock.clone(), tap.clone()), motor)
             }
         };
@@ -207,7 +206,7 @@ impl Bench {
     /// The same, with more to say of the adapter.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfter) -> Self {
         let query = format!("supply=switched&{query}");
-        let adapter = Adapter::new(&bridge::Config::from_pairs(&pairs(&query)).unwrap());
+        let adapter = Adapter::from_pairs(&pairs(&query), &AT_ADAPTER).unwrap();
         let folder = Arc::new(folder());
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }

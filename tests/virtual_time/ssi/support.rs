@@ -6,8 +6,9 @@ use std::time::Duration;
 use encoder_studio::device::ssi::{Asking, Station, Words};
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::protocol::bridge::{Operation, Packet, Receiver};
+use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::bridge::{Adapter, Config};
+use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 use encoder_studio::worker::ssi::{Ssi, SsiJob, SsiOutput};
@@ -29,7 +30,7 @@ pub(crate) struct Stand {
 impl Stand {
     /// With what a link to the adapter and the virtual adapter itself say.
     pub(crate) fn new(link: &str, query: &str) -> Self {
-        let adapter = Arc::new(Mutex::new(Adapter::new(&Config::from_pairs(&pairs(query)).unwrap())));
+        let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap()));
         Self::before(link, adapter)
     }
 

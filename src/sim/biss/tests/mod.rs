@@ -1,6 +1,7 @@
 //! What a host sees of the virtual kit encoder, in virtual time. Expected values are the manual's and the reference's;
 //! none is computed by the code under test.
 
+mod at_adapter;
 mod modes;
 mod motor;
 mod registers;

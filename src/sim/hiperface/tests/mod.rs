@@ -1,6 +1,7 @@
 //! What a host sees of the virtual encoder, in virtual time. Expected bytes are the manual's and the reference's; none
 //! is computed by the code under test.
 
+mod at_adapter;
 mod commands;
 mod faults;
 mod line;

@@ -6,7 +6,8 @@ use std::time::Duration;
 use super::Open;
 use crate::link::{Clock, LinkUrl, Query, Scheme, UrlError};
 use crate::protocol::ubicom::FORMAT;
-use crate::sim::bridge::{Adapter, Config};
+use crate::sim::AT_ADAPTER;
+use crate::sim::bridge::Adapter;
 use crate::worker::OpenError;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 
@@ -23,24 +24,20 @@ pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, O
     let simulated = match url.scheme {
         Scheme::Bridge => {
             check_parameters(&url.query, url.scheme, &[MARGIN])?;
-            None
+            Vec::new()
         }
         Scheme::Sim => {
             url.query.read(BRIDGE, "on", |text| (text == "on").then_some(()))?;
-            Some(Config::from_pairs(&url.query.without(&[BRIDGE, MARGIN]))?)
+            url.query.without(&[BRIDGE, MARGIN])
         }
         Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip | Scheme::Replay => {
             return Err(leads_elsewhere(url.scheme, "sim: and bridge:"));
         }
     };
+    let adapter = Adapter::from_pairs(&simulated, &AT_ADAPTER)?;
     let late = read_margin(&url.query)?.unwrap_or(margin(url.scheme));
     let url = url.clone();
-    let open = move || {
-        open_bytes(&url, FORMAT, &clock, || {
-            let adapter = Adapter::new(&simulated.unwrap_or_default());
-            Ok(inside(adapter, &clock))
-        })
-    };
+    let open = move || open_bytes(&url, FORMAT, &clock, || Ok(inside(adapter, &clock)));
     Ok((late, Box::new(open)))
 }
 

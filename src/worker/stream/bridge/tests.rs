@@ -11,8 +11,8 @@ use crate::protocol::bridge::{
 };
 use crate::signal::Time;
 use crate::signal::quality::Family;
-use crate::sim::ByteDevice;
-use crate::sim::bridge::{Adapter, Config};
+use crate::sim::bridge::Adapter;
+use crate::sim::{AT_ADAPTER, ByteDevice};
 use crate::units::{CharacterFormat, Moment};
 use crate::worker::stream::{PATIENCE, Stream};
 
@@ -36,7 +36,7 @@ fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> 
 
 fn virtual_adapter(query: &str) -> Adapter {
     let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
-    Adapter::new(&Config::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>()).unwrap())
+    Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), &AT_ADAPTER).unwrap()
 }
 
 /// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.

@@ -1,0 +1,76 @@
+//! The kit encoder on the bus of a virtual adapter.
+
+use super::{Config, Encoder};
+use crate::sim::bridge::{Attachable, Attached, BissDevice};
+use crate::sim::{ConfigError, Faults, Motor};
+use crate::units::Moment;
+
+/// The kit encoder on an adapter's bus, with the settings of its [`Config`].
+#[derive(Clone, Copy, Debug)]
+pub struct AtAdapter;
+
+impl Attachable for AtAdapter {
+    fn keys(&self) -> &'static [&'static str] {
+        &Config::KEYS
+    }
+
+    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
+        Ok(Some(Attached::Biss(Box::new(Encoder::new(&Config::from_pairs(pairs)?)))))
+    }
+}
+
+impl BissDevice for Encoder {
+    fn another(&self) -> Box<dyn BissDevice> {
+        Box::new(self.clone())
+    }
+
+    fn frame(&mut self, at: Moment) -> Option<(u64, u8)> {
+        let reading = self.reading(at)?;
+        Some((self.layout().emit(&reading), self.layout().bits()))
+    }
+
+    fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
+        self.reading(at).map(|_| self.shaft_place(at))
+    }
+
+    fn motor(&self) -> Motor {
+        Encoder::motor(self)
+    }
+
+    fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        Encoder::set_rpm(self, now, rpm);
+    }
+
+    fn set_faults(&mut self, faults: &Faults) {
+        Encoder::set_faults(self, faults);
+    }
+
+    fn disconnect(&mut self) {
+        Encoder::disconnect(self);
+    }
+
+    fn connect(&mut self, now: Moment) {
+        Encoder::connect(self, now);
+    }
+
+    fn has_power(&self) -> bool {
+        Encoder::has_power(self)
+    }
+
+    fn answers(&mut self, now: Moment) -> bool {
+        Encoder::answers(self, now)
+    }
+
+    fn has_address(&self, address: u8) -> bool {
+        self.address(address).is_some()
+    }
+
+    fn read_register(&mut self, now: Moment, address: u8) -> Option<u8> {
+        let place = self.address(address)?;
+        self.read(now, place)
+    }
+
+    fn write_register(&mut self, now: Moment, address: u8, value: u8) -> bool {
+        self.address(address).is_some_and(|place| self.write(now, place, value))
+    }
+}

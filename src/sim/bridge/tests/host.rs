@@ -1,0 +1,213 @@
+//! A host at the virtual adapter, in virtual time, and devices that exist in tests alone.
+
+use std::time::Duration;
+
+use crate::protocol::bridge::*;
+use crate::sim::bridge::{Adapter, Attachable, Attached, BissDevice, SsiDevice};
+use crate::sim::setting::{Setting, pairs};
+use crate::sim::{ByteDevice, ConfigError, Faults, Motor};
+use crate::units::Moment;
+
+/// Who asks the adapter.
+pub(in crate::sim) struct Host {
+    pub(in crate::sim) adapter: Adapter,
+    pub(in crate::sim) receiver: Receiver,
+    pub(in crate::sim) seq: u8,
+    pub(in crate::sim) now: Moment,
+}
+
+pub(in crate::sim) const BISS: Request =
+    Request::BissConfig { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, timeout_us: 18 };
+pub(in crate::sim) const SSI: Request =
+    Request::SsiConfig { clocks: 25, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE };
+
+impl Host {
+    /// With an adapter before the invented devices.
+    pub(in crate::sim) fn with(query: &str) -> Self {
+        Self::to(query, &[&WordGiver, &Dial::SETTINGS])
+    }
+
+    /// With an adapter before these.
+    pub(in crate::sim) fn to(query: &str, devices: &[&dyn Attachable]) -> Self {
+        let adapter = Adapter::from_pairs(&pairs(query), devices).unwrap();
+        Host { adapter, receiver: Receiver::default(), seq: 0, now: Moment::START }
+    }
+
+    pub(in crate::sim) fn send(&mut self, request: &Request) {
+        self.seq += 1;
+        self.adapter.on_bytes(self.now, &request.emit(self.seq).emit());
+    }
+
+    /// What has arrived until a moment.
+    pub(in crate::sim) fn receive(&mut self, until: Moment) -> Vec<(u8, Message)> {
+        while let Some(at) = self.adapter.poll_at().filter(|at| *at <= until) {
+            self.now = self.now.max(at);
+            let bytes = self.adapter.poll(self.now);
+            self.receiver.push(&bytes);
+        }
+        self.now = self.now.max(until);
+        let packets = std::iter::from_fn(|| self.receiver.next_packet());
+        packets.map(|packet| (packet.seq, Message::parse(&packet).unwrap())).collect()
+    }
+
+    /// The reply to a request, of which there is no more than one within 100 ms.
+    pub(in crate::sim) fn ask(&mut self, request: Request) -> Option<Message> {
+        self.send(&request);
+        let mut messages = self.receive(self.now + Duration::from_millis(100));
+        messages.retain(|(_, message)| !matches!(message, Message::Data(_)));
+        assert!(messages.len() <= 1, "{messages:?}");
+        let (seq, message) = messages.pop()?;
+        assert_eq!(seq, self.seq);
+        Some(message)
+    }
+
+    #[track_caller]
+    pub(in crate::sim) fn expect(&mut self, request: Request, reply: Reply) {
+        assert_eq!(self.ask(request), Some(Message::Reply(reply)));
+    }
+
+    #[track_caller]
+    pub(in crate::sim) fn refuses(&mut self, request: Request, expected: ErrorCode) {
+        let own = request.operation().byte();
+        match self.ask(request) {
+            Some(Message::Error { op, code, text }) => {
+                assert_eq!((op, code), (own, expected), "{text}");
+                assert!(!text.is_empty());
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    pub(in crate::sim) fn stream(&mut self, milliseconds: u64) -> Vec<Data> {
+        let messages = self.receive(self.now + Duration::from_millis(milliseconds));
+        let data = |(_, message)| match message {
+            Message::Data(data) => Some(data),
+            _ => None,
+        };
+        messages.into_iter().filter_map(data).collect()
+    }
+}
+
+/// A shaft with 35 bits of position, 17 of them within a revolution, and six bits behind them; and with registers that
+/// keep what is written into them. It stands at 270° of turn 1234h, and needs half a second to start.
+pub(in crate::sim) struct Dial {
+    motor: Motor,
+    revolutions: f64,
+    now: Moment,
+    /// When it has started; `None`: without power.
+    ready: Option<Moment>,
+    registers: [u8; 0x80],
+}
+
+/// How a dial is set.
+pub(in crate::sim) struct DialSettings;
+
+/// An SSI device that gives the place of the shaft: 12 bits of turns and 13 within one.
+struct WordGiver;
+
+impl Dial {
+    pub(in crate::sim) const SETTINGS: DialSettings = DialSettings;
+    const PER_TURN: u64 = 1 << 17;
+    const START: Duration = Duration::from_millis(500);
+
+    fn advance(&mut self, to: Moment) {
+        self.revolutions += self.motor.rpm() / 60.0 * to.since(self.now).as_secs_f64();
+        self.now = self.now.max(to);
+    }
+
+    fn steps(&mut self, at: Moment) -> Option<u64> {
+        self.advance(at);
+        self.ready.filter(|ready| *ready <= at).map(|_| (self.revolutions * Self::PER_TURN as f64) as u64)
+    }
+}
+
+impl Attachable for DialSettings {
+    fn keys(&self) -> &'static [&'static str] {
+        &["rpm", "seed", "fault"]
+    }
+
+    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
+        let mut rpm = 0.0;
+        for (key, value) in pairs.iter().filter(|(key, _)| key == "rpm") {
+            rpm = Setting { key, value }.rpm()?;
+        }
+        let revolutions = f64::from(0x1234) + 0.75;
+        let (motor, registers) = (Motor::at(rpm), [0x61; 0x80]);
+        let dial = Dial { motor, revolutions, now: Moment::START, ready: Some(Moment::START), registers };
+        Ok(Some(Attached::Biss(Box::new(dial))))
+    }
+}
+
+impl BissDevice for Dial {
+    fn another(&self) -> Box<dyn BissDevice> {
+        Box::new(Dial { motor: Motor::at(self.motor.rpm()), ..*self })
+    }
+
+    fn frame(&mut self, at: Moment) -> Option<(u64, u8)> {
+        self.steps(at).map(|steps| (steps << 6, 41))
+    }
+
+    fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
+        self.steps(at).map(|steps| (steps, Self::PER_TURN))
+    }
+
+    fn motor(&self) -> Motor {
+        self.motor.clone()
+    }
+
+    fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        self.advance(now);
+        self.motor.set_rpm(rpm);
+    }
+
+    fn set_faults(&mut self, _: &Faults) {}
+
+    fn disconnect(&mut self) {
+        self.ready = None;
+    }
+
+    fn connect(&mut self, now: Moment) {
+        self.ready = self.ready.or(Some(now + Self::START));
+    }
+
+    fn has_power(&self) -> bool {
+        self.ready.is_some()
+    }
+
+    fn answers(&mut self, now: Moment) -> bool {
+        self.steps(now).is_some()
+    }
+
+    fn has_address(&self, address: u8) -> bool {
+        usize::from(address) < self.registers.len()
+    }
+
+    fn read_register(&mut self, _: Moment, address: u8) -> Option<u8> {
+        self.registers.get(usize::from(address)).copied()
+    }
+
+    fn write_register(&mut self, _: Moment, address: u8, value: u8) -> bool {
+        self.registers[usize::from(address)] = value;
+        true
+    }
+}
+
+impl Attachable for WordGiver {
+    fn keys(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn attached(&self, _: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
+        Ok(Some(Attached::Ssi(Box::new(WordGiver))))
+    }
+}
+
+impl SsiDevice for WordGiver {
+    fn another(&self) -> Box<dyn SsiDevice> {
+        Box::new(WordGiver)
+    }
+
+    fn word(&mut self, _: Moment, (steps, per_turn): (u64, u64)) -> (u64, u8) {
+        (steps / (per_turn >> 13) % (1 << 25), 25)
+    }
+}

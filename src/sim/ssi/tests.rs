@@ -1,0 +1,71 @@
+//! What a host sees of the virtual SSI encoder behind an adapter, and its settings.
+
+use proptest::prelude::*;
+
+use super::AtAdapter;
+use crate::protocol::bridge::*;
+use crate::sim::ConfigError;
+use crate::sim::bridge::Attachable;
+use crate::sim::bridge::tests::{Dial, Host, SSI};
+use crate::sim::setting::pairs;
+
+/// On the shaft of a test.
+fn on_a_dial(query: &str) -> Host {
+    Host::to(query, &[&AtAdapter::DELIVERED, &Dial::SETTINGS])
+}
+
+fn read(query: &str) -> Result<(), ConfigError> {
+    AtAdapter::DELIVERED.attached(&pairs(query)).map(|_| ())
+}
+
+/// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of the turn's.
+#[test]
+fn ssi_words_in_gray_and_binary_and_with_another_zero() {
+    let natural = 0x234 << 13 | 0x1800;
+    for (query, word) in [
+        ("ssi=atm60", natural),
+        ("ssi=atm60,code=gray", natural ^ natural >> 1),
+        ("ssi=atm60,preset=8192", 0x235 << 13 | 0x1800),
+        ("ssi=atm60,direction=ccw", (1 << 25) - natural),
+        ("ssi=atm60,direction=ccw,preset=1", (1 << 25) - natural + 1),
+    ] {
+        let mut host = on_a_dial(query);
+        host.refuses(Request::SsiRead, ErrorCode::BAD_ARGUMENT);
+        host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
+        let Some(Message::Reply(Reply::SsiRead { raw, .. })) = host.ask(Request::SsiRead) else { panic!() };
+        assert_eq!(raw, word, "{query}");
+        host.ask(Request::SsiConfig { clocks: 26, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE });
+        host.ask(Request::SsiStream { period_us: 100 });
+        let packets = host.stream(100);
+        let mut words = packets.iter().flat_map(|data| match data {
+            Data::Ssi(data) => data.values.clone(),
+            other => panic!("{other:?}"),
+        });
+        assert!(words.clone().count() > 900 && words.all(|raw| raw == word << 1), "{query}");
+    }
+    let mut host = on_a_dial("");
+    for clocks in [0, 65] {
+        let wrong = Request::SsiConfig { clocks, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE };
+        host.refuses(wrong, ErrorCode::BAD_ARGUMENT);
+    }
+}
+
+#[test]
+fn what_is_wrong_is_told_in_a_sentence() {
+    let sentence = "`ssi-error=ERRDIG` cannot be used: allowed is ERROR, each with :SECONDS where it happens again and \
+                    again, separated by commas";
+    assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
+    // The order of the two is no matter.
+    assert_eq!(read("ssi-error=ERRDIG&ssi=ahm36").unwrap_err().to_string(), sentence);
+    assert_eq!(read("ssi-error=error:2&ssi=ahm36,st=12"), Ok(()));
+    let none = read("ssi-error=ERROR").unwrap_err().to_string();
+    assert!(none.contains("nothing, as this encoder's frame has no error bits"), "{none}");
+    assert!(matches!(read("ssi=x"), Err(ConfigError::Value { .. })));
+}
+
+proptest! {
+    #[test]
+    fn no_value_panics(key in 0..2_usize, value in ".*") {
+        let _ = AtAdapter::DELIVERED.attached(&[(AtAdapter::DELIVERED.keys()[key].to_owned(), value)]);
+    }
+}
