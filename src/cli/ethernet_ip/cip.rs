@@ -2,7 +2,6 @@
 
 use super::Device;
 use crate::bits::hex;
-use crate::cli::hiperdrive::parameter_words;
 use crate::cli::output::count;
 use crate::protocol::ethernet_ip::{
     AddressSource, ConfigurationControl, ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused,
@@ -21,11 +20,11 @@ pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec
     known.then(|| ("reply", reply_lines(&reply)))
 }
 
-/// Anything may look like a request, process data too. One goes to an object, and drives have no services of their own.
+/// Anything may look like a request, process data too. One goes to an object, and a device that is known has no services of its own.
 fn is_request(request: &Request, device: Device) -> bool {
     let class_first = matches!(request.path.0.first(), Some(Segment::Logical { kind: LogicalKind::Class, .. }));
     let whole = !request.path.0.iter().any(|segment| matches!(segment, Segment::Unknown(_)));
-    let known = device == Device::Any || request.service.name(request.class()).is_some();
+    let known = matches!(device, Device::Any) || request.service.name(request.class()).is_some();
     class_first && request.path.number(LogicalKind::Instance).is_some() && whole && known
 }
 
@@ -49,12 +48,12 @@ fn request_lines(request: &Request, device: Device) -> Vec<String> {
 fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
     let data = &request.data;
     let place = request.class().zip(request.path.number(LogicalKind::Attribute));
-    let said = match place {
-        Some((ConfigurationControl::CLASS, ConfigurationControl::ATTRIBUTE)) => {
+    let said = match (place, device) {
+        (Some((ConfigurationControl::CLASS, ConfigurationControl::ATTRIBUTE)), _) => {
             let source = ConfigurationControl::parse(data).map(|control| source_words(control.source()));
             Some(("where the address comes from".to_owned(), source.map_err(|why| why.to_string())))
         }
-        Some((class, attribute)) if device == Device::Hiperdrive => parameter_words(class, attribute, data),
+        (Some((class, attribute)), Device::Known(words)) => words(class, attribute, data),
         _ => None,
     };
     match said {

@@ -22,11 +22,15 @@ pub(super) struct Said {
     pub(super) data: Option<(Vec<u8>, bool)>,
 }
 
-/// Whose attributes are told by more than their numbers.
-#[derive(Clone, Copy, PartialEq, Eq)]
+/// What the data of an attribute of a class say: its name, and its value or why there is none.
+pub(super) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
+
+/// Whose packets they are.
+#[derive(Clone, Copy)]
 pub(super) enum Device {
     Any,
-    Hiperdrive,
+    /// One that has no services of its own, and whose attributes are told by more than their numbers.
+    Known(AttributeWords),
 }
 
 const NEITHER: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
@@ -89,7 +93,7 @@ fn cyclic(bytes: &[u8]) -> Option<Said> {
 fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, String>> {
     let [low, high, ..] = bytes else { return None };
     let command = Command::new(u16::from_le_bytes([*low, *high]));
-    let is_idle = command == Command::NOP && device == Device::Hiperdrive;
+    let is_idle = command == Command::NOP && matches!(device, Device::Known(_));
     if bytes.len() < Frame::HEADER || command.name().is_none() || is_idle {
         return None;
     }

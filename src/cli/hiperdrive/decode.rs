@@ -3,7 +3,7 @@
 use serde_json::{Map, json};
 
 use super::image;
-use super::meaning::{self, Known, Reading};
+use super::meaning::{self, Known, Reading, parameter_words};
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::Decode;
 use crate::cli::decode::{Explained, frames, show};
@@ -71,7 +71,8 @@ fn lines(readings: &[Reading]) -> Said {
 /// A packet, or process data by their length. What is said to have gone one way, and may be process data, is that.
 fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<Said, String> {
     let fits = Layout::of_length(bytes.len()).next().is_some();
-    let packet = ethernet_ip::explain(bytes, Device::Hiperdrive).filter(|_| !fits || known.direction.is_none());
+    let packet =
+        ethernet_ip::explain(bytes, Device::Known(parameter_words)).filter(|_| !fits || known.direction.is_none());
     if let Some(said) = packet {
         let mut said = said?;
         if let Some((data, to_target)) = said.data.take() {

@@ -120,11 +120,7 @@ pub(super) fn status_words(status: StatusWord) -> String {
 }
 
 /// The parameter of an attribute with the value that is written; why there is none where the data are not of its kind.
-pub(in crate::cli) fn parameter_words(
-    class: u16,
-    attribute: u16,
-    data: &[u8],
-) -> Option<(String, Result<String, String>)> {
+pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Result<String, String>)> {
     let number = ParameterNumber::of_attribute(class, attribute)?;
     let row = number.row();
     let value = match row.map(|row| (row, row.kind.parse(data))) {

@@ -23,7 +23,6 @@ use crate::profile::hiperdrive::{Item, ItemError};
 use crate::protocol::hiperdrive::{KIND, PARAMETERS};
 
 pub(super) use args::{Move, Order};
-pub(super) use meaning::parameter_words;
 pub(super) use r#move::drive_to;
 
 /// What can be done with drives.
