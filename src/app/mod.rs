@@ -4,6 +4,7 @@
 mod action;
 pub mod biss;
 mod brakes;
+pub mod bridge;
 pub mod check;
 mod closing;
 pub mod connect;

@@ -1,7 +1,8 @@
 //! What the frames of the trace say: a reply is read with the request before it, a register over the bus with the bank that
 //! was selected.
 
-use crate::app::explain::{self, plain, traced as adapter};
+use crate::app::bridge::traced as adapter;
+use crate::app::explain::{self, plain};
 use crate::app::{Explained, Text, TraceFault};
 use crate::bits::ByteOrder;
 use crate::device::biss::Damage;

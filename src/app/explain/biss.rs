@@ -12,8 +12,9 @@ pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, re
 pub use plan::{other_type, plan};
 pub use write::{change, failure, op, preset, wear, weight, written};
 
-use super::{adapter, link, not_begun, store};
+use super::{link, not_begun, store};
 use crate::app::Text;
+use crate::app::bridge::adapter;
 use crate::device::biss::{Asked, Error};
 use crate::link::LinkError;
 use crate::profile::biss::BissProfile;

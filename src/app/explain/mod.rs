@@ -1,7 +1,6 @@
 //! Errors in words for a person: what happened, and what to do. The one place where it is done; what concerns one kind of
 //! device stands in a module of its own.
 
-mod adapter;
 pub mod biss;
 mod detail;
 pub mod hiperdrive;
@@ -9,11 +8,9 @@ pub mod hiperface;
 pub mod interbus;
 pub mod signal;
 pub mod ssi;
-pub mod traced;
 
 use std::path::Path;
 
-pub use adapter::adapter;
 use detail::syntax;
 pub use detail::{document, logbook_problem, phrase, recording, setting, type_table, url};
 

@@ -5,7 +5,6 @@ use std::path::Path;
 use super::file;
 use crate::app::Text;
 use crate::app::number::decimals;
-use crate::app::signals::NoOffset;
 use crate::signal::analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::signal::capture::CaptureError;
 use crate::signal::diagnosis::{Finding, Stuck, Untold, What};
@@ -105,14 +104,6 @@ pub fn revolution(error: &RevolutionError) -> Text {
         RevolutionError::Nonlinearity(NonlinearityError::TooLittle) => Text::new("revolution.too_little"),
         RevolutionError::Nonlinearity(NonlinearityError::NotFinite) => Text::new("revolution.no_number"),
     }
-}
-
-/// Why a capture does not tell by how much its absolute position is ahead.
-pub fn no_offset(why: NoOffset) -> Text {
-    Text::new(match why {
-        NoOffset::NoSignal => "synchronise.no_signal",
-        NoOffset::Scattered => "synchronise.scattered",
-    })
 }
 
 /// What was found to look at in a signal.

@@ -4,8 +4,9 @@ mod check;
 mod family;
 mod refused;
 
-use super::{adapter, link};
+use super::link;
 use crate::app::Text;
+use crate::app::bridge::adapter;
 use crate::protocol::ssi::{
     Advice, Code, Coded, Doubt, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning,
 };

@@ -3,6 +3,7 @@
 //! 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
+use crate::app::Text;
 use crate::signal::analysis::Analysis;
 use crate::signal::arctan::{Phase, exact};
 use crate::signal::capture::Capture;
@@ -53,6 +54,16 @@ pub enum NoOffset {
     NoSignal,
     /// The differences are everywhere in the period.
     Scattered,
+}
+
+impl NoOffset {
+    /// The reason in words.
+    pub fn text(self) -> Text {
+        Text::new(match self {
+            NoOffset::NoSignal => "synchronise.no_signal",
+            NoOffset::Scattered => "synchronise.scattered",
+        })
+    }
 }
 
 /// Stretches that a curve is drawn of.

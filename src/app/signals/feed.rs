@@ -6,7 +6,7 @@ use std::time::Duration;
 use crossbeam_channel::Receiver;
 
 use crate::app::services::Services;
-use crate::app::{Text, explain};
+use crate::app::{Text, bridge, explain};
 use crate::device::bridge::{Streaming, TapError};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::signal::wires::Wires;
@@ -219,7 +219,7 @@ fn failed(error: &BridgeError) -> Text {
     match error {
         BridgeError::Open(error) => refused(error),
         BridgeError::Tap(TapError::Link(error)) => explain::link(error),
-        BridgeError::Tap(TapError::Adapter(error)) => explain::adapter(error),
+        BridgeError::Tap(TapError::Adapter(error)) => bridge::adapter(error),
         BridgeError::Tap(TapError::Cancelled) => Text::new("virtual.ended"),
     }
 }

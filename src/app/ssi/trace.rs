@@ -1,6 +1,6 @@
 //! What the frames of the trace say.
 
-use crate::app::explain::traced;
+use crate::app::bridge::traced;
 use crate::app::{Explained, Text};
 use crate::link::{Direction, TraceEntry};
 use crate::protocol::bridge::Request;

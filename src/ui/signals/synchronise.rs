@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::signals::synchronise::{Action as Page, Form, Synchronise, ToldAs};
 use crate::app::signals::{Action as Signals, Signals as State, synchronise::Told};
-use crate::app::{Action, SineCosineSource, Text, explain};
+use crate::app::{Action, SineCosineSource, Text};
 use crate::ui::controls::{
     card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row, split,
     verdict_ui,
@@ -156,7 +156,7 @@ fn captured(ui: &mut Ui, skin: &Skin, signals: &State, actions: &mut Vec<Action>
                     actions.push(ask(Page::UseCaptured(offset.offset_steps)));
                 }
             }
-            Err(why) => problem(ui, skin, Some(&explain::signal::no_offset(why))),
+            Err(why) => problem(ui, skin, Some(&why.text())),
         }
     });
 }

@@ -1,6 +1,6 @@
 //! What passes over the line to an adapter, in words, whatever bus is behind it.
 
-use super::plain;
+use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
 use crate::protocol::bridge::{Message, Packet, Reply, Request};
 
