@@ -14,6 +14,8 @@ pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod interruption;
+#[cfg(test)]
+mod invented;
 mod live;
 mod open;
 mod outbox;

@@ -1,0 +1,42 @@
+//! A device that exists in tests alone: it has nothing to say.
+
+use super::{Desk, Device, Tell, Watched};
+use crate::link::LinkError;
+
+/// The device, which is never asked.
+#[derive(Debug)]
+pub(super) struct Invented;
+
+impl Device for Invented {
+    type Job = ();
+    type Output = ();
+    type Error = ();
+    type Remark = ();
+    type Sample = ();
+    type Watch = ();
+    type Doing = ();
+
+    fn run(&mut self, _: &mut Desk, (): (), _: &mut dyn FnMut(Tell<(), ()>)) -> Result<(), ()> {
+        Err(())
+    }
+
+    fn sample(&mut self, _: &mut Desk) -> Result<(), ()> {
+        Err(())
+    }
+
+    fn watch(&mut self, _: &mut Desk, (): &()) -> Result<Watched<()>, ()> {
+        Err(())
+    }
+
+    fn is_cancelled((): &()) -> bool {
+        false
+    }
+
+    fn take_remark(&mut self) -> Option<()> {
+        None
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        Ok(())
+    }
+}
