@@ -1,6 +1,7 @@
 //! A BiSS encoder at the end of a session, and its jobs.
 
 mod commit;
+mod frames;
 mod job;
 mod open;
 mod prepare;
@@ -9,6 +10,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+pub use frames::BissFrames;
 pub use job::{
     Attendance, BissJob, BissOutput, Change, ChangeKind, Commit, Committed, Doing, JobError, Prepared, ReadRegisters,
     Remark, WEAR_LIMIT, WEAR_WARNING, device_key,

@@ -9,6 +9,7 @@
 
 mod agenda;
 pub mod biss;
+pub mod bridge;
 mod commit;
 pub mod hiperdrive;
 pub mod hiperface;

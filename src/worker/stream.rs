@@ -4,7 +4,6 @@
 //! Nothing here knows where samples come from: a [`Producer`] does.
 
 mod analogue;
-mod bridge;
 #[cfg(test)]
 mod tests;
 
@@ -16,7 +15,6 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 pub use analogue::{Analogue, Forgotten};
-pub use bridge::{BissFrames, Bridge, BridgeError, Open, Pair, SineCosine, Stretch, open_adapter};
 
 use super::has_ended;
 use super::thread::Never;
@@ -25,7 +23,7 @@ use crate::signal::Time;
 use crate::signal::wires::Wires;
 
 /// How long a producer may wait at once: after so long at most a stop or a change is heard.
-const PATIENCE: Duration = Duration::from_millis(20);
+pub(super) const PATIENCE: Duration = Duration::from_millis(20);
 /// The window is woken so often at most.
 const WAKE: Duration = Duration::from_millis(50);
 

@@ -13,9 +13,8 @@ use crate::signal::wires::Wires;
 use crate::sim::sine_cosine::Checked;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
-use crate::worker::stream::{
-    Analogue, Batch, Bridge, BridgeError, End, Open, Pair, Producer, SineCosine, Stream, open_adapter,
-};
+use crate::worker::bridge::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};
+use crate::worker::stream::{Analogue, Batch, End, Producer, Stream};
 
 /// Both signals in volts, equally long.
 #[derive(Clone, Debug)]

@@ -8,14 +8,12 @@ use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use super::{Batch, Counted, Producer};
-use crate::device::biss::{Frame, frames};
+use super::OpenError;
+use super::stream::{Batch, Counted, Producer};
 use crate::device::bridge::{Portion, Streaming, Tap, TapError, Wanted};
 use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
-use crate::protocol::biss::Layout;
 use crate::protocol::bridge::Data;
 use crate::units::SupplyVoltage;
-use crate::worker::OpenError;
 
 pub use open::open_adapter;
 
@@ -45,17 +43,6 @@ pub struct Pair {
     pub sine_v: Vec<f64>,
     /// Cosine.
     pub cosine_v: Vec<f64>,
-}
-
-/// Position frames of BiSS, with their checksums looked at.
-#[derive(Clone, Debug)]
-pub struct BissFrames {
-    /// What the frames are.
-    pub layout: Layout,
-    /// Clock in hertz.
-    pub clock_hz: u32,
-    /// Microseconds from one to the next.
-    pub period_us: u32,
 }
 
 /// Why an adapter streams no more, or not at all.
@@ -153,24 +140,6 @@ impl Stretch for SineCosine {
     }
 }
 
-impl Stretch for BissFrames {
-    type Samples = Vec<Frame>;
-
-    fn wanted(&self) -> Wanted {
-        Wanted::Biss {
-            clock_hz: self.clock_hz,
-            data_bits: self.layout.data_bits(),
-            crc_bits: self.layout.crc_bits(),
-            period_us: self.period_us,
-        }
-    }
-
-    fn read(&self, data: Data, _: &Streaming) -> Option<Vec<Frame>> {
-        let Data::Biss(data) = data else { return None };
-        Some(frames(&self.layout, &data))
-    }
-}
-
 impl Counted for Pair {
     fn count(&self) -> usize {
         self.sine_v.len()
@@ -178,4 +147,4 @@ impl Counted for Pair {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
