@@ -55,6 +55,8 @@ impl Baud {
 
     /// 9600 bit/s, the factory setting of HIPERFACE encoders.
     pub const B9600: Baud = Baud(9_600);
+    /// 115 200 bits a second.
+    pub const B115200: Baud = Baud(115_200);
 
     /// Bits in a second.
     pub const fn bits_per_second(self) -> u32 {

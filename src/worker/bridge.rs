@@ -15,6 +15,7 @@ use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
 use crate::protocol::bridge::Data;
 use crate::units::SupplyVoltage;
 
+pub(super) use open::FORMAT;
 pub use open::open_adapter;
 
 /// What an adapter is to stream, and what its samples are.

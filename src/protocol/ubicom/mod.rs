@@ -20,10 +20,7 @@ pub use receiver::Receiver;
 use crate::units::{Baud, CharacterFormat, Parity};
 
 /// 115200 bit/s.
-const BAUD: Baud = match Baud::new(115_200) {
-    Some(baud) => baud,
-    None => Baud::B9600,
-};
+const BAUD: Baud = Baud::B115200;
 
 /// How the line is set: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
