@@ -244,7 +244,7 @@ pub struct Opened<D: Kind> {
     /// The session.
     pub(super) worker: Worker<D>,
     /// What is kept of it beside its thread.
-    pub(super) aside: D::Aside,
+    pub(crate) aside: D::Aside,
     /// Where it talks.
     pub(super) url: crate::link::LinkUrl,
     /// Its trace.
@@ -252,7 +252,7 @@ pub struct Opened<D: Kind> {
     /// The device lives in this process.
     pub(super) is_virtual: bool,
     /// When its clock began.
-    pub(super) began: jiff::Zoned,
+    pub(crate) began: jiff::Zoned,
     /// Who waits for the wire waits until this is dropped.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }

@@ -30,7 +30,7 @@ impl Brakes {
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
     /// Drives of a session that begins.
-    pub(super) fn add(&self, motion: Motion, stopper: Stopper) {
+    pub(crate) fn add(&self, motion: Motion, stopper: Stopper) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_left_over());
         // Under the lock that `begin` takes as well: a session is left by the one or by the other.

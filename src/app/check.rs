@@ -16,7 +16,7 @@ pub struct CheckLine {
 
 impl CheckLine {
     /// A line with the words of its device.
-    pub(in crate::app) fn of<S: Copy, F>(line: &Line<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
+    pub(crate) fn of<S: Copy, F>(line: &Line<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
         CheckLine {
             step: step(line.step),
             verdict: line.verdict,

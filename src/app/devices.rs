@@ -29,7 +29,6 @@ use super::tab::Tab;
 use super::trace::TraceLog;
 use crate::link::LinkUrl;
 use crate::profile::Document;
-use crate::protocol;
 use crate::store::{Backup, DeviceKey, Entry, FileError, StatusEntry};
 
 /// A device on the desk, or a profile of one.
@@ -94,18 +93,18 @@ impl AnyDevice {
         services: &mut Services,
     ) -> Option<Self> {
         Some(match document.body.kind() {
-            protocol::hiperface::KIND => {
+            crate::protocol::hiperface::KIND => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
             }
-            protocol::biss::KIND => {
+            crate::protocol::biss::KIND => {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
-            protocol::ssi::KIND => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
-            protocol::interbus::KIND => {
+            crate::protocol::ssi::KIND => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
+            crate::protocol::interbus::KIND => {
                 AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
             }
-            protocol::hiperdrive::KIND => {
+            crate::protocol::hiperdrive::KIND => {
                 AnyDevice::Hiperdrive(Box::new(hiperdrive::Unit::in_file(id, file, document, services)))
             }
             _ => return None,
@@ -144,7 +143,7 @@ impl AnyDevice {
     }
 
     /// Another link leads to its wire, and counts from now on.
-    pub(super) fn take_link(&mut self, url: LinkUrl) {
+    pub(crate) fn take_link(&mut self, url: LinkUrl) {
         if let AnyDevice::Ssi(own) = self {
             own.take_link(&url);
         }
@@ -387,7 +386,7 @@ impl AnyDevice {
         each!(self, own => own.keep_draft(services))
     }
 
-    pub(super) fn leave_draft(&mut self, services: &mut Services) {
+    pub(crate) fn leave_draft(&mut self, services: &mut Services) {
         each!(self, own => own.leave_draft(services))
     }
 

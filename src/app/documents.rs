@@ -68,7 +68,7 @@ impl Studio {
     }
 
     /// A profile of a newer schema is neither saved nor written into a device; true, and told, where this is one.
-    pub(super) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
+    pub(crate) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| only_looked_at(device.source()));
         let Some(refusal) = refusal else { return false };
         self.services.tell(Severity::Error, vec![refusal], None);
@@ -77,7 +77,7 @@ impl Studio {
 }
 
 /// Why a profile is neither saved nor written into a device: it is of a newer schema.
-pub(super) fn only_looked_at(source: &Source) -> Option<Text> {
+pub(crate) fn only_looked_at(source: &Source) -> Option<Text> {
     let Source::File { path, document, .. } = source else { return None };
     document.is_newer().then(|| explain::newer_profile(path, document))
 }
@@ -88,7 +88,7 @@ pub(super) fn is_capture(path: &Path) -> bool {
 }
 
 /// What was read just now, as a profile.
-pub(super) fn document_of(body: Body) -> Document {
+pub(crate) fn document_of(body: Body) -> Document {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);
     Document::new(seconds.to_string(), body)

@@ -2,7 +2,7 @@
 
 /// What was before each of the last steps, and what was undone of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct History<T> {
+pub(crate) struct History<T> {
     undo: Vec<T>,
     redo: Vec<T>,
 }
@@ -18,17 +18,17 @@ impl<T> History<T> {
     const STEPS: usize = 200;
 
     /// There is a step to undo.
-    pub(super) fn can_undo(&self) -> bool {
+    pub(crate) fn can_undo(&self) -> bool {
         !self.undo.is_empty()
     }
 
     /// There is a step to do again.
-    pub(super) fn can_redo(&self) -> bool {
+    pub(crate) fn can_redo(&self) -> bool {
         !self.redo.is_empty()
     }
 
     /// A step was made from `before`: what was undone cannot be done again any more.
-    pub(super) fn note(&mut self, before: T) {
+    pub(crate) fn note(&mut self, before: T) {
         self.redo.clear();
         self.undo.push(before);
         if self.undo.len() > Self::STEPS {
@@ -37,21 +37,21 @@ impl<T> History<T> {
     }
 
     /// Undoes the last step: `now` is what was before it. False when there is none.
-    pub(super) fn undo(&mut self, now: &mut T) -> bool {
+    pub(crate) fn undo(&mut self, now: &mut T) -> bool {
         let Some(before) = self.undo.pop() else { return false };
         self.redo.push(std::mem::replace(now, before));
         true
     }
 
     /// Does the last undone step again. False when there is none.
-    pub(super) fn redo(&mut self, now: &mut T) -> bool {
+    pub(crate) fn redo(&mut self, now: &mut T) -> bool {
         let Some(after) = self.redo.pop() else { return false };
         self.undo.push(std::mem::replace(now, after));
         true
     }
 
     /// What led here cannot be undone any more.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = History::default();
     }
 
@@ -63,7 +63,7 @@ impl<T> History<T> {
 
 impl<T: PartialEq> History<T> {
     /// Makes a step from `now` to `after`. False where that is the same.
-    pub(super) fn step(&mut self, now: &mut T, after: T) -> bool {
+    pub(crate) fn step(&mut self, now: &mut T, after: T) -> bool {
         if *now == after {
             return false;
         }
@@ -73,7 +73,7 @@ impl<T: PartialEq> History<T> {
 
     /// The ground has changed under all steps: `follow` changes what is and what was. Steps between which nothing is left
     /// fall away.
-    pub(super) fn rebase(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
+    pub(crate) fn rebase(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);
         self.redo.clear();

@@ -28,7 +28,7 @@ const AGAIN: Duration = Duration::from_secs(1);
 
 /// What is on disk, and whether a write is on its way.
 #[derive(Debug)]
-pub(super) struct Keeper {
+pub(crate) struct Keeper {
     /// The settings here as they were when the file was last read or written.
     known: Settings,
     /// What could not be written.
@@ -182,7 +182,7 @@ impl Keeper {
     }
 
     /// Reads the settings as another window may have written them. Whether that begins now.
-    pub(super) fn look(&mut self, services: &Services) -> bool {
+    pub(crate) fn look(&mut self, services: &Services) -> bool {
         let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
         if self.looking.is_some() || self.unseen.as_ref().is_some_and(has_failed) {
             return false;
@@ -196,12 +196,12 @@ impl Keeper {
     }
 
     /// They could not be read, which counts as not having looked: locks may stand in them.
-    pub(super) fn could_not_look(&mut self) {
+    pub(crate) fn could_not_look(&mut self) {
         self.unseen = self.looking.take();
     }
 
     /// They were read. While a write is on its way, which tells later what it has found, they come back.
-    pub(super) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
+    pub(crate) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.looked = self.looking.take();
         if self.busy.is_some() {
             return found;
@@ -213,7 +213,7 @@ impl Keeper {
     }
 
     /// They were not read for so long.
-    pub(super) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
+    pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
         // A clock of the wall may be set back.
         let age = self.looked.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
         age.is_none_or(|age| age > than)

@@ -40,15 +40,15 @@ impl Default for Patience {
 }
 
 /// Whose thread was let go.
-pub(super) struct Leaver {
+pub(crate) struct Leaver {
     /// Its number.
-    pub(super) session: SessionId,
+    pub(crate) session: SessionId,
     /// Its name.
-    pub(super) about: String,
+    pub(crate) about: String,
     /// Where it talks.
-    pub(super) url: LinkUrl,
+    pub(crate) url: LinkUrl,
     /// The write that runs there.
-    pub(super) write: Option<JobId>,
+    pub(crate) write: Option<JobId>,
 }
 
 /// A session that was let go and has not ended.
@@ -58,7 +58,7 @@ pub(super) struct Leaving {
 }
 
 /// A worker that was let go, of whatever device.
-pub(super) trait Left: Send + Sync {
+pub(crate) trait Left: Send + Sync {
     /// The thread has ended and the wire is free.
     fn is_ended(&self) -> bool;
 
@@ -98,18 +98,18 @@ impl Left for End {
 }
 
 /// Two links that lead to the same wire.
-pub(super) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
+pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
     one.wire() == other.wire() && one.wire() != Wire::Inside
 }
 
 impl Services {
     /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
-    pub(super) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: Leaver, turn: Option<Sender<()>>) {
+    pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: Leaver, turn: Option<Sender<()>>) {
         self.let_end(Arc::new(worker.end()), who, turn);
     }
 
     /// Lets a stream go, which belongs to no session.
-    pub(super) fn leave_stream(&mut self, end: End, url: LinkUrl) {
+    pub(crate) fn leave_stream(&mut self, end: End, url: LinkUrl) {
         let who = Leaver { session: SessionId::default(), about: String::new(), url, write: None };
         self.let_end(Arc::new(end), who, None);
     }
@@ -156,7 +156,7 @@ impl Services {
     }
 
     /// Those that still hold a wire, with the time they get.
-    pub(super) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn Left>, Duration)> {
+    pub(crate) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn Left>, Duration)> {
         let own = self.leaving.iter().filter(|leaving| same_wire(&leaving.who.url, url));
         own.map(|leaving| (leaving.ending.clone(), self.patience_with(leaving.who.write.is_some()))).collect()
     }

@@ -50,7 +50,7 @@ pub struct Progressing {
 
 impl<D: Kind> Line<D> {
     /// Takes over what was opened.
-    pub(super) fn new(opened: Opened<D>) -> Self {
+    pub(crate) fn new(opened: Opened<D>) -> Self {
         let Opened { worker, trace, is_virtual, .. } = opened;
         Line { worker, trace, running: None, is_virtual }
     }
@@ -66,7 +66,7 @@ impl<D: Kind> Line<D> {
     ///
     /// # Errors
     /// Another one runs, or the session has ended.
-    pub(super) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
+    pub(crate) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
         let id = self.worker.submit(job)?;
         self.running = Some(Running { id, what, since: now, progress: None, writes, stopping: false });
         Ok(id)
@@ -83,17 +83,17 @@ impl<D: Kind> Line<D> {
     }
 
     /// Takes samples from now on, or no more.
-    pub(super) fn poll(&mut self, interval: Option<Duration>) {
+    pub(crate) fn poll(&mut self, interval: Option<Duration>) {
         self.worker.poll(interval);
     }
 
     /// Watches these values from now on while samples are taken.
-    pub(super) fn watch(&self, wished: Vec<(D::Watch, Duration)>) {
+    pub(crate) fn watch(&self, wished: Vec<(D::Watch, Duration)>) {
         self.worker.watch(wished);
     }
 
     /// Ends what runs, live samples included.
-    pub(super) fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.worker.stop();
         if let Some(running) = &mut self.running {
             running.stopping = true;
@@ -108,7 +108,7 @@ impl<D: Kind> Line<D> {
     }
 
     /// The next event; what it says about the job that runs is noted here.
-    pub(super) fn next(&mut self) -> Option<Event<D>> {
+    pub(crate) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;
         match &event {
             Event::Progress(id, progress) => {
@@ -123,7 +123,7 @@ impl<D: Kind> Line<D> {
     }
 
     /// The thread has ended without being let go, and has told all that it had to.
-    pub(super) fn is_dead(&self) -> bool {
+    pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_ended() && self.worker.events().is_empty()
     }
 
@@ -138,12 +138,12 @@ impl<D: Kind> Line<D> {
     }
 
     /// What ends the job that runs, from any thread.
-    pub(super) fn stopper(&self) -> Stopper {
+    pub(crate) fn stopper(&self) -> Stopper {
         self.worker.stopper()
     }
 
     /// Gives the thread back, to be closed where nobody waits for it.
-    pub(super) fn into_worker(self) -> Worker<D> {
+    pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }
 }

@@ -1,7 +1,7 @@
 //! What the program knows and can do, without drawing: all state of the window and what can be done with it, the words
 //! for a person, the look as data.
 
-mod action;
+pub(crate) mod action;
 pub mod biss;
 mod brakes;
 pub mod bridge;
@@ -10,41 +10,41 @@ mod closing;
 pub mod connect;
 mod devices;
 pub mod diverged;
-mod documents;
-mod edits;
+pub(crate) mod documents;
+pub(crate) mod edits;
 pub mod explain;
 mod files;
 pub mod hiperdrive;
 pub mod hiperface;
-mod history;
+pub(crate) mod history;
 mod hold;
 pub mod interbus;
 mod keep;
-mod leaving;
-mod line;
+pub(crate) mod leaving;
+pub(crate) mod line;
 mod look;
 mod notices;
-mod number;
+pub(crate) mod number;
 mod opening;
 mod picture;
 mod press;
-mod question;
+pub(crate) mod question;
 #[cfg(test)]
 pub(crate) mod recorded;
 pub mod recorder;
 pub mod review;
-mod services;
+pub(crate) mod services;
 pub mod session;
 mod settings;
 pub mod signals;
 mod sine_cosine;
 pub mod ssi;
-mod studio;
-mod tab;
-mod tasks;
-mod texts;
+pub(crate) mod studio;
+pub(crate) mod tab;
+pub(crate) mod tasks;
+pub(crate) mod texts;
 mod trace;
-mod track;
+pub(crate) mod track;
 
 pub use action::{Action, Desk, Done, FileQuestion, ReviewAction};
 pub use brakes::Brakes;

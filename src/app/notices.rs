@@ -90,7 +90,7 @@ impl Log {
     }
 
     /// What stands in the window is true no more, where it is this text about this session.
-    pub(super) fn settle(&mut self, id: &str, about: Option<&str>) {
+    pub(crate) fn settle(&mut self, id: &str, about: Option<&str>) {
         let is_it =
             |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);
         if self.standing.as_ref().is_some_and(is_it) {
@@ -99,7 +99,7 @@ impl Log {
     }
 
     /// A file was read or written: that it could not be is true no more.
-    pub(super) fn settle_file(&mut self, path: &Path) {
+    pub(crate) fn settle_file(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
             notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.is_about(path))
         };

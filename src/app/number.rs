@@ -4,7 +4,7 @@
 use super::Text;
 
 /// Most signal periods in a revolution that can be entered: encoders have no more.
-pub(super) const MOST_PERIODS: u32 = 65_536;
+pub(crate) const MOST_PERIODS: u32 = 65_536;
 
 /// A decimal number, with an exponent if need be; `None` where it is none.
 pub fn number(text: &str) -> Option<f64> {
@@ -18,7 +18,7 @@ pub fn number(text: &str) -> Option<f64> {
 ///
 /// # Errors
 /// In words.
-pub(super) fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, Text> {
+pub(crate) fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, Text> {
     filled(what, text)?;
     let refused = || {
         let refusal = Text::new("entry.number").with_text("what", Text::new(what)).with("entry", text.trim());
@@ -31,7 +31,7 @@ pub(super) fn within(what: &'static str, text: &str, least: f64, most: f64) -> R
 ///
 /// # Errors
 /// In words.
-pub(super) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Result<u32, Text> {
+pub(crate) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Result<u32, Text> {
     filled(what, text)?;
     let digits = text.trim();
     let value = match digits.strip_prefix("0x") {
@@ -50,7 +50,7 @@ pub(super) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Re
 ///
 /// # Errors
 /// In words.
-pub(super) fn number_or_hex(what: &'static str, text: &str, last: u64) -> Result<u64, Text> {
+pub(crate) fn number_or_hex(what: &'static str, text: &str, last: u64) -> Result<u64, Text> {
     filled(what, text)?;
     let digits = text.trim();
     let hex = digits.strip_prefix("0x").or_else(|| digits.strip_suffix(['h', 'H']));
@@ -102,7 +102,7 @@ fn quantity(text: &str) -> Option<f64> {
 ///
 /// # Errors
 /// In words.
-pub(super) fn quantity_within(
+pub(crate) fn quantity_within(
     what: &'static str,
     text: &str,
     (least, most): (f64, f64),
@@ -121,12 +121,12 @@ fn filled(what: &'static str, text: &str) -> Result<(), Text> {
 }
 
 /// As many decimals as a limit needs, three at most.
-pub(super) fn decimals(value: f64) -> usize {
+pub(crate) fn decimals(value: f64) -> usize {
     decimals_of(value, 3)
 }
 
 /// As many decimals as a number needs, up to those.
-pub(super) fn decimals_of(value: f64, most: usize) -> usize {
+pub(crate) fn decimals_of(value: f64, most: usize) -> usize {
     (0..most).find(|count| (value * 10_f64.powi(*count as i32)).fract() == 0.0).unwrap_or(most)
 }
 

@@ -56,7 +56,7 @@ impl Studio {
     }
 
     /// Opens a link to an encoder that a search has found: about other masters on its line it was asked before.
-    pub(super) fn open_found(&mut self, url: LinkUrl) {
+    pub(crate) fn open_found(&mut self, url: LinkUrl) {
         if let Some(id) = self.session_at(Tab::Hiperface, &url) {
             self.attempt_to_open(id, url);
         }
@@ -103,7 +103,7 @@ impl Studio {
     ///
     /// # Errors
     /// It writes: which one.
-    pub(super) fn free_wire(&mut self, url: &LinkUrl, why: &'static str) -> Result<Option<Receiver<()>>, Text> {
+    pub(crate) fn free_wire(&mut self, url: &LinkUrl, why: &'static str) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut AnyDevice| {
             let held = device.is_connected() || device.is_opening();
             held && matches!(device.source(), Source::Link(own) if same_wire(own, url))
@@ -123,7 +123,7 @@ impl Studio {
         Ok(earlier)
     }
 
-    pub(super) fn reconnect(&mut self, id: SessionId) {
+    pub(crate) fn reconnect(&mut self, id: SessionId) {
         let Some(device) = self.devices.iter_mut().find(|own| own.id() == id && !own.is_writing()) else { return };
         let Source::Link(url) = device.source().clone() else { return };
         device.let_go(JobEnd::Cancelled, &mut self.services);
@@ -183,7 +183,7 @@ impl Studio {
 
     /// Opens a link on a thread, after an earlier attempt and after whoever still holds the wire. What it gives tells by
     /// its end that the wire is free again, or in use.
-    pub(super) fn open_task<D: Kind>(
+    pub(crate) fn open_task<D: Kind>(
         &mut self,
         url: LinkUrl,
         earlier: Option<Receiver<()>>,

@@ -23,7 +23,7 @@ pub struct Question {
 
 /// What a confirmed question leads to.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Then {
+pub(crate) enum Then {
     CloseWindow,
     CloseSession(SessionId),
     Write(FileQuestion, PathBuf),
@@ -42,7 +42,7 @@ impl Question {
     }
 
     /// Whether another master may be on the line behind a link.
-    pub(super) fn other_master(link: &LinkUrl, then: Then) -> Self {
+    pub(crate) fn other_master(link: &LinkUrl, then: Then) -> Self {
         Question {
             text: Text::new("question.drive").with("link", without_codes(link)),
             confirm: Text::new("question.no_drive"),

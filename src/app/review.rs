@@ -19,7 +19,7 @@ pub struct Review<K: Reviewed> {
     pub is_for_another: bool,
     /// What is wanted was made for another type of device.
     pub is_for_another_type: bool,
-    pub(in crate::app) change: K::Change,
+    pub(crate) change: K::Change,
     /// What is in question beyond the usual, and whether it is allowed.
     permits: Vec<Toggle>,
 }
@@ -46,7 +46,7 @@ pub enum ReviewState<K: Reviewed> {
 }
 
 impl<K: Reviewed> Review<K> {
-    pub(in crate::app) fn new(mut change: K::Change, is_for_another: bool, is_for_another_type: bool) -> Self {
+    pub(crate) fn new(mut change: K::Change, is_for_another: bool, is_for_another_type: bool) -> Self {
         let own = |permit| K::permitted(&mut change, permit).map(|own| Toggle { permit, is_on: *own });
         let permits = Permit::ALL.into_iter().filter_map(own).collect();
         let what = K::change(&change);
@@ -72,7 +72,7 @@ impl<K: Reviewed> Review<K> {
     }
 
     /// The plan that is being carried out.
-    pub(in crate::app) fn writing(&self) -> Option<&K::Prepared> {
+    pub(crate) fn writing(&self) -> Option<&K::Prepared> {
         self.prepared().filter(|_| self.is_writing())
     }
 
@@ -98,7 +98,7 @@ impl<K: Reviewed> Review<K> {
     }
 
     /// What is wanted, with one of the toggles the other way round.
-    pub(in crate::app) fn toggled(&self, permit: Permit) -> Option<K::Change> {
+    pub(crate) fn toggled(&self, permit: Permit) -> Option<K::Change> {
         let mut change = self.change.clone();
         let own = K::permitted(&mut change, permit)?;
         *own = !*own;
@@ -365,7 +365,7 @@ pub trait Reviewed {
 }
 
 /// What a write came to, and how much that weighs.
-pub(in crate::app) fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
+pub(crate) fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),
@@ -374,7 +374,7 @@ pub(in crate::app) fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (S
 }
 
 /// What a restore leaves alone: what only one side has, by the words for it, and what belongs to another mounting.
-pub(in crate::app) fn left_alone(id: &'static str, missing: &[String], mounting: Vec<Text>) -> Vec<Text> {
+pub(crate) fn left_alone(id: &'static str, missing: &[String], mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
         texts.push(Text::new(id).with_list("items", missing.iter().map(|item| explain::phrase(item))));

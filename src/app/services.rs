@@ -112,17 +112,17 @@ pub struct JobRecord {
 /// What sessions share.
 pub struct Services {
     /// The world outside.
-    pub(super) world: World,
+    pub(crate) world: World,
     /// Threads.
-    pub(super) tasks: Tasks,
+    pub(crate) tasks: Tasks,
     /// The log.
     pub log: Log,
     /// Jobs, the newest last.
     jobs: VecDeque<JobRecord>,
     /// A file that the user is asked for.
-    pub(super) file_question: Option<FileQuestion>,
+    pub(crate) file_question: Option<FileQuestion>,
     /// The drives of all sessions.
-    pub(super) brakes: Brakes,
+    pub(crate) brakes: Brakes,
     /// Sessions that were let go and have not ended.
     pub(super) leaving: Vec<Leaving>,
     /// Profiles that are being read.
@@ -130,7 +130,7 @@ pub struct Services {
     /// Drafts that are on their way to the disk.
     pub(super) drafts_on_their_way: usize,
     /// Families of SSI encoders: the built-in ones, until the user's own were read.
-    pub(super) families: Arc<Families>,
+    pub(crate) families: Arc<Families>,
     /// The user's own are being read, or were.
     families_asked: bool,
 }
@@ -139,7 +139,7 @@ impl Services {
     const JOBS: usize = 500;
 
     /// Families of SSI encoders. Whoever wants them first has the user's own read beside the built-in ones, as a task.
-    pub(in crate::app) fn ssi_families(&mut self) -> Arc<Families> {
+    pub(crate) fn ssi_families(&mut self) -> Arc<Families> {
         if !std::mem::replace(&mut self.families_asked, true) {
             let store = self.world.store.clone();
             self.tasks.run("families", move || {
@@ -150,7 +150,7 @@ impl Services {
         self.families.clone()
     }
 
-    pub(super) fn new(world: World, wake: Wake) -> Self {
+    pub(crate) fn new(world: World, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
         let (tasks, leaving) = (Tasks::new(wake), Vec::new());
         let opening_files = Vec::new();
@@ -171,17 +171,17 @@ impl Services {
     }
 
     /// The time of day.
-    pub(super) fn now(&self) -> Zoned {
+    pub(crate) fn now(&self) -> Zoned {
         (self.world.now)()
     }
 
     /// Adds to the log, and stands in the window.
-    pub(super) fn tell(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+    pub(crate) fn tell(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add(self.notice(severity, texts, about));
     }
 
     /// The same about a part of what it is about.
-    pub(super) fn tell_of_part(
+    pub(crate) fn tell_of_part(
         &mut self,
         severity: Severity,
         texts: Vec<Text>,
@@ -191,7 +191,7 @@ impl Services {
     }
 
     /// Adds to the log only: the window shows it elsewhere.
-    pub(super) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+    pub(crate) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.keep(self.notice(severity, texts, about));
     }
 
@@ -221,7 +221,7 @@ impl Services {
         }
     }
 
-    pub(super) fn job_ends(&mut self, session: SessionId, id: JobId, end: JobEnd) {
+    pub(crate) fn job_ends(&mut self, session: SessionId, id: JobId, end: JobEnd) {
         let now = self.now();
         if let Some(job) = self.jobs.iter_mut().rev().find(|job| job.key == (session, id)) {
             job.end = end;

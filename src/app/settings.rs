@@ -138,12 +138,12 @@ impl Settings {
     }
 
     /// What is remembered of the drives behind a device.
-    pub(super) fn drives(&self, device: &str) -> Remembered {
+    pub(crate) fn drives(&self, device: &str) -> Remembered {
         self.drives.get(device).cloned().unwrap_or_default()
     }
 
     /// What is to be remembered of them.
-    pub(super) fn remember_drives(&mut self, device: String, what: Remembered) {
+    pub(crate) fn remember_drives(&mut self, device: String, what: Remembered) {
         self.drives.insert(device, what);
     }
 

@@ -22,7 +22,7 @@ use crate::worker::biss::Change;
 
 /// A session's number, from the start of the program on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct SessionId(pub(super) u32);
+pub struct SessionId(pub(crate) u32);
 
 /// All state of the window.
 pub struct Studio {
@@ -38,10 +38,10 @@ pub struct Studio {
     pub services: Services,
     /// The Signals tab.
     pub signals: Signals,
-    pub(super) devices: Vec<AnyDevice>,
-    pub(super) shown: Shown,
+    pub(crate) devices: Vec<AnyDevice>,
+    pub(crate) shown: Shown,
     next_id: u32,
-    pub(super) keeper: Keeper,
+    pub(crate) keeper: Keeper,
     pub(super) closing: bool,
     pub(super) waited: Option<Waited>,
     path_question: Option<FileQuestion>,
@@ -238,7 +238,7 @@ impl Studio {
     }
 
     /// Shows a device in its tab.
-    pub(super) fn show(&mut self, tab: Tab, id: SessionId) {
+    pub(crate) fn show(&mut self, tab: Tab, id: SessionId) {
         self.settings.tab = tab;
         self.shown.set(tab, id);
     }
@@ -269,12 +269,12 @@ impl Studio {
         self.devices.iter_mut().find(|device| device.id() == id)
     }
 
-    pub(super) fn new_id(&mut self) -> SessionId {
+    pub(crate) fn new_id(&mut self) -> SessionId {
         self.next_id += 1;
         SessionId(self.next_id)
     }
 
-    pub(super) fn new_number(&mut self) -> u32 {
+    pub(crate) fn new_number(&mut self) -> u32 {
         self.next_id += 1;
         self.next_id
     }
@@ -293,7 +293,7 @@ impl Studio {
         }
     }
 
-    pub(super) fn with_device(&mut self, id: SessionId, act: impl FnOnce(&mut AnyDevice, &mut Services)) {
+    pub(crate) fn with_device(&mut self, id: SessionId, act: impl FnOnce(&mut AnyDevice, &mut Services)) {
         if let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) {
             act(device, &mut self.services);
         }

@@ -27,14 +27,14 @@ pub struct Mailbox {
 
 impl Tasks {
     /// Nothing to do yet.
-    pub(super) fn new(wake: Wake) -> Self {
+    pub(crate) fn new(wake: Wake) -> Self {
         // Unbounded: each thread sends once, and there are as many as a person's clicks.
         let (sender, receiver) = unbounded();
         Tasks { sender, receiver, wake }
     }
 
     /// Runs something on a thread; what it gives comes back as an action.
-    pub(super) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
+    pub(crate) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
         let mailbox = self.mailbox();
         let spawned = thread::Builder::new().name(name.to_owned()).spawn(move || mailbox.send(task()));
         if let Err(error) = spawned {
@@ -48,12 +48,12 @@ impl Tasks {
     }
 
     /// How sessions wake the window.
-    pub(super) fn wake(&self) -> Wake {
+    pub(crate) fn wake(&self) -> Wake {
         self.wake.clone()
     }
 
     /// The next thing that is done.
-    pub(super) fn next(&self) -> Option<Action> {
+    pub(crate) fn next(&self) -> Option<Action> {
         self.receiver.try_recv().ok()
     }
 }

@@ -113,7 +113,7 @@ impl Text {
     }
 
     /// The text of that name with the arguments with which it is `words` in English; nothing where it cannot be.
-    pub(super) fn recognised(id: &'static str, words: &str) -> Option<Self> {
+    pub(crate) fn recognised(id: &'static str, words: &str) -> Option<Self> {
         let mut text = Text::new(id);
         let (mut template, mut rest) = (BUILT_IN.0.get(id)?.en.as_str(), words);
         while let Some((before, after)) = template.split_once('{') {
@@ -180,7 +180,7 @@ impl Text {
 }
 
 /// A number in digits with the language's decimal sign.
-pub(in crate::app) fn signed(number: &str, language: Language) -> String {
+pub(crate) fn signed(number: &str, language: Language) -> String {
     Argument::Number(number.to_owned()).said(Place::Window(language))
 }
 

@@ -16,7 +16,7 @@ mod follower;
 mod meaning;
 
 use follower::Follower;
-pub(super) use meaning::Meaning;
+pub(crate) use meaning::Meaning;
 
 /// Positions that are kept: more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
@@ -37,19 +37,19 @@ const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
 /// A position, or that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Sighting {
+pub(crate) struct Sighting {
     /// When.
-    pub(super) at: Moment,
+    pub(crate) at: Moment,
     /// Steps, within the range; `None`: the device has none to give.
-    pub(super) position: Option<i64>,
+    pub(crate) position: Option<i64>,
     /// The device says that it is invalid.
-    pub(super) is_bad: bool,
+    pub(crate) is_bad: bool,
     /// The device warned with it.
-    pub(super) is_warned: bool,
+    pub(crate) is_warned: bool,
 }
 
 /// What can be watched.
-pub(super) trait Watchable: Clone + PartialEq {
+pub(crate) trait Watchable: Clone + PartialEq {
     /// Its values are whole numbers.
     fn is_whole(&self) -> bool;
 
@@ -64,22 +64,22 @@ pub(super) trait Watchable: Clone + PartialEq {
 
 /// A watched value, or that there is none at the moment.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Watching {
+pub(crate) struct Watching {
     /// When.
-    pub(super) at: Moment,
+    pub(crate) at: Moment,
     /// In the unit of its line.
-    pub(super) value: Option<Value>,
+    pub(crate) value: Option<Value>,
     /// The device warned with it.
-    pub(super) is_warned: bool,
+    pub(crate) is_warned: bool,
     /// Why there will be none, however long one waits.
-    pub(super) never: Option<Text>,
+    pub(crate) never: Option<Text>,
 }
 
 /// The recorder of a device, and what is needed to fill it; `W` is what can be watched.
 #[derive(Debug)]
-pub(super) struct Track<W> {
+pub(crate) struct Track<W> {
     /// Position, speed and acceleration as lines.
-    pub(super) recorder: Recorder,
+    pub(crate) recorder: Recorder,
     positions: GroupId,
     /// The lines of position, speed and acceleration.
     lines: [LineId; 3],
@@ -156,7 +156,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// A session has begun. What was recorded before stays: its samples are earlier by as much as the clocks say.
-    pub(super) fn begin(&mut self, began: &Zoned) {
+    pub(crate) fn begin(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
         // A clock of the wall may be set back.
@@ -166,12 +166,12 @@ impl<W: Watchable> Track<W> {
     }
 
     /// What positions mean; `None` until the first.
-    pub(super) fn meaning(&self) -> Option<&Meaning> {
+    pub(crate) fn meaning(&self) -> Option<&Meaning> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
     /// Positions are wished at this interval from now on; when that begins, what was before is not joined to what comes.
-    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+    pub(crate) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
         if begins {
@@ -180,7 +180,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// So many samples were dropped before those that come next.
-    pub(super) fn lose(&mut self, dropped: u64) {
+    pub(crate) fn lose(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
             self.gap();
@@ -188,7 +188,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records positions, one after the other.
-    pub(super) fn add(&mut self, sightings: &[Sighting], meaning: &Meaning) {
+    pub(crate) fn add(&mut self, sightings: &[Sighting], meaning: &Meaning) {
         self.see(meaning);
         let mut columns = Columns::default();
         for sighting in sightings {
@@ -235,7 +235,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records these values too, and no others beside the position. What was recorded of others stays.
-    pub(super) fn watch(&mut self, wished: &[W]) {
+    pub(crate) fn watch(&mut self, wished: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
             if !own.active || wished.iter().any(|what| own.what.continues(what)) {
@@ -274,12 +274,12 @@ impl<W: Watchable> Track<W> {
     }
 
     /// What is recorded beside the position.
-    pub(super) fn watched(&self) -> Vec<W> {
+    pub(crate) fn watched(&self) -> Vec<W> {
         self.watched.iter().filter(|own| own.active).map(|own| own.what.clone()).collect()
     }
 
     /// Records a watched value.
-    pub(super) fn add_watched(&mut self, what: &W, watching: &Watching) {
+    pub(crate) fn add_watched(&mut self, what: &W, watching: &Watching) {
         let Some(own) = self.watched.iter().find(|own| own.active && own.what == *what) else { return };
         let (group, line) = (own.group, own.line);
         let mut flags = if watching.value.is_some() { Flags::NONE } else { Flags::BAD };
@@ -299,12 +299,12 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Samples that came too fast to be recorded.
-    pub(super) fn dropped(&self) -> u64 {
+    pub(crate) fn dropped(&self) -> u64 {
         self.dropped
     }
 
     /// Positions that are recorded.
-    pub(super) fn positions(&self) -> u64 {
+    pub(crate) fn positions(&self) -> u64 {
         let [line, ..] = self.lines;
         let all = self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.all());
         all.map_or(0, |all| all.end - all.start)
@@ -312,7 +312,7 @@ impl<W: Watchable> Track<W> {
 
     /// Another device: nothing of what was recorded is about it, and of minutes that no table has it stays. What is watched
     /// is watched on.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
             self.watch(&[]);
@@ -328,7 +328,7 @@ impl<W: Watchable> Track<W> {
 
     /// What was recorded is read anew, as far as so many words are kept of it: the clocks stay as they are. Where that is not
     /// all of it, what was recorded stays too.
-    pub(super) fn begin_again(&mut self, kept: usize) {
+    pub(crate) fn begin_again(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
             self.part(&Meaning::of_steps(None));
             (self.follower, self.newest) = (None, None);
@@ -390,7 +390,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Samples are missing before those that come next.
-    pub(super) fn gap(&mut self) {
+    pub(crate) fn gap(&mut self) {
         self.recorder.break_all();
         self.lose_track();
     }

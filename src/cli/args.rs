@@ -10,9 +10,9 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-pub(super) use act::{Action, Do, action_name, no_action, no_option};
+pub(crate) use act::{Action, Do, action_name, no_action, no_option};
 pub(super) use analyse::Analyse;
-pub(super) use decode::{Decode, Direction, Protocol, Words};
+pub(crate) use decode::{Decode, Direction, Protocol, Words};
 
 use super::hiperdrive::{Move, listed_parameters};
 use super::ssi::Ssi;
@@ -45,11 +45,11 @@ Without hardware: --link sim:, as in
 An address or a register is hexadecimal with 0x in front, else decimal.";
 
 #[derive(Args)]
-pub(super) struct Common {
+pub(crate) struct Common {
     /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
     /// bridge:tcp:HOST:PORT or replay:FILE, with ?name=value&…
     #[arg(long, global = true, value_name = "URL")]
-    pub(super) link: Option<LinkUrl>,
+    pub(crate) link: Option<LinkUrl>,
     /// Print JSON.
     #[arg(long, global = true)]
     pub(super) json: bool,
@@ -60,7 +60,7 @@ pub(super) struct Common {
     /// hiperface on a serial line: no drive or controller is connected to it or powered. Without this it is asked on a
     /// terminal; find needs it elsewhere.
     #[arg(long, global = true)]
-    pub(super) only_master: bool,
+    pub(crate) only_master: bool,
     /// Record every frame into a file that replay: plays back; access codes are masked.
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
@@ -125,7 +125,7 @@ pub(super) struct Device {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum DeviceKind {
+pub(crate) enum DeviceKind {
     /// HIPERFACE motor-feedback encoder.
     Hiperface,
     /// POSITAL kit encoder, or another with BiSS C; over UBICOM (serial:, tcp:) or an adapter (bridge:).
@@ -139,16 +139,16 @@ pub(super) enum DeviceKind {
 }
 
 #[derive(Args)]
-pub(super) struct Find {
+pub(crate) struct Find {
     /// The kind of device: an encoder of another kind has no address and one speed.
     #[arg(value_parser = PossibleValuesParser::new(["hiperface", "hiperdrive"]).map(|word| found(&word)))]
     pub(super) device: DeviceKind,
     /// hiperface: exactly one encoder is connected: also ask by broadcast.
     #[arg(long)]
-    pub(super) one_encoder: bool,
+    pub(crate) one_encoder: bool,
     /// hiperface: wait so long for the encoder to be switched off and on, and ask within its default window.
     #[arg(long, value_name = "SECONDS")]
-    pub(super) power_cycle: Option<u64>,
+    pub(crate) power_cycle: Option<u64>,
 }
 
 /// The kind of a word that there is.
@@ -157,43 +157,43 @@ fn found(word: &str) -> DeviceKind {
 }
 
 #[derive(Args)]
-pub(super) struct Status {
+pub(crate) struct Status {
     /// The kind of device.
     pub(super) device: DeviceKind,
     /// ssi: how its frame is made, a profile or a family with its settings (help ssi decode says which).
     #[arg(long, value_name = "FILE|SPEC")]
-    pub(super) layout: Option<String>,
+    pub(crate) layout: Option<String>,
 }
 
 #[derive(Args)]
-pub(super) struct Position {
+pub(crate) struct Position {
     /// The kind of device.
     pub(super) device: DeviceKind,
     /// ssi: how its frame is made, a profile or a family with its settings (help ssi decode says which).
     #[arg(long, value_name = "FILE|SPEC")]
-    pub(super) layout: Option<String>,
+    pub(crate) layout: Option<String>,
     /// Number of lines; without it one, and with --csv as many as come until Ctrl-C.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) count: Option<u64>,
     /// Print a table (CSV): a header once, then a line a reading.
     #[arg(long, conflicts_with = "json")]
-    pub(super) csv: bool,
+    pub(crate) csv: bool,
     /// Time between two readings in milliseconds; 0: as fast as the line allows.
     #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
     #[command(flatten)]
-    pub(super) of: OfDrive,
+    pub(crate) of: OfDrive,
 }
 
 #[derive(Args)]
-pub(super) struct OfDrive {
+pub(crate) struct OfDrive {
     /// hiperdrive: which drive of a hub, 1 to 8; without it the first, or the one that a parameter's number names.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
-    pub(super) drive: Option<u8>,
+    pub(crate) drive: Option<u8>,
 }
 
 #[derive(Args)]
-pub(super) struct Read {
+pub(crate) struct Read {
     /// The kind of device.
     pub(super) device: DeviceKind,
     /// What to read, by its name.
@@ -208,27 +208,27 @@ pub(super) struct Read {
     /// cam-mask:P, temperature, operating-time.
     ///
     /// hiperdrive: a parameter's number: 17, 158; of another drive of a hub 158 with --drive 2, or 258.
-    pub(super) item: String,
+    pub(crate) item: String,
     #[command(flatten)]
-    pub(super) of: OfDrive,
+    pub(crate) of: OfDrive,
 }
 
 #[derive(Args)]
-pub(super) struct Save {
+pub(crate) struct Save {
     /// The kind of device.
     pub(super) device: DeviceKind,
     /// The profile to write.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
-    pub(super) file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Replace a file that exists without asking.
     #[arg(long)]
     pub(super) force: bool,
     /// hiperface: fail when a data field cannot be read because its access code is not known.
     #[arg(long)]
-    pub(super) complete: bool,
+    pub(crate) complete: bool,
     /// ssi: the layout to save, a profile or a family with its settings (help ssi decode says which).
     #[arg(long, value_name = "FILE|SPEC")]
-    pub(super) layout: Option<String>,
+    pub(crate) layout: Option<String>,
 }
 
 #[derive(Args)]
@@ -242,54 +242,54 @@ pub(super) struct Diff {
 #[derive(Args)]
 pub(super) struct Verify {
     /// The profile.
-    pub(super) file: PathBuf,
+    pub(crate) file: PathBuf,
 }
 
 #[derive(Args)]
-pub(super) struct Restore {
+pub(crate) struct Restore {
     /// The profile.
-    pub(super) file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Print exactly the operations that would be carried out; write nothing.
     #[arg(long)]
-    pub(super) dry_run: bool,
+    pub(crate) dry_run: bool,
     #[command(flatten)]
-    pub(super) consent: Consenting,
+    pub(crate) consent: Consenting,
     /// The profile may be of another serial number of the same type.
     #[arg(long)]
-    pub(super) allow_other_device: bool,
+    pub(crate) allow_other_device: bool,
     /// The profile may be of another type of device.
     ///
     /// hiperface: another type byte. biss: another profile ID, manufacturer or device ID, or another number of bits of turns
     /// or steps. interbus: single turn instead of multiturn, or steps counted less one. hiperdrive: an adapter, a hub with
     /// four or with eight places instead of another one, or another variant of drive at a place.
     #[arg(long)]
-    pub(super) allow_other_type: bool,
+    pub(crate) allow_other_type: bool,
     /// hiperface: copy the bytes of unknown meaning of this data field onto another serial number; repeatable.
     #[arg(long, value_name = "field:N")]
-    pub(super) copy: Vec<String>,
+    pub(crate) copy: Vec<String>,
     /// hiperface: leave the bytes of unknown meaning of this data field as the encoder has them; repeatable.
     #[arg(long, value_name = "field:N")]
-    pub(super) leave: Vec<String>,
+    pub(crate) leave: Vec<String>,
     /// Also restore values of the mounting onto another serial number.
     #[arg(long)]
-    pub(super) with_mounting: bool,
+    pub(crate) with_mounting: bool,
     /// hiperface: delete and create again where a field has another size and is not the last.
     #[arg(long)]
-    pub(super) recreate: bool,
+    pub(crate) recreate: bool,
 }
 
 #[derive(Args)]
-pub(super) struct Consenting {
+pub(crate) struct Consenting {
     /// Write without asking.
     #[arg(long)]
-    pub(super) yes: bool,
+    pub(crate) yes: bool,
     /// Write although the device counts as worn, or the logbook cannot tell its write cycles.
     #[arg(long)]
-    pub(super) force_wear: bool,
+    pub(crate) force_wear: bool,
 }
 
 #[derive(Args)]
-pub(super) struct Write {
+pub(crate) struct Write {
     /// The kind of device.
     pub(super) device: DeviceKind,
     /// What to write, by its name.
@@ -304,24 +304,24 @@ pub(super) struct Write {
     ///
     /// hiperdrive: a parameter that can be written, as read has it; it is saved where it can be. 101 to 104 move a drive and are
     /// never written; 47 and 198 are "do hiperdrive save", "set-position" and others.
-    pub(super) item: String,
+    pub(crate) item: String,
     /// A number (decimal or 0x); hex bytes for a data field and for a run of registers (+COUNT); interbus: cw or ccw for the
     /// direction, START..STOP for a cam.
     #[arg(allow_hyphen_values = true)]
-    pub(super) value: String,
+    pub(crate) value: String,
     #[command(flatten)]
-    pub(super) consent: Consenting,
+    pub(crate) consent: Consenting,
     #[command(flatten)]
-    pub(super) of: OfDrive,
+    pub(crate) of: OfDrive,
 }
 
 #[derive(Args)]
-pub(super) struct Simulate {
+pub(crate) struct Simulate {
     /// The kind of device.
     pub(super) device: DeviceKind,
     /// Make a pseudo-terminal and a symbolic link to it here.
     #[arg(long, value_name = "PATH", conflicts_with = "listen")]
-    pub(super) pty: Option<PathBuf>,
+    pub(crate) pty: Option<PathBuf>,
     /// Listen at HOST:PORT; hiperdrive over TCP and over UDP.
     #[arg(long, value_name = "ADDR")]
     pub(super) listen: Option<String>,
@@ -330,11 +330,11 @@ pub(super) struct Simulate {
     pub(super) hub: Option<String>,
     /// biss: be an adapter in front of the encoder, which speaks the bridge protocol, instead of its UBICOM line.
     #[arg(long)]
-    pub(super) bridge: bool,
+    pub(crate) bridge: bool,
     /// ssi: the encoder behind the adapter, a profile or a family with its settings (help ssi decode says which); without
     /// it atm60,code=gray.
     #[arg(long, value_name = "FILE|SPEC")]
-    pub(super) layout: Option<String>,
+    pub(crate) layout: Option<String>,
     /// Seed of the faults.
     #[arg(long)]
     pub(super) seed: Option<u64>,
@@ -349,9 +349,9 @@ pub(super) struct Simulate {
 
 /// An access code with its number.
 #[derive(Clone, Copy)]
-pub(super) struct Code {
-    pub(super) number: CodeNumber,
-    pub(super) code: AccessCode,
+pub(crate) struct Code {
+    pub(crate) number: CodeNumber,
+    pub(crate) code: AccessCode,
 }
 
 impl FromStr for Code {
@@ -367,7 +367,7 @@ impl FromStr for Code {
 }
 
 /// An access code: one or two hex digits, with or without `0x` or a final `h`.
-pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
+pub(crate) fn parse_code(text: &str) -> Option<AccessCode> {
     match crate::bits::parse_hex(text.trim()).ok()?.as_slice() {
         [byte] => Some(AccessCode::new(*byte)),
         _ => None,

@@ -10,12 +10,12 @@ use crate::device::LineQuality;
 use crate::device::check::Verdict;
 
 /// Prints the lines; one that is bad makes the command fail.
-pub(super) fn show(output: &Output, lines: &[CheckLine]) -> Result {
+pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     show_with(output, lines, None)
 }
 
 /// The same, with how good the line was, where that was counted.
-pub(super) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
+pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
     let (mut list, mut told) = (Vec::new(), Vec::new());

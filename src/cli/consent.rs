@@ -10,7 +10,7 @@ use super::{Failure, Result};
 use crate::worker::{self, NotBegun};
 
 /// Without a terminal nobody can be asked: refused before anything is opened.
-pub(super) fn require_consent(consent: &Consenting) -> Result<()> {
+pub(crate) fn require_consent(consent: &Consenting) -> Result<()> {
     if consent.yes || can_ask() {
         return Ok(());
     }
@@ -20,12 +20,12 @@ pub(super) fn require_consent(consent: &Consenting) -> Result<()> {
 }
 
 /// Somebody sits there.
-pub(super) fn can_ask() -> bool {
+pub(crate) fn can_ask() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
 /// Shows the plan and asks, unless the command line has consented already.
-pub(super) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result<()> {
+pub(crate) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result<()> {
     if consent.yes {
         return Ok(());
     }
@@ -37,7 +37,7 @@ pub(super) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result
 }
 
 /// Refuses a write into a worn device, or one whose write cycles are not known, before anybody is asked for consent to it.
-pub(super) fn check_wear<D>(consent: &Consenting, seen: Option<u64>, cost: u64, limit: u64) -> Result<()>
+pub(crate) fn check_wear<D>(consent: &Consenting, seen: Option<u64>, cost: u64, limit: u64) -> Result<()>
 where
     D: Runs,
     D::Error: From<NotBegun>,
@@ -79,12 +79,12 @@ impl Replaces {
 }
 
 /// Asks for a yes.
-pub(super) fn ask(question: &str) -> bool {
+pub(crate) fn ask(question: &str) -> bool {
     matches!(answer(question).as_str(), "y" | "Y" | "yes")
 }
 
 /// Asks somebody who sits there. A terminal that cannot be read from gives no answer.
-pub(super) fn answer(question: &str) -> String {
+pub(crate) fn answer(question: &str) -> String {
     say(question);
     let mut answer = String::new();
     match stdin().read_line(&mut answer) {

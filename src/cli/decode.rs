@@ -7,19 +7,19 @@ use super::{Done, Failure, Result};
 use crate::bits::parse_hex;
 
 /// A captured frame and what it means.
-pub(super) struct Explained {
+pub(crate) struct Explained {
     /// As it was captured, for a person.
-    pub(super) shown: String,
+    pub(crate) shown: String,
     /// As JSON carries it.
-    pub(super) compact: String,
+    pub(crate) compact: String,
     /// A line each; or why it is no frame.
-    pub(super) meaning: std::result::Result<Vec<String>, String>,
+    pub(crate) meaning: std::result::Result<Vec<String>, String>,
     /// Further keys for a script.
-    pub(super) more: Map<String, Json>,
+    pub(crate) more: Map<String, Json>,
 }
 
 /// Prints what frames mean. One that is none makes the command fail after all are told.
-pub(super) fn show(output: &Output, frames: &[Explained]) -> Result {
+pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     let mut list = Vec::new();
     let mut text = String::new();
     let mut broken = Vec::new();
@@ -56,7 +56,7 @@ pub(super) fn show(output: &Output, frames: &[Explained]) -> Result {
 }
 
 /// Hex bytes: arguments of three bytes or more are frames of their own; shorter ones together are one frame.
-pub(super) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
+pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {
         return Err(Failure::Usage("there are no bytes to explain".to_owned()));
@@ -65,6 +65,6 @@ pub(super) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
 }
 
 /// The hex bytes of an argument.
-pub(super) fn bytes(word: &str) -> Result<Vec<u8>> {
+pub(crate) fn bytes(word: &str) -> Result<Vec<u8>> {
     parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not hex bytes: {why}")))
 }

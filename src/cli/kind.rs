@@ -9,33 +9,33 @@ use crate::app::Text;
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// A kind of device on the command line: the commands by their names.
-pub(super) struct Kind {
+pub(crate) struct Kind {
     /// As it is written on the command line and in profiles.
-    pub(super) name: &'static str,
-    pub(super) find: fn(&Common, &Output, &Find) -> Result,
-    pub(super) identify: fn(&Common, &Output) -> Result,
-    pub(super) status: fn(&Common, &Output, &Status) -> Result,
-    pub(super) position: fn(&Common, &Output, &Position) -> Result,
-    pub(super) read: fn(&Common, &Output, &Read) -> Result,
-    pub(super) save: fn(&Common, &Output, &Save) -> Result,
-    pub(super) write: fn(&Common, &Output, &Write) -> Result,
-    pub(super) act: fn(&Common, &Output, &Do) -> Result,
-    pub(super) decode: fn(&Output, &Decode) -> Result,
-    pub(super) restore: fn(&Common, &Output, &Restore, Body) -> Result,
+    pub(crate) name: &'static str,
+    pub(crate) find: fn(&Common, &Output, &Find) -> Result,
+    pub(crate) identify: fn(&Common, &Output) -> Result,
+    pub(crate) status: fn(&Common, &Output, &Status) -> Result,
+    pub(crate) position: fn(&Common, &Output, &Position) -> Result,
+    pub(crate) read: fn(&Common, &Output, &Read) -> Result,
+    pub(crate) save: fn(&Common, &Output, &Save) -> Result,
+    pub(crate) write: fn(&Common, &Output, &Write) -> Result,
+    pub(crate) act: fn(&Common, &Output, &Do) -> Result,
+    pub(crate) decode: fn(&Output, &Decode) -> Result,
+    pub(crate) restore: fn(&Common, &Output, &Restore, Body) -> Result,
     /// The virtual device that is to be served.
-    pub(super) simulated: fn(&Output, &Simulate) -> Result<Box<dyn Simulated>>,
+    pub(crate) simulated: fn(&Output, &Simulate) -> Result<Box<dyn Simulated>>,
     /// The device as it is, for a comparison: all of it, or at least what a profile says something about.
-    pub(super) present: fn(&Common, &Output, Option<&Body>) -> Result<Body>,
+    pub(crate) present: fn(&Common, &Output, Option<&Body>) -> Result<Body>,
     /// What differs between two profiles, or that one of them is of another kind.
-    pub(super) compare: fn(&Body, &Body) -> std::result::Result<Comparison, ProfileError>,
+    pub(crate) compare: fn(&Body, &Body) -> std::result::Result<Comparison, ProfileError>,
     /// What is to be known of a profile, whatever is done with it.
-    pub(super) remark: fn(&Body) -> Option<Text>,
+    pub(crate) remark: fn(&Body) -> Option<Text>,
     /// That two profiles are not of the same device.
-    pub(super) other_device: fn(&Body, &Body) -> Option<String>,
+    pub(crate) other_device: fn(&Body, &Body) -> Option<String>,
 }
 
 /// A command that a kind of device does not have.
-pub(super) fn lacking(command: &str, kind: &str) -> Result {
+pub(crate) fn lacking(command: &str, kind: &str) -> Result {
     Err(Failure::Usage(format!("{command} is not for {kind} devices")))
 }
 

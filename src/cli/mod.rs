@@ -2,25 +2,25 @@
 //! worker.
 
 mod analyse;
-mod args;
+pub(crate) mod args;
 mod biss;
-mod check;
-mod consent;
-mod decode;
+pub(crate) mod check;
+pub(crate) mod consent;
+pub(crate) mod decode;
 mod ethernet_ip;
 mod hiperdrive;
 mod hiperface;
 mod interbus;
-mod kind;
-mod number;
-mod output;
-mod patience;
-mod plan;
+pub(crate) mod kind;
+pub(crate) mod number;
+pub(crate) mod output;
+pub(crate) mod patience;
+pub(crate) mod plan;
 mod ports;
-mod positions;
-mod profiles;
-mod runner;
-mod simulate;
+pub(crate) mod positions;
+pub(crate) mod profiles;
+pub(crate) mod runner;
+pub(crate) mod simulate;
 mod ssi;
 
 use std::path::PathBuf;
@@ -37,7 +37,7 @@ use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Done {
+pub(crate) enum Done {
     /// As it should: status 0.
     Well,
     /// `diff` or `verify` found differences: status 3.
@@ -46,7 +46,7 @@ enum Done {
 
 /// Why a command did not do what it should.
 #[derive(Debug)]
-enum Failure {
+pub(crate) enum Failure {
     /// It was called wrongly: status 2.
     Usage(String),
     /// The device or the operation failed: status 1. One to four lines.
@@ -55,7 +55,7 @@ enum Failure {
     NobodyReads,
 }
 
-type Result<T = Done> = std::result::Result<T, Failure>;
+pub(crate) type Result<T = Done> = std::result::Result<T, Failure>;
 
 /// What the arguments of this process ask for.
 pub enum Asked {

@@ -3,7 +3,7 @@
 use super::Failure;
 
 /// Decimal, or hexadecimal with `0x`; a sign in front.
-pub(super) fn parse_number(text: &str) -> Option<i64> {
+pub(crate) fn parse_number(text: &str) -> Option<i64> {
     let (sign, digits) = match text.strip_prefix('-') {
         Some(digits) => (-1, digits),
         None => (1, text),
@@ -17,6 +17,6 @@ pub(super) fn parse_number(text: &str) -> Option<i64> {
 }
 
 /// A value that is a number and lies beyond its limits.
-pub(super) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
+pub(crate) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
     Failure::Failed(vec![format!("{what}: {value} is not within {low} to {high} ({low:#X} to {high:#X}).")])
 }

@@ -8,22 +8,22 @@ use super::Failure;
 use crate::profile::Formats;
 
 /// What a command is given: where results go, and the formats of profiles that can be read.
-pub(super) struct Output {
+pub(crate) struct Output {
     json: bool,
     formats: Formats,
 }
 
 /// Lines of label and value, aligned.
 #[derive(Default)]
-pub(super) struct Lines(Vec<(String, String)>);
+pub(crate) struct Lines(Vec<(String, String)>);
 
 impl Lines {
-    pub(super) fn add(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
+    pub(crate) fn add(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
         self.0.push((label.into(), value.to_string()));
         self
     }
 
-    pub(super) fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let width = self.0.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
         self.0.iter().map(|(label, value)| format!("{label:width$}  {value}").trim_end().to_owned() + "\n").collect()
     }
@@ -35,7 +35,7 @@ impl Output {
     }
 
     /// The same, with results as text.
-    pub(super) fn as_text(&self) -> Self {
+    pub(crate) fn as_text(&self) -> Self {
         Output { json: false, formats: self.formats }
     }
 
@@ -45,12 +45,12 @@ impl Output {
     }
 
     /// Prints a result in the form that was asked for.
-    pub(super) fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
+    pub(crate) fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
         if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
     }
 
     /// Prints lines as they are, and lets nothing of them wait.
-    pub(super) fn print(&self, printed: &str) -> Result<(), Failure> {
+    pub(crate) fn print(&self, printed: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
@@ -71,13 +71,13 @@ impl Output {
     }
 
     /// Says something that is not a result.
-    pub(super) fn remark(&self, text: &str) {
+    pub(crate) fn remark(&self, text: &str) {
         say(&format!("{text}\n"));
     }
 }
 
 /// A number with its noun: `1 data field`, `3 data fields`.
-pub(super) fn count(number: usize, noun: &str) -> String {
+pub(crate) fn count(number: usize, noun: &str) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{number} {noun}{ending}")
 }
@@ -100,7 +100,7 @@ pub(super) fn say_usage(error: &clap::Error) {
 }
 
 /// Writes to stderr. When nobody reads that either, there is nobody to tell.
-pub(super) fn say(text: &str) {
+pub(crate) fn say(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(visible(text).as_bytes()).and_then(|()| err.flush());
 }

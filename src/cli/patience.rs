@@ -12,13 +12,13 @@ const LOOKS: Duration = Duration::from_millis(500);
 const SLOW: Duration = Duration::from_millis(100);
 
 /// How long replies of a device take, and how long they may.
-pub(super) struct Pace {
+pub(crate) struct Pace {
     /// What has been measured.
-    pub(super) replies: Replies,
+    pub(crate) replies: Replies,
     /// So long a reply may take, as `timeout=` in the link says.
-    pub(super) timeout: Duration,
+    pub(crate) timeout: Duration,
     /// The longest `timeout=`.
-    pub(super) longest: Duration,
+    pub(crate) longest: Duration,
 }
 
 /// Looks after a command that takes long; of one that is slow it tells once.

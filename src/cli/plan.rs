@@ -12,30 +12,30 @@ use crate::store::LogbookError;
 use crate::worker::Committed;
 
 /// A plan, for a person and for a script.
-pub(super) struct Shown {
-    pub(super) operations: Vec<Json>,
-    pub(super) text: String,
-    pub(super) write_cycles: u64,
+pub(crate) struct Shown {
+    pub(crate) operations: Vec<Json>,
+    pub(crate) text: String,
+    pub(crate) write_cycles: u64,
 }
 
 /// A line of a plan.
-pub(super) struct Step {
-    pub(super) item: String,
-    pub(super) old: Option<String>,
-    pub(super) new: Option<String>,
+pub(crate) struct Step {
+    pub(crate) item: String,
+    pub(crate) old: Option<String>,
+    pub(crate) new: Option<String>,
     /// None for what is saved together with others.
-    pub(super) write_cycles: u64,
+    pub(crate) write_cycles: u64,
 }
 
 impl Step {
     /// For a script.
-    pub(super) fn json(&self) -> Json {
+    pub(crate) fn json(&self) -> Json {
         json!({"item": self.item, "old": self.old, "new": self.new, "write_cycles": self.write_cycles})
     }
 }
 
 /// Steps for a person, a line each.
-pub(super) fn lines(steps: impl Iterator<Item = Step>) -> Lines {
+pub(crate) fn lines(steps: impl Iterator<Item = Step>) -> Lines {
     let mut lines = Lines::default();
     for Step { item, old, new, .. } in steps {
         let new = new.unwrap_or_default();
@@ -48,7 +48,7 @@ pub(super) fn lines(steps: impl Iterator<Item = Step>) -> Lines {
 }
 
 /// A plan for a person: its lines, and what it costs beside what this computer has seen, and the limit where there is one.
-pub(super) fn text<Base, Op: Operation>(
+pub(crate) fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
     seen: Option<u64>,
@@ -68,17 +68,17 @@ pub(super) const NOTHING: &str = "nothing to write: it is so already\n";
 
 /// What a write has done.
 #[derive(Default)]
-pub(super) struct Spent {
-    pub(super) written: u64,
-    pub(super) verified: u64,
-    pub(super) write_cycles: u64,
+pub(crate) struct Spent {
+    pub(crate) written: u64,
+    pub(crate) verified: u64,
+    pub(crate) write_cycles: u64,
     /// `None`: there was nothing to write.
-    pub(super) backup: Option<PathBuf>,
+    pub(crate) backup: Option<PathBuf>,
 }
 
 impl Spent {
     /// What a commit did; what the logbook could not take is told.
-    pub(super) fn of(output: &Output, committed: Committed<Written>) -> Self {
+    pub(crate) fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());
         let Written { written, verified, write_cycles, .. } = written;
@@ -87,7 +87,7 @@ impl Spent {
 }
 
 /// Tells what the logbook could not take.
-pub(super) fn warn(output: &Output, warning: Option<&LogbookError>) {
+pub(crate) fn warn(output: &Output, warning: Option<&LogbookError>) {
     if let Some(why) = warning {
         output.remark(&explain::logbook(why).terminal());
     }

@@ -17,14 +17,14 @@ use crate::profile::{Body, Comparison, Document, RestoreOptions};
 use crate::store::{read_text, write_atomically};
 
 /// Reads a profile of any kind, to look at it or to compare it.
-pub(super) fn load(output: &Output, path: &Path) -> Result<Body> {
+pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?;
     remark(path, &document)?;
     Ok(document.body)
 }
 
 /// Reads a profile that is to be written into a device: all of it has to be known.
-pub(super) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
+pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error)))?;
     remark(path, &document)?;
     Ok(document.body)
@@ -45,7 +45,7 @@ fn read_document(output: &Output, path: &Path) -> Result<Document> {
 }
 
 /// Writes a profile that was read just now.
-pub(super) fn keep(path: &Path, body: Body) -> Result<()> {
+pub(crate) fn keep(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
     let document = Document::new(second.to_string(), body);
@@ -87,7 +87,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Re
 }
 
 /// What the command line allows of a restore, for devices without data fields.
-pub(super) fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
+pub(crate) fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
     if !restore.copy.is_empty() || !restore.leave.is_empty() {
         return Err(Failure::Usage("--copy and --leave are for data fields; this device has none".to_owned()));
     }
@@ -129,16 +129,16 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 }
 
 /// What a restore leaves as it is.
-pub(super) struct Left {
-    pub(super) unchanged: u64,
-    pub(super) missing: Vec<String>,
+pub(crate) struct Left {
+    pub(crate) unchanged: u64,
+    pub(crate) missing: Vec<String>,
     /// What has to be set up anew, because it comes from another device.
-    pub(super) redo: Vec<String>,
+    pub(crate) redo: Vec<String>,
 }
 
 impl Left {
     /// Says what has to be set up anew.
-    pub(super) fn warn(&self, output: &Output) {
+    pub(crate) fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
         if let Some(text) = review::redo(items) {
             output.remark(&text.terminal());
@@ -147,7 +147,7 @@ impl Left {
 }
 
 /// Prints what a restore would do.
-pub(super) fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
+pub(crate) fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
     let json = json!({
         "dry_run": true,
         "operations": plan.operations,
@@ -164,7 +164,7 @@ pub(super) fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result
 }
 
 /// Prints what a restore has done.
-pub(super) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
+pub(crate) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
     let json = json!({
         "written": spent.written,
         "unchanged": left.unchanged,
@@ -190,12 +190,12 @@ pub(super) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Resu
 }
 
 /// Prints what writing an item has done; `operations` are what was carried out.
-pub(super) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &Spent) -> Result {
+pub(crate) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &Spent) -> Result {
     show_done(output, item, operations, spent, &[], "")
 }
 
 /// Prints what an action has done, and what came of it.
-pub(super) fn show_done(
+pub(crate) fn show_done(
     output: &Output,
     item: &str,
     operations: &[Json],

@@ -22,7 +22,7 @@ use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// What the command line has to know of a device that it runs jobs on.
-pub(super) trait Runs: Device {
+pub(crate) trait Runs: Device {
     /// What is kept of a session when its thread has it.
     type Kept;
     /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
@@ -78,19 +78,19 @@ pub(super) trait Runs: Device {
 }
 
 /// A session on its thread.
-pub(super) struct Runner<D: Runs> {
+pub(crate) struct Runner<D: Runs> {
     worker: Worker<D>,
     /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
     interrupted: Arc<AtomicBool>,
     patience: Patience,
     /// What the device said on the way of the last job.
-    pub(super) remarks: Vec<D::Remark>,
+    pub(crate) remarks: Vec<D::Remark>,
     /// What is known of the session.
-    pub(super) kept: D::Kept,
+    pub(crate) kept: D::Kept,
 }
 
 /// A job that ended early.
-pub(super) enum Ended<D: Device> {
+pub(crate) enum Ended<D: Device> {
     /// With this error.
     Job(Box<D::Error>),
     /// Ctrl-C, between two jobs.
@@ -114,7 +114,7 @@ impl<D: Runs> Drop for Runner<D> {
 
 impl<D: Runs> Runner<D> {
     /// Opens the link of the command line.
-    pub(super) fn open(common: &Common) -> Result<Self> {
+    pub(crate) fn open(common: &Common) -> Result<Self> {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
         };
@@ -157,7 +157,7 @@ impl<D: Runs> Runner<D> {
     }
 
     /// Runs a job to its end.
-    pub(super) fn run(&mut self, job: D::Job) -> Result<D::Output> {
+    pub(crate) fn run(&mut self, job: D::Job) -> Result<D::Output> {
         self.try_run(job).map_err(Ended::into_failure)
     }
 
@@ -229,7 +229,7 @@ impl<D: Runs> Runner<D> {
     }
 
     /// Ctrl-C was pressed.
-    pub(super) fn is_interrupted(&self) -> bool {
+    pub(crate) fn is_interrupted(&self) -> bool {
         self.interrupted.load(Ordering::SeqCst)
     }
 
@@ -239,7 +239,7 @@ impl<D: Runs> Runner<D> {
 }
 
 impl<D: Runs> Ended<D> {
-    pub(super) fn into_failure(self) -> Failure {
+    pub(crate) fn into_failure(self) -> Failure {
         match self {
             Ended::Job(error) => Failure::Failed(lines(D::failure(&error).iter().map(Text::terminal).collect())),
             Ended::Interrupted => failed(&Text::new("encoder.cancelled")),
@@ -261,12 +261,12 @@ fn lines(mut sentences: Vec<String>) -> Vec<String> {
 }
 
 /// A failure with one text.
-pub(super) fn failed(text: &Text) -> Failure {
+pub(crate) fn failed(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal()])
 }
 
 /// A job gave a result of another kind: a defect of this program, told rather than hidden.
-pub(super) fn unexpected(output: &impl std::fmt::Debug) -> Failure {
+pub(crate) fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 

@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_millis(20);
 const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
-pub(super) trait Simulated: ByteDevice {
+pub(crate) trait Simulated: ByteDevice {
     /// How its line is set at a moment; `None` where there is nothing to set, and while it is deaf.
     fn format(&self, now: Moment) -> Option<CharacterFormat>;
 
@@ -63,7 +63,7 @@ pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
 }
 
 /// The settings of the virtual device, a key with its value each.
-pub(super) fn settings(arguments: &Simulate) -> Result<Vec<(String, String)>> {
+pub(crate) fn settings(arguments: &Simulate) -> Result<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for setting in &arguments.settings {
         let (name, value) =

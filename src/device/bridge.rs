@@ -3,7 +3,7 @@
 //! and its reply it is let go.
 
 mod drift;
-pub(super) mod flow;
+pub(crate) mod flow;
 mod power;
 mod tap;
 
@@ -22,7 +22,7 @@ pub use power::SupplyAfter;
 pub use tap::{Streaming, Tap, TapError, Wanted};
 
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
-pub(super) const BISS_TIME_OUT_US: u16 = 20;
+pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 
 /// What goes on for so long behind the time of a reply, be it noise or a stream, brings none.
 const ENDLESS: Duration = Duration::from_secs(1);
@@ -128,7 +128,7 @@ pub enum AdapterError {
 
 /// An adapter's fault, or that of the wire to it.
 #[derive(Debug)]
-pub(super) enum Failure {
+pub(crate) enum Failure {
     Adapter(AdapterError),
     Line(LineError),
 }
@@ -146,8 +146,8 @@ impl From<LineError> for Failure {
 }
 
 /// A reply, and between which moments it was made.
-pub(super) struct Answered {
-    pub(super) reply: Reply,
+pub(crate) struct Answered {
+    pub(crate) reply: Reply,
     sent_at: Moment,
     received_at: Moment,
 }
@@ -164,41 +164,41 @@ impl AdapterState {
     }
 
     /// It is asked anew who it is. What is known of the encoder's supply stays: HELLO does not switch it.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = AdapterState { power: self.power, ..AdapterState::default() };
     }
 
     /// Whether the encoder had power before the session; `None` where nothing has told yet.
-    pub(super) const fn found_supplied(&self) -> Option<bool> {
+    pub(crate) const fn found_supplied(&self) -> Option<bool> {
         self.power.found
     }
 
     /// The encoder had power before the session, or had none.
-    pub(super) const fn find_supplied(&mut self, is_supplied: bool) {
+    pub(crate) const fn find_supplied(&mut self, is_supplied: bool) {
         self.power.found = Some(is_supplied);
     }
 
     /// The supply has to be switched off at the end of the session.
-    pub(super) fn supply_goes_off(&self) -> bool {
+    pub(crate) fn supply_goes_off(&self) -> bool {
         self.power.goes_off()
     }
 
     /// Anything at all has come from it, be it damaged.
-    pub(super) const fn has_spoken(&self) -> bool {
+    pub(crate) const fn has_spoken(&self) -> bool {
         self.has_spoken
     }
 
     /// The moment of our clock in which the adapter's stood at `t_us`, with the reply that told so.
-    pub(super) fn moment_of(&mut self, t_us: u64, answered: &Answered) -> Moment {
+    pub(crate) fn moment_of(&mut self, t_us: u64, answered: &Answered) -> Moment {
         self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
     }
 }
 
 /// The host's side, for one exchange.
-pub(super) struct Adapter<'m, 'a> {
-    pub(super) line: &'m mut Line<'a>,
-    pub(super) state: &'m mut LineState,
-    pub(super) adapter: &'m mut AdapterState,
+pub(crate) struct Adapter<'m, 'a> {
+    pub(crate) line: &'m mut Line<'a>,
+    pub(crate) state: &'m mut LineState,
+    pub(crate) adapter: &'m mut AdapterState,
 }
 
 impl Adapter<'_, '_> {
@@ -206,7 +206,7 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// [`AdapterError::Version`] among others.
-    pub(super) fn hello(&mut self) -> Result<(), Failure> {
+    pub(crate) fn hello(&mut self) -> Result<(), Failure> {
         if self.adapter.hello.is_none() {
             // The empty packet before it ends what the adapter may have heard of somebody else.
             let answered = self.repeat(&Request::Hello, &[0])?;
@@ -227,7 +227,7 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// [`AdapterError::NoSupply`], [`AdapterError::Overvoltage`] among others.
-    pub(super) fn supply(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
+    pub(crate) fn supply(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
         if let Some(hello) = self.adapter.hello().filter(|hello| !hello.capabilities.has(Capabilities::SUPPLY)) {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
         }
@@ -249,7 +249,7 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(super) fn leave_supply(&mut self) -> Result<(), Failure> {
+    pub(crate) fn leave_supply(&mut self) -> Result<(), Failure> {
         if self.adapter.supply_goes_off() { self.switch_off() } else { Ok(()) }
     }
 
@@ -263,7 +263,7 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(super) fn ask(&mut self, request: &Request) -> Result<Answered, Failure> {
+    pub(crate) fn ask(&mut self, request: &Request) -> Result<Answered, Failure> {
         self.repeat(request, &[])
     }
 
@@ -280,7 +280,7 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(super) fn ask_once(&mut self, request: &Request) -> Result<Option<Answered>, Failure> {
+    pub(crate) fn ask_once(&mut self, request: &Request) -> Result<Option<Answered>, Failure> {
         self.exchange(request, &[])
     }
 

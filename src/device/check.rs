@@ -27,7 +27,7 @@ pub struct Line<S, F> {
 
 impl<S, F> Line<S, F> {
     /// A step with what it found: it ended as the worst of that, and well where it found nothing.
-    pub(super) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
+    pub(crate) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         Line { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
     }
@@ -46,7 +46,7 @@ pub struct Wear {
 
 impl Wear {
     /// Write cycles that were seen, and what is to be said of them; `None` where nobody tells.
-    pub(super) fn judged(&self) -> Option<(Verdict, u64)> {
+    pub(crate) fn judged(&self) -> Option<(Verdict, u64)> {
         let seen = self.seen?;
         let verdict = match seen {
             _ if seen >= self.limit => Verdict::Bad,

@@ -10,7 +10,7 @@ use crate::link::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::units::Moment;
 
 /// Tries before a reading command fails.
-pub(super) const TRIES: u32 = 5;
+pub(crate) const TRIES: u32 = 5;
 /// No new try when nothing sensible came back for so long: a command has to end within ten seconds.
 const PATIENCE: Duration = Duration::from_secs(8);
 /// No wire is slower than this.
@@ -20,7 +20,7 @@ const SLICE: Duration = Duration::from_millis(50);
 /// A line on which bytes keep coming for so long has no silence.
 const NEVER_SILENT: Duration = Duration::from_secs(2);
 /// Bytes that are kept at most of what is no frame: a socket brings more noise than anybody can read.
-pub(super) const MOST_KEPT: usize = 4096;
+pub(crate) const MOST_KEPT: usize = 4096;
 
 /// Whether the adapter gives our own bytes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,10 +35,10 @@ pub enum Echo {
 
 impl Echo {
     /// The values of `echo=`.
-    pub(super) const ALLOWED: &'static str = "auto, on or off";
+    pub(crate) const ALLOWED: &'static str = "auto, on or off";
 
     /// A value of `echo=`.
-    pub(super) fn read(text: &str) -> Option<Self> {
+    pub(crate) fn read(text: &str) -> Option<Self> {
         match text {
             "auto" => Some(Echo::Unknown),
             "on" => Some(Echo::On),
@@ -48,7 +48,7 @@ impl Echo {
     }
 
     /// What has come behind the echo of `sent`; `None` while it may still be the echo.
-    pub(super) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
+    pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
         match self {
             Echo::Off => Some(line),
             Echo::On => line.get(sent.len()..),
@@ -61,7 +61,7 @@ impl Echo {
     }
 
     /// What the first exchange with a right answer has taught.
-    pub(super) fn learn(&mut self, echo_heard: bool) {
+    pub(crate) fn learn(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };
         }
@@ -69,10 +69,10 @@ impl Echo {
 }
 
 /// The values of `margin=`.
-pub(super) const MARGIN_ALLOWED: &str = "milliseconds from 0 to 2000";
+pub(crate) const MARGIN_ALLOWED: &str = "milliseconds from 0 to 2000";
 
 /// A value of `margin=`.
-pub(super) fn read_margin(text: &str) -> Option<Duration> {
+pub(crate) fn read_margin(text: &str) -> Option<Duration> {
     text.parse().ok().filter(|ms| *ms <= 2000).map(Duration::from_millis)
 }
 
@@ -137,7 +137,7 @@ pub struct LineState {
     /// How good it is.
     pub quality: LineQuality,
     /// No request before this moment.
-    pub(super) quiet_until: Moment,
+    pub(crate) quiet_until: Moment,
     /// Since when nothing sensible came back.
     troubled_since: Option<Moment>,
     /// When the first request was sent that has no reply yet.
@@ -148,7 +148,7 @@ pub struct LineState {
 
 impl LineState {
     /// A line that nobody has used.
-    pub(super) fn new(margin: Duration) -> Self {
+    pub(crate) fn new(margin: Duration) -> Self {
         LineState {
             margin,
             echo: Echo::Unknown,
@@ -167,31 +167,31 @@ impl LineState {
     }
 
     /// A job begins: it has its patience before it.
-    pub(super) fn begin_job(&mut self) {
+    pub(crate) fn begin_job(&mut self) {
         self.troubled_since = None;
         self.outstanding_since = None;
     }
 
     /// A request leaves now.
-    pub(super) fn sent(&mut self, at: Moment) {
+    pub(crate) fn sent(&mut self, at: Moment) {
         self.outstanding_since.get_or_insert(at);
         self.last_sent = at;
         self.quality.requests += 1;
     }
 
     /// A reply that can be understood has come.
-    pub(super) fn answered(&mut self) {
+    pub(crate) fn answered(&mut self) {
         self.outstanding_since = None;
         self.quality.replies += 1;
     }
 
     /// When that reply began.
-    pub(super) fn answer_began(&mut self, at: Moment) {
+    pub(crate) fn answer_began(&mut self, at: Moment) {
         self.quality.answered_after(at.since(self.last_sent));
     }
 
     /// What came makes sense: patience begins anew.
-    pub(super) fn recovered(&mut self) {
+    pub(crate) fn recovered(&mut self) {
         self.troubled_since = None;
     }
 
@@ -208,7 +208,7 @@ impl LineState {
 
 /// Why something on a line ends early.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum LineError {
+pub(crate) enum LineError {
     /// The user wished it.
     Cancelled,
     /// Bytes keep arriving where there should be silence.
@@ -224,11 +224,11 @@ impl From<LinkError> for LineError {
 }
 
 /// The host's side of a line, for one job.
-pub(super) struct Line<'a> {
+pub(crate) struct Line<'a> {
     /// All that the job got.
-    pub(super) ctx: Ctx<'a>,
+    pub(crate) ctx: Ctx<'a>,
     /// How long one goes on asking without an answer, where that is not the usual.
-    pub(super) patience: Option<Duration>,
+    pub(crate) patience: Option<Duration>,
     shielded: bool,
     /// What was let pass, where that is kept.
     passed: Option<Vec<u8>>,
@@ -236,23 +236,23 @@ pub(super) struct Line<'a> {
 
 impl<'a> Line<'a> {
     /// The line of a job.
-    pub(super) fn new(ctx: Ctx<'a>) -> Self {
+    pub(crate) fn new(ctx: Ctx<'a>) -> Self {
         Line { ctx, patience: None, shielded: false, passed: None }
     }
 
     /// Now.
-    pub(super) fn now(&self) -> Moment {
+    pub(crate) fn now(&self) -> Moment {
         self.ctx.clock.now()
     }
 
     /// From now on a wish to end is heard, or is not; gives back whether it was not.
-    pub(super) fn shield(&mut self, shielded: bool) -> bool {
+    pub(crate) fn shield(&mut self, shielded: bool) -> bool {
         std::mem::replace(&mut self.shielded, shielded)
     }
 
     /// # Errors
     /// [`LineError::Cancelled`] where the user wished an end.
-    pub(super) fn check_cancel(&self) -> Result<(), LineError> {
+    pub(crate) fn check_cancel(&self) -> Result<(), LineError> {
         if !self.shielded && self.ctx.cancel.is_requested() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
@@ -260,7 +260,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// [`LineError::Cancelled`].
-    pub(super) fn wait(&mut self, duration: Duration) -> Result<(), LineError> {
+    pub(crate) fn wait(&mut self, duration: Duration) -> Result<(), LineError> {
         let end = self.now() + duration;
         while self.now() < end {
             self.check_cancel()?;
@@ -274,7 +274,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// The wire, or [`LineError::Cancelled`].
-    pub(super) fn overhear(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
+    pub(crate) fn overhear(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
         let end = self.now() + duration;
         let mut heard = Vec::new();
         while self.now() < end {
@@ -291,7 +291,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// [`LineError::Cancelled`].
-    pub(super) fn start(&mut self) -> Result<(), LineError> {
+    pub(crate) fn start(&mut self) -> Result<(), LineError> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
@@ -300,7 +300,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// See [`LineError`].
-    pub(super) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
+    pub(crate) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         self.start()?;
         let mut stray = Vec::new();
         // Looks at least once: what came while nobody listened is no part of the next reply.
@@ -320,7 +320,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// The wire.
-    pub(super) fn send(&mut self, bytes: &[u8], shown: MaskedBytes, at: Moment) -> Result<(), LinkError> {
+    pub(crate) fn send(&mut self, bytes: &[u8], shown: MaskedBytes, at: Moment) -> Result<(), LinkError> {
         let text = shown.to_string();
         self.ctx.trace.record(at, Direction::Sent, shown);
         self.ctx.wire.send(bytes).map_err(|mut error| {
@@ -335,29 +335,29 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// The wire.
-    pub(super) fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+    pub(crate) fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         self.ctx.wire.receive(until, into)
     }
 
     /// From now on keeps what comes too late or behind a reply, until it is taken.
-    pub(super) fn keep_passed(&mut self) {
+    pub(crate) fn keep_passed(&mut self) {
         self.passed = Some(Vec::new());
     }
 
     /// Takes what came too late or behind a reply since it is kept, and keeps no more of it.
-    pub(super) fn take_passed(&mut self) -> Vec<u8> {
+    pub(crate) fn take_passed(&mut self) -> Vec<u8> {
         self.passed.take().unwrap_or_default()
     }
 
     /// Lets bytes pass that are no reply to what was asked. Of noise without an end only the first are kept.
-    pub(super) fn pass(&mut self, bytes: &[u8]) {
+    pub(crate) fn pass(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
             passed.extend(bytes.iter().take(MOST_KEPT.saturating_sub(passed.len())));
         }
     }
 
     /// Tells bytes that were received to whoever watches.
-    pub(super) fn show(&mut self, at: Moment, shown: MaskedBytes) {
+    pub(crate) fn show(&mut self, at: Moment, shown: MaskedBytes) {
         self.ctx.trace.record(at, Direction::Received, shown);
     }
 
@@ -366,7 +366,7 @@ impl<'a> Line<'a> {
     }
 
     /// Counts a try that gave no answer; true when there may be another. `longest` is the time that a try takes at most.
-    pub(super) fn may_ask_again(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
+    pub(crate) fn may_ask_again(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
         let now = self.now();
         state.damaged += 1;
         // The first try counts as well: at 600 bit/s it alone may take three seconds.
@@ -385,7 +385,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// See [`LineError`].
-    pub(super) fn hear_late(&mut self, state: &mut LineState, tries: u32, quiet: Duration) -> Result<(), LineError> {
+    pub(crate) fn hear_late(&mut self, state: &mut LineState, tries: u32, quiet: Duration) -> Result<(), LineError> {
         // Who is known to be silent for long is asked often.
         let doublings = tries.min(if self.patience.is_some() { 1 } else { 8 });
         let patience = state.margin.saturating_mul(1 << doublings).min(LONGEST_MARGIN);
@@ -410,7 +410,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// See [`LineError`].
-    pub(super) fn let_late_ones_pass(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
+    pub(crate) fn let_late_ones_pass(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let now = self.now();
         let lateness = now.since(state.outstanding_since.unwrap_or(now)).min(LONGEST_MARGIN);
         let passed = state.last_sent + lateness + state.margin;
@@ -429,7 +429,7 @@ impl<'a> Line<'a> {
     ///
     /// # Errors
     /// The wire, or [`LineError::NeverSilent`].
-    pub(super) fn wait_for_silence(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
+    pub(crate) fn wait_for_silence(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let give_up = self.now() + NEVER_SILENT;
         let mut stray = Vec::new();
         loop {

@@ -6,10 +6,10 @@ pub mod check;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
-mod line;
+pub(crate) mod line;
 mod replies;
 pub mod ssi;
-mod written;
+pub(crate) mod written;
 
 pub use line::{Echo, LineQuality, LineState};
 pub use replies::Replies;

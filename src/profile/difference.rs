@@ -28,7 +28,7 @@ pub struct Comparison {
 
 impl Comparison {
     /// Compares an item that counts one, as far as both sides have it.
-    pub(super) fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
+    pub(crate) fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         match (left, right) {
             (None, None) => {}
             (Some(_), None) => self.only_left.push(item),
@@ -49,7 +49,7 @@ impl Comparison {
 }
 
 /// Runs of differing bytes, as far as both sides reach.
-pub(super) fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
+pub(crate) fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {
         match runs.last_mut() {

@@ -4,19 +4,19 @@
 pub mod biss;
 mod body;
 mod cause;
-mod difference;
+pub(crate) mod difference;
 mod document;
 mod error;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 mod misspelt;
-mod mounting;
+pub(crate) mod mounting;
 mod place;
 mod plan;
 mod restore;
 mod rewrite;
-mod ron_text;
+pub(crate) mod ron_text;
 mod source;
 pub mod ssi;
 #[cfg(test)]

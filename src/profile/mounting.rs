@@ -19,7 +19,7 @@ const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
     /// Reads all marks of a profile. `item` reads what is marked, or says why it cannot; `expected` is what stands there.
-    pub(super) fn read_all(
+    pub(crate) fn read_all(
         entries: &mut Entries,
         expected: &'static str,
         item: impl Fn(&str) -> Result<Item, String>,
@@ -42,7 +42,7 @@ impl<Item> MountingMark<Item> {
 
 impl<Item: ToString> MountingMark<Item> {
     /// Writes all marks of a profile, with a comment on what they are good for; nothing where there are none.
-    pub(super) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
+    pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;
         }
@@ -58,4 +58,4 @@ impl<Item: ToString> MountingMark<Item> {
 }
 
 /// Said beside them where they never go onto another encoder by themselves.
-pub(super) const NEVER_BY_ITSELF: &str = "belongs to the mounting: never restored onto another encoder by itself";
+pub(crate) const NEVER_BY_ITSELF: &str = "belongs to the mounting: never restored onto another encoder by itself";

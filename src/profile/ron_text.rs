@@ -13,7 +13,7 @@ use super::misspelt::{Reading, Slip, letters_apart};
 use crate::bits::{HexError, parse_hex};
 
 /// What belongs where a byte is read.
-pub(super) const BYTE: &str = "a number from 0 to 255 (0x00 to 0xFF)";
+pub(crate) const BYTE: &str = "a number from 0 to 255 (0x00 to 0xFF)";
 
 /// Entries that this program does not know, by name: a person's own, or those of a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
@@ -301,12 +301,12 @@ impl Writer {
 }
 
 /// A RON string.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
 /// A person's own entries behind the known ones of a structure on one line: `, extra: {…}`.
-pub(super) fn entries_text(unknown: &Unknown) -> String {
+pub(crate) fn entries_text(unknown: &Unknown) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA}: {}", extra_text(unknown)) }
 }
 
@@ -317,7 +317,7 @@ fn extra_text(unknown: &Unknown) -> String {
 }
 
 /// A value that was read, as RON; structures as `(name: value)` wherever their names allow it.
-pub(super) fn value_text(value: &Value) -> String {
+pub(crate) fn value_text(value: &Value) -> String {
     let is_name = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
             && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')

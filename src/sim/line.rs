@@ -11,7 +11,7 @@ use crate::units::{CharacterFormat, Moment};
 
 /// What is on its way, by the moment that counts for it; of the same moment, as it was put in.
 #[derive(Clone, Debug)]
-pub(super) struct Queue<T>(VecDeque<(Moment, T)>);
+pub(crate) struct Queue<T>(VecDeque<(Moment, T)>);
 
 impl<T> Default for Queue<T> {
     fn default() -> Self {
@@ -20,72 +20,72 @@ impl<T> Default for Queue<T> {
 }
 
 impl<T> Queue<T> {
-    pub(super) fn insert(&mut self, at: Moment, item: T) {
+    pub(crate) fn insert(&mut self, at: Moment, item: T) {
         let place = self.0.partition_point(|(other, _)| *other <= at);
         self.0.insert(place, (at, item));
     }
 
     /// How many there are.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
     /// When the next one counts.
-    pub(super) fn due(&self) -> Option<Moment> {
+    pub(crate) fn due(&self) -> Option<Moment> {
         self.0.front().map(|(at, _)| *at)
     }
 
-    pub(super) fn pop(&mut self) -> Option<(Moment, T)> {
+    pub(crate) fn pop(&mut self) -> Option<(Moment, T)> {
         self.0.pop_front()
     }
 
-    pub(super) fn pop_until(&mut self, until: Moment) -> Option<T> {
+    pub(crate) fn pop_until(&mut self, until: Moment) -> Option<T> {
         self.0.pop_front_if(|(at, _)| *at <= until).map(|(_, item)| item)
     }
 
-    pub(super) fn retain(&mut self, mut wanted: impl FnMut(&T) -> bool) {
+    pub(crate) fn retain(&mut self, mut wanted: impl FnMut(&T) -> bool) {
         self.0.retain(|(_, item)| wanted(item));
     }
 }
 
 /// A character on the line, from its start bit to the end of its stop bit.
 #[derive(Clone, Copy)]
-pub(super) struct Character {
-    pub(super) start: Moment,
-    pub(super) end: Moment,
-    pub(super) byte: u8,
+pub(crate) struct Character {
+    pub(crate) start: Moment,
+    pub(crate) end: Moment,
+    pub(crate) byte: u8,
     /// One of its bits was inverted on the way: a parity bit does not fit any more.
-    pub(super) flipped: bool,
+    pub(crate) flipped: bool,
 }
 
 /// What becomes of bytes that are sent.
-pub(super) struct Sent {
+pub(crate) struct Sent {
     /// What the others hear.
-    pub(super) heard: Vec<Character>,
+    pub(crate) heard: Vec<Character>,
     /// What was put on the line, as it was: a converter may give that back, without the line's noise.
-    pub(super) own: Vec<Character>,
+    pub(crate) own: Vec<Character>,
     /// The last one is through.
-    pub(super) end: Moment,
+    pub(crate) end: Moment,
 }
 
 /// What every line has. Made with a device's settings.
 #[derive(Clone)]
-pub(super) struct Wires {
-    pub(super) faults: Faults,
-    pub(super) rng: Rng,
+pub(crate) struct Wires {
+    pub(crate) faults: Faults,
+    pub(crate) rng: Rng,
     /// How the host's UART is set.
-    pub(super) host: CharacterFormat,
-    pub(super) now: Moment,
+    pub(crate) host: CharacterFormat,
+    pub(crate) now: Moment,
     /// The host's UART has sent everything then.
     host_done: Moment,
     /// Bytes that the host's UART still sends, with when the last of them is through.
     sending: VecDeque<(Moment, usize)>,
     /// What has arrived at the host.
-    pub(super) inbox: Vec<u8>,
+    pub(crate) inbox: Vec<u8>,
 }
 
 impl Wires {
-    pub(super) fn new(faults: &Faults, seed: u64, host: CharacterFormat) -> Self {
+    pub(crate) fn new(faults: &Faults, seed: u64, host: CharacterFormat) -> Self {
         Wires {
             faults: faults.clone(),
             rng: Rng::with_seed(seed),
@@ -109,7 +109,7 @@ impl Wires {
     }
 
     /// Sends bytes over the noisy line, from `start` on, each taking the time of a character.
-    pub(super) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> Sent {
+    pub(crate) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> Sent {
         let mut sent = Sent { heard: Vec::new(), own: Vec::new(), end: start };
         for byte in bytes {
             let passage = self.faults.passage(&mut self.rng, *byte);
@@ -129,7 +129,7 @@ impl Wires {
 }
 
 /// A line with what is on it. It is a [`ByteDevice`] by that.
-pub(super) trait Line: Send {
+pub(crate) trait Line: Send {
     /// What happens next; of events at the same moment the least one.
     type Event;
 

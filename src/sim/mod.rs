@@ -11,9 +11,9 @@ mod fault;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
-mod line;
+pub(crate) mod line;
 mod motor;
-mod setting;
+pub(crate) mod setting;
 pub mod sine_cosine;
 pub mod ssi;
 

@@ -12,7 +12,7 @@ impl Motor {
     /// Revolutions a minute at most, either way.
     pub const MAX_RPM: f64 = 12_000.0;
 
-    pub(super) fn at(rpm: f64) -> Self {
+    pub(crate) fn at(rpm: f64) -> Self {
         Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
     }
 

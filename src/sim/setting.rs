@@ -35,9 +35,9 @@ pub enum ConfigError {
 
 /// A key with its value, about to be read. What cannot be used is refused with words that say what can.
 #[derive(Clone, Copy)]
-pub(super) struct Setting<'a> {
-    pub(super) key: &'a str,
-    pub(super) value: &'a str,
+pub(crate) struct Setting<'a> {
+    pub(crate) key: &'a str,
+    pub(crate) value: &'a str,
 }
 
 type Result<T> = std::result::Result<T, ConfigError>;
@@ -46,50 +46,50 @@ impl Setting<'_> {
     const MAX_RPM: f64 = 12_000.0;
 
     /// `device` has no such key; what it has is `known`.
-    pub(super) fn unknown(self, device: &'static str, known: &[&str]) -> ConfigError {
+    pub(crate) fn unknown(self, device: &'static str, known: &[&str]) -> ConfigError {
         ConfigError::Key { device, key: self.key.to_owned(), known: known.join(", ") }
     }
 
-    pub(super) fn refused(self, allowed: &str) -> ConfigError {
+    pub(crate) fn refused(self, allowed: &str) -> ConfigError {
         ConfigError::Value { key: self.key.to_owned(), value: self.value.to_owned(), allowed: allowed.to_owned() }
     }
 
     /// A whole number that fits into its type.
-    pub(super) fn number<T: TryFrom<u64>>(self, allowed: &str) -> Result<T> {
+    pub(crate) fn number<T: TryFrom<u64>>(self, allowed: &str) -> Result<T> {
         integer(self.value).and_then(|number| T::try_from(number).ok()).ok_or_else(|| self.refused(allowed))
     }
 
     /// A whole number of the range.
-    pub(super) fn within<T: TryFrom<u64> + PartialOrd>(self, range: impl RangeBounds<T>, allowed: &str) -> Result<T> {
+    pub(crate) fn within<T: TryFrom<u64> + PartialOrd>(self, range: impl RangeBounds<T>, allowed: &str) -> Result<T> {
         let number = Some(self.number(allowed)?).filter(|number| range.contains(number));
         number.ok_or_else(|| self.refused(allowed))
     }
 
     /// A whole number of the range, which may be negative, and is decimal.
-    pub(super) fn signed(self, range: RangeInclusive<i16>, allowed: &str) -> Result<i16> {
+    pub(crate) fn signed(self, range: RangeInclusive<i16>, allowed: &str) -> Result<i16> {
         let number = self.value.parse().ok().filter(|number| range.contains(number));
         number.ok_or_else(|| self.refused(allowed))
     }
 
     /// A number of the range, with a decimal point where it needs one.
-    pub(super) fn decimal(self, range: RangeInclusive<f64>, allowed: &str) -> Result<f64> {
+    pub(crate) fn decimal(self, range: RangeInclusive<f64>, allowed: &str) -> Result<f64> {
         let number = self.value.parse().ok().filter(|number| range.contains(number));
         number.ok_or_else(|| self.refused(allowed))
     }
 
     /// Revolutions a minute, either way.
-    pub(super) fn rpm(self) -> Result<f64> {
+    pub(crate) fn rpm(self) -> Result<f64> {
         let range = -Self::MAX_RPM..=Self::MAX_RPM;
         self.decimal(range, "a speed from -12000 to 12000 revolutions a minute")
     }
 
     /// One of these words.
-    pub(super) fn one_of<T: Copy>(self, words: &[(&str, T)], allowed: &str) -> Result<T> {
+    pub(crate) fn one_of<T: Copy>(self, words: &[(&str, T)], allowed: &str) -> Result<T> {
         let found = words.iter().find(|(word, _)| *word == self.value);
         found.map(|(_, meaning)| *meaning).ok_or_else(|| self.refused(allowed))
     }
 
-    pub(super) fn switch(self) -> Result<bool> {
+    pub(crate) fn switch(self) -> Result<bool> {
         self.one_of(&[("on", true), ("off", false)], "on or off")
     }
 }
@@ -104,7 +104,7 @@ pub(super) fn integer(text: &str) -> Option<u64> {
 
 /// The keys and values of a query, for a test.
 #[cfg(test)]
-pub(super) fn pairs(query: &str) -> Vec<(String, String)> {
+pub(crate) fn pairs(query: &str) -> Vec<(String, String)> {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
     pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect()
 }

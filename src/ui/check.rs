@@ -9,7 +9,7 @@ use crate::app::check::{CheckLine, verdict};
 use crate::device::check::Verdict;
 
 /// Draws the lines of the last check, or what one would do.
-pub(super) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, nothing: &'static str) {
+pub(crate) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, nothing: &'static str) {
     let Some(lines) = lines else {
         paragraph(ui, skin.label(skin.say(nothing)));
         return;

@@ -12,20 +12,20 @@ const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 /// The least width of a dialog.
 const MODAL: f32 = 240.0;
 /// Width of the column of labels.
-pub(super) const LABELS: f32 = 132.0;
+pub(crate) const LABELS: f32 = 132.0;
 
 /// Takes the whole width; in a window that is too small for anything there may be less than none.
-pub(super) fn fill(ui: &mut Ui) {
+pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
 
 /// A card with a heading.
-pub(super) fn card<R>(ui: &mut Ui, skin: &Skin, title: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub(crate) fn card<R>(ui: &mut Ui, skin: &Skin, title: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, skin, title, |_| {}, content)
 }
 
 /// A card with a heading; what stands at the right of the heading comes from `aside`.
-pub(super) fn card_with<R>(
+pub(crate) fn card_with<R>(
     ui: &mut Ui,
     skin: &Skin,
     title: &'static str,
@@ -46,7 +46,7 @@ pub(super) fn card_with<R>(
 }
 
 /// A label and a value that can be selected, on one line.
-pub(super) fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichText>) {
+pub(crate) fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
         // Values are read, not touched: they stand closer than what has to be hit with a pointer.
         ui.spacing_mut().interact_size.y = 20.0;
@@ -59,7 +59,7 @@ pub(super) fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichTe
 }
 
 /// A label and something else, on one line.
-pub(super) fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub(crate) fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         label_ui(ui, skin, label);
         content(ui)
@@ -76,12 +76,12 @@ fn label_ui(ui: &mut Ui, skin: &Skin, label: &str) {
 }
 
 /// Words over several lines, beginning at the left.
-pub(super) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
+pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
 
 /// Why an entry cannot be used, below it.
-pub(super) fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&crate::app::Text>) {
+pub(crate) fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad)),
         // Entries below it are the same ones without it: whoever types in one goes on typing.
@@ -120,18 +120,18 @@ pub(super) fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
 }
 
 /// A button with an icon and a word.
-pub(super) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
+pub(crate) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
     enabled_button(ui, true, icon, word)
 }
 
 /// A button that may not be pressed now.
-pub(super) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
+pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
 /// A button that says why it may not be pressed.
-pub(super) fn allowed_button(
+pub(crate) fn allowed_button(
     ui: &mut Ui,
     skin: &Skin,
     allowed: &Result<(), crate::app::Text>,
@@ -146,7 +146,7 @@ pub(super) fn allowed_button(
 }
 
 /// The one button of a screen that the eye ends at.
-pub(super) fn primary(ui: &mut Ui, skin: &Skin, enabled: bool, icon: &str, word: &str) -> Response {
+pub(crate) fn primary(ui: &mut Ui, skin: &Skin, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     let ink = if enabled { skin.palette.on_accent } else { skin.palette.muted };
     let mut button = Button::new(RichText::new(shown).color(ink)).min_size(vec2(96.0, 0.0));
@@ -157,19 +157,19 @@ pub(super) fn primary(ui: &mut Ui, skin: &Skin, enabled: bool, icon: &str, word:
 }
 
 /// An icon alone; its word is the tooltip.
-pub(super) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
+pub(crate) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let response = ui.add_enabled(enabled, Button::new(icon).min_size(vec2(28.0, 28.0)));
     name(response, enabled, word).on_hover_text(word).on_disabled_hover_text(word)
 }
 
 /// Gives a widget the name by which a screen reader and a test find it.
-pub(super) fn name(response: Response, enabled: bool, word: &str) -> Response {
+pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, enabled, word));
     response
 }
 
 /// A short word in a frame of its colour.
-pub(super) fn badge(ui: &mut Ui, skin: &Skin, word: &str, colour: impl Into<egui::Color32>) {
+pub(crate) fn badge(ui: &mut Ui, skin: &Skin, word: &str, colour: impl Into<egui::Color32>) {
     let colour = colour.into();
     let font = egui::FontId::proportional(skin.sizes.caption);
     let words = ui.painter().layout_no_wrap(word.to_owned(), font, colour);
@@ -180,7 +180,7 @@ pub(super) fn badge(ui: &mut Ui, skin: &Skin, word: &str, colour: impl Into<egui
 }
 
 /// What would be here, and the one action that fills it.
-pub(super) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str, &str, bool)>) -> bool {
+pub(crate) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
         ui.add_space(skin.space.groups);
@@ -195,7 +195,7 @@ pub(super) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str,
 }
 
 /// An icon that opens a small panel below itself. What is ticked and typed there does not close it.
-pub(super) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
+pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
@@ -207,12 +207,12 @@ pub(super) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
 }
 
 /// A one-line entry with a name for screen readers.
-pub(super) fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
+pub(crate) fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
 }
 
 /// A one-line entry for what is spelled exactly.
-pub(super) fn mono_entry(ui: &mut Ui, skin: &Skin, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
+pub(crate) fn mono_entry(ui: &mut Ui, skin: &Skin, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     entry_in(ui, text, width, label, hint, egui::FontId::monospace(skin.sizes.body).into())
 }
 
@@ -236,7 +236,7 @@ fn entry_in(
 }
 
 /// A choice from a list, with a name for screen readers.
-pub(super) fn choice<T: PartialEq + Copy>(
+pub(crate) fn choice<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
     value: &mut T,
@@ -265,7 +265,7 @@ pub(super) fn choice<T: PartialEq + Copy>(
 
 /// A choice whose options all stand there, as many in a row as fit: also where a list could not open, in a panel that a
 /// click beside it closes.
-pub(super) fn options<T: PartialEq + Copy>(
+pub(crate) fn options<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
     value: &mut T,
@@ -290,7 +290,7 @@ pub(super) fn options<T: PartialEq + Copy>(
 }
 
 /// A one-line entry for what is not to be seen: not on the screen, not by a screen reader, not by undoing.
-pub(super) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
+pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
     let edit = egui::TextEdit::singleline(text).password(true).desired_width(width).margin(FIELD);
     let response = ui.add(edit);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::PasswordInput, true, label));
@@ -298,13 +298,13 @@ pub(super) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &s
 }
 
 /// Empties a secret entry, with all that could bring it back.
-pub(super) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
+pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
     text.clear();
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
 /// Something is being done. It turns slowly enough to cost nothing.
-pub(super) fn spinner(ui: &mut Ui, skin: &Skin) {
+pub(crate) fn spinner(ui: &mut Ui, skin: &Skin) {
     const STEPS: f64 = 8.0;
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
     let step = (ui.input(|input| input.time) * STEPS).floor();
@@ -319,7 +319,7 @@ pub(super) fn spinner(ui: &mut Ui, skin: &Skin) {
 }
 
 /// A one-line entry behind its label, which is also its name for screen readers.
-pub(super) fn labelled_entry(
+pub(crate) fn labelled_entry(
     ui: &mut Ui,
     skin: &Skin,
     id: &'static str,
@@ -332,7 +332,7 @@ pub(super) fn labelled_entry(
 }
 
 /// A verdict on a signal: icon and colour.
-pub(super) fn verdict(skin: &Skin, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
+pub(crate) fn verdict(skin: &Skin, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
     let palette = skin.palette;
     match verdict {
         Verdict::Ok => (icons::CHECK_CIRCLE, palette.good),
@@ -342,7 +342,7 @@ pub(super) fn verdict(skin: &Skin, verdict: Verdict) -> (&'static str, crate::ap
 }
 
 /// A verdict with its words, in its colour.
-pub(super) fn verdict_ui(ui: &mut Ui, skin: &Skin, own: Verdict, words: &crate::app::Text) {
+pub(crate) fn verdict_ui(ui: &mut Ui, skin: &Skin, own: Verdict, words: &crate::app::Text) {
     let (icon, colour) = verdict(skin, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
@@ -351,7 +351,7 @@ pub(super) fn verdict_ui(ui: &mut Ui, skin: &Skin, own: Verdict, words: &crate::
 }
 
 /// How much a notice matters: icon and colour.
-pub(super) fn severity(skin: &Skin, severity: crate::app::Severity) -> (&'static str, crate::app::Rgb) {
+pub(crate) fn severity(skin: &Skin, severity: crate::app::Severity) -> (&'static str, crate::app::Rgb) {
     use crate::app::Severity;
     let palette = skin.palette;
     match severity {
@@ -363,7 +363,7 @@ pub(super) fn severity(skin: &Skin, severity: crate::app::Severity) -> (&'static
 }
 
 /// Two columns of cards where there is room, else one below the other.
-pub(super) fn two_columns<C>(
+pub(crate) fn two_columns<C>(
     ui: &mut Ui,
     skin: &Skin,
     context: C,
@@ -374,7 +374,7 @@ pub(super) fn two_columns<C>(
 }
 
 /// Two columns of cards, the left one with this share of the width, where there is this much; else one below the other.
-pub(super) fn split<C>(
+pub(crate) fn split<C>(
     ui: &mut Ui,
     skin: &Skin,
     (share, least): (f32, f32),
@@ -404,7 +404,7 @@ pub(super) fn split<C>(
 
 /// A one-line entry that counts when it is left or Enter is pressed. `draft` holds what is typed until it counts, or until
 /// it can: what `take` refuses stays, with the reason below it.
-pub(super) fn settled_entry(
+pub(crate) fn settled_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,
     shown: &str,
@@ -430,7 +430,7 @@ pub(super) fn settled_entry(
 }
 
 /// A dot: filled for a connection, hollow for none.
-pub(super) fn dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
+pub(crate) fn dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();
     if filled {

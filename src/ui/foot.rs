@@ -12,7 +12,7 @@ use crate::app::{Action, AnyDevice, Studio, Tab, Text, Wish};
 const NARROW: f32 = 660.0;
 
 /// Draws the foot.
-pub(super) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+pub(crate) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     ui.add_space(skin.space.between);
     let dirty = device.is_dirty();
     let width = ui.available_width();

@@ -1,34 +1,34 @@
 //! The window: drawing only. A view reads the state, keeps nothing but its own text buffers and selection, and pushes
 //! actions; it never does I/O, decodes, sorts or blocks.
 
-mod backups;
+pub(crate) mod backups;
 mod biss;
-mod check;
-mod controls;
-mod dialogs;
+pub(crate) mod check;
+pub(crate) mod controls;
+pub(crate) mod dialogs;
 mod docks;
 mod end;
-mod foot;
+pub(crate) mod foot;
 mod header;
 mod hiperdrive;
 mod hiperface;
 pub mod icons;
 mod interbus;
 mod keys;
-mod motor;
+pub(crate) mod motor;
 mod navigation;
-mod page;
-mod panels;
+pub(crate) mod page;
+pub(crate) mod panels;
 pub mod plot;
 mod review;
 mod run;
 mod signals;
 mod skin;
 mod ssi;
-mod stopping;
+pub(crate) mod stopping;
 pub mod widgets;
 mod window;
-mod wires;
+pub(crate) mod wires;
 mod workspace;
 
 pub use run::run;

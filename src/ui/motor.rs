@@ -9,7 +9,7 @@ use super::controls::{card, name, paragraph};
 const SPEEDS: [f64; 5] = [-60.0, -6.0, 0.0, 6.0, 60.0];
 
 /// Draws the card; `turn` is told the speed that is wished, in revolutions a minute.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, now: f64, mut turn: impl FnMut(f64)) {
+pub(crate) fn card_ui(ui: &mut Ui, skin: &Skin, now: f64, mut turn: impl FnMut(f64)) {
     card(ui, skin, "motor_card.title", |ui| {
         paragraph(ui, skin.caption(skin.say("motor_card.words")));
         ui.horizontal_wrapped(|ui| {

@@ -64,7 +64,7 @@ pub fn run(start: Start, formats: Formats) -> Result<(), String> {
 }
 
 /// The window as eframe runs it.
-struct Shown {
+pub(crate) struct Shown {
     window: Window,
     /// When the program began, until its first picture has been shown.
     began: Option<Instant>,

@@ -8,7 +8,7 @@ use egui::{Context, Event, Id, Key, Response, Ui};
 const FRIGHT: f64 = 0.5;
 
 /// Whether what was pressed at this time, by the clock of the pictures, means what moves, or has moved until just now.
-pub(super) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
+pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let means = moves || has_just_stopped(ctx, pressed);
     if means {
         let now = ctx.input(|input| input.time);
@@ -27,7 +27,7 @@ fn last_stop() -> Id {
 }
 
 /// The pointer goes down on a button that stops, in this picture.
-pub(super) fn goes_down(ui: &Ui, response: &Response) -> bool {
+pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     let goes = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if goes {
         let now = ui.input(|input| input.time);
@@ -37,7 +37,7 @@ pub(super) fn goes_down(ui: &Ui, response: &Response) -> bool {
 }
 
 /// When what counts in this picture, on a button that stops, was pressed.
-pub(super) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
+pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
     let now = ui.input(|input| input.time);
     // A click by the keyboard has no press of its own.
     let by_pointer = goes_down || ui.input(|input| input.pointer.any_released());

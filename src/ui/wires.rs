@@ -6,7 +6,7 @@ use super::Skin;
 use super::controls::paragraph;
 
 /// Draws them; their names stand in a column of this width.
-pub(super) fn wires_ui(ui: &mut Ui, skin: &Skin, width: f32, wires: &[(&str, &'static str)]) {
+pub(crate) fn wires_ui(ui: &mut Ui, skin: &Skin, width: f32, wires: &[(&str, &'static str)]) {
     for (wire, words) in wires {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
@@ -19,7 +19,7 @@ pub(super) fn wires_ui(ui: &mut Ui, skin: &Skin, width: f32, wires: &[(&str, &'s
 
 /// Each wire has this name, and its words say this, in English; in German it has other words.
 #[cfg(test)]
-pub(super) fn check_wires(wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
+pub(crate) fn check_wires(wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
     assert_eq!(wires.len(), expected.len());
     for ((wire, id), (name, facts)) in wires.iter().zip(expected) {
         assert_eq!(wire, name);
@@ -29,7 +29,7 @@ pub(super) fn check_wires(wires: &[(&str, &'static str)], expected: &[(&str, &[&
 
 /// The notes of a card say this, in English; in German they have other words.
 #[cfg(test)]
-pub(super) fn check_notes(notes: &[&'static str], facts: &[&str]) {
+pub(crate) fn check_notes(notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};
     use crate::app::Text;
     let said = |language| notes.iter().map(|id| Text::new(id).words(language)).collect::<Vec<_>>().join(" ");

@@ -15,7 +15,7 @@ use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
 use crate::protocol::bridge::Data;
 use crate::units::SupplyVoltage;
 
-pub(super) use open::FORMAT;
+pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
 /// What an adapter is to stream, and what its samples are.
@@ -148,4 +148,4 @@ impl Counted for Pair {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;

@@ -10,7 +10,7 @@
 mod agenda;
 pub mod biss;
 pub mod bridge;
-mod commit;
+pub(crate) mod commit;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
@@ -18,7 +18,7 @@ mod interruption;
 #[cfg(test)]
 mod invented;
 mod live;
-mod open;
+pub(crate) mod open;
 mod outbox;
 mod ring;
 mod session;
@@ -121,7 +121,7 @@ pub trait Device: Send + 'static {
 }
 
 /// How often an idle worker looks after a device of which nothing is under way.
-const IDLE: Duration = Duration::from_millis(500);
+pub(crate) const IDLE: Duration = Duration::from_millis(500);
 
 /// What a device says when it is asked for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -149,7 +149,7 @@ pub struct Progress<W> {
 
 impl<W> Progress<W> {
     /// The operation of this number begins, from 0.
-    fn at<Op>(ops: &[Op], number: usize, what: W) -> Self {
+    pub(crate) fn at<Op>(ops: &[Op], number: usize, what: W) -> Self {
         Progress { done: number as u64, total: ops.len() as u64, what }
     }
 }

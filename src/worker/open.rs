@@ -42,7 +42,7 @@ pub enum OpenError {
 
 /// How much later than the protocol's worst case a reply may come, by kind of wire: USB adapters deliver in packets,
 /// device servers over a network, and even a thread has to be woken up.
-pub(super) const fn margin(scheme: Scheme) -> Duration {
+pub(crate) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
         Scheme::Serial => Duration::from_millis(50),
         Scheme::Tcp | Scheme::Bridge | Scheme::Modbus | Scheme::Enip => Duration::from_millis(100),
@@ -54,7 +54,7 @@ pub(super) const fn margin(scheme: Scheme) -> Duration {
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
-pub(super) fn open_bytes(
+pub(crate) fn open_bytes(
     url: &LinkUrl,
     format: CharacterFormat,
     clock: &Arc<dyn Clock>,
@@ -72,12 +72,12 @@ pub(super) fn open_bytes(
 }
 
 /// The wire to a virtual device in this process.
-pub(super) fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
+pub(crate) fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
 /// Links of this kind do not lead to a device; those that do are `known`.
-pub(super) fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
+pub(crate) fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
 
@@ -85,7 +85,7 @@ pub(super) fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError 
 ///
 /// # Errors
 /// [`OpenError::File`], [`OpenError::Recording`].
-pub(super) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
+pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
     let text = read_text(Path::new(path))?;
     read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })
 }
@@ -94,7 +94,7 @@ pub(super) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
 ///
 /// # Errors
 /// [`UrlError::Unknown`].
-pub(super) fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result<(), UrlError> {
+pub(crate) fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result<(), UrlError> {
     match query.without(known).into_iter().next() {
         None => Ok(()),
         Some((name, _)) => Err(UrlError::Unknown { name, scheme: scheme.word(), known: known.join(", ") }),

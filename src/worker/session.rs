@@ -9,17 +9,17 @@ use crate::store::Store;
 
 /// What a job finds on its desk, whatever the device: time, the user's wish to end, who watches, and the folders.
 pub struct Desk {
-    pub(super) clock: Arc<dyn Clock>,
+    pub(crate) clock: Arc<dyn Clock>,
     pub(super) cancel: Cancel,
     pub(super) trace: Trace,
-    pub(super) store: Store,
+    pub(crate) store: Store,
     /// The device lives in this process: its wear counts apart.
-    pub(super) is_virtual: bool,
+    pub(crate) is_virtual: bool,
 }
 
 impl Desk {
     /// The context of a procedure on `wire`.
-    pub(super) fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
+    pub(crate) fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
 }
@@ -27,12 +27,12 @@ impl Desk {
 /// One wire, from opening to closing. A test runs jobs on it inline; a worker runs them on a thread of its own.
 pub struct Session<D> {
     desk: Desk,
-    pub(super) device: D,
+    pub(crate) device: D,
 }
 
 impl<D: Device> Session<D> {
     /// A session with a device.
-    pub(super) fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
+    pub(crate) fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (Cancel::default(), Trace::default());
         Session { desk: Desk { clock, cancel, trace, store, is_virtual }, device }
     }

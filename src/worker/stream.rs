@@ -23,7 +23,7 @@ use crate::signal::Time;
 use crate::signal::wires::Wires;
 
 /// How long a producer may wait at once: after so long at most a stop or a change is heard.
-pub(super) const PATIENCE: Duration = Duration::from_millis(20);
+pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
 /// The window is woken so often at most.
 const WAKE: Duration = Duration::from_millis(50);
 

@@ -57,8 +57,11 @@ impl Place {
         let place = |owner, layer| Some(Place { owner, layer });
         match names.as_slice() {
             [] => place(Owner::Core, "lib"),
+            ["devices" | "buses"] => place(Owner::Core, "lib"),
+            ["signals"] => place(Owner::Signals, "lib"),
             ["devices", name] => place(Owner::Device((*name).to_owned()), "kinds"),
             ["devices", name, module, ..] => place(Owner::Device((*name).to_owned()), layer(module).unwrap_or("kinds")),
+            ["buses", name] => place(Owner::Bus((*name).to_owned()), "lib"),
             ["buses", name, module, ..] => place(Owner::Bus((*name).to_owned()), layer(module)?),
             ["signals", module, ..] => place(Owner::Signals, layer(module)?),
             ["app", "explain", name, ..] if DEVICES.contains(name) => place(Owner::Device((*name).to_owned()), "app"),

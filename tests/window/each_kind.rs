@@ -186,14 +186,14 @@ fn compared(one: Body, other: Body) -> Comparison {
         Some((one.get::<P>()?.clone(), other.get::<P>().unwrap().clone()))
     }
     if let Some((one, other)) = pair::<BissProfile>(&one, &other) {
-        profile::biss::compare(&one, &other)
+        encoder_studio::profile::biss::compare(&one, &other)
     } else if let Some((one, other)) = pair::<InterbusProfile>(&one, &other) {
-        profile::interbus::compare(&one, &other)
+        encoder_studio::profile::interbus::compare(&one, &other)
     } else if let Some((one, other)) = pair::<HiperdriveProfile>(&one, &other) {
-        profile::hiperdrive::compare(&one, &other)
+        encoder_studio::profile::hiperdrive::compare(&one, &other)
     } else {
         let (one, other) = pair::<HiperfaceProfile>(&one, &other).unwrap();
-        profile::hiperface::compare(&one.fields, &other.fields)
+        encoder_studio::profile::hiperface::compare(&one.fields, &other.fields)
     }
 }
 

@@ -20,7 +20,7 @@ const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
     /// Does what is asked.
-    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
             // The studio opens links, and knows other sessions.
             Action::Reconnect | Action::WriteInto(_) | Action::PlanMounting { .. } => {}

@@ -7,7 +7,7 @@ use crate::profile::biss::BissProfile;
 use crate::worker::biss::Biss;
 
 /// Edited bytes: global address, byte.
-pub(in crate::app) type Edits = Vec<(u16, u8)>;
+pub(crate) type Edits = Vec<(u16, u8)>;
 
 impl OnDesk for Encoder {
     type Device = Biss;

@@ -57,7 +57,7 @@ pub struct Encoder {
 
 impl Encoder {
     /// An encoder at a link that is being opened.
-    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Encoder::with(Session::at_link(id, url))
     }
 
@@ -82,7 +82,7 @@ impl Encoder {
     }
 
     /// A profile of an encoder.
-    pub(in crate::app) fn in_file(
+    pub(crate) fn in_file(
         id: SessionId,
         file: ProfileFile,
         document: Document,
@@ -122,7 +122,7 @@ impl Encoder {
     }
 
     /// The profile as the user wants it, where this is one.
-    pub(in crate::app) fn wanted_profile(&self) -> Option<BissProfile> {
+    pub(crate) fn wanted_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
         for (at, byte) in self.memory.wishes() {
             profile.put(at, byte);
@@ -170,15 +170,15 @@ impl Encoder {
     }
 
     /// Bytes that are edited.
-    pub(in crate::app) fn edits(&self) -> usize {
+    pub(crate) fn edits(&self) -> usize {
         self.memory.edits().len()
     }
 
-    pub(in crate::app) fn can_undo(&self) -> bool {
+    pub(crate) fn can_undo(&self) -> bool {
         self.memory.can_undo()
     }
 
-    pub(in crate::app) fn can_redo(&self) -> bool {
+    pub(crate) fn can_redo(&self) -> bool {
         self.memory.can_redo()
     }
 

@@ -70,7 +70,7 @@ impl Kind for Biss {
 
 impl Encoder {
     /// The link is open: the encoder is read.
-    pub(in crate::app) fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
+    pub(crate) fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();

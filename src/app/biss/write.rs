@@ -37,7 +37,7 @@ impl Encoder {
         self.plan(Change::Write(edits), services);
     }
 
-    pub(in crate::app) fn plan_restore(&mut self, profile: BissProfile, services: &mut Services) {
+    pub(crate) fn plan_restore(&mut self, profile: BissProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }

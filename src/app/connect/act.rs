@@ -83,14 +83,14 @@ impl Studio {
         }
     }
 
-    pub(in crate::app) fn refuse(&mut self, problem: Text) {
+    pub(crate) fn refuse(&mut self, problem: Text) {
         if let Some(connect) = &mut self.connect {
             connect.problem = Some(problem);
         }
     }
 
     /// Closes the dialog; its search ends.
-    pub(in crate::app) fn close_dialog(&mut self) {
+    pub(crate) fn close_dialog(&mut self) {
         self.end_search();
         self.connect = None;
     }

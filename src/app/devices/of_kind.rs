@@ -2,16 +2,15 @@
 
 use super::AnyDevice;
 use crate::app::{SineCosineSource, biss, hiperdrive, hiperface, interbus, ssi};
-use crate::protocol;
 
 impl AnyDevice {
     /// The kinds of devices that there are, by their words in profiles.
     pub(in crate::app) const KINDS: [&'static str; 5] = [
-        protocol::hiperface::KIND,
-        protocol::biss::KIND,
-        protocol::ssi::KIND,
-        protocol::interbus::KIND,
-        protocol::hiperdrive::KIND,
+        crate::protocol::hiperface::KIND,
+        crate::protocol::biss::KIND,
+        crate::protocol::ssi::KIND,
+        crate::protocol::interbus::KIND,
+        crate::protocol::hiperdrive::KIND,
     ];
 
     /// As a HIPERFACE encoder.
@@ -37,7 +36,7 @@ impl AnyDevice {
         if let AnyDevice::Ssi(own) = self { Some(own) } else { None }
     }
 
-    pub(in crate::app) fn ssi_mut(&mut self) -> Option<&mut ssi::Encoder> {
+    pub(crate) fn ssi_mut(&mut self) -> Option<&mut ssi::Encoder> {
         if let AnyDevice::Ssi(own) = self { Some(own) } else { None }
     }
 
@@ -46,7 +45,7 @@ impl AnyDevice {
         if let AnyDevice::Interbus(own) = self { Some(own) } else { None }
     }
 
-    pub(in crate::app) fn interbus_mut(&mut self) -> Option<&mut interbus::Encoder> {
+    pub(crate) fn interbus_mut(&mut self) -> Option<&mut interbus::Encoder> {
         if let AnyDevice::Interbus(own) = self { Some(own) } else { None }
     }
 
@@ -55,7 +54,7 @@ impl AnyDevice {
         if let AnyDevice::Hiperdrive(own) = self { Some(own) } else { None }
     }
 
-    pub(in crate::app) fn hiperdrive_mut(&mut self) -> Option<&mut hiperdrive::Unit> {
+    pub(crate) fn hiperdrive_mut(&mut self) -> Option<&mut hiperdrive::Unit> {
         if let AnyDevice::Hiperdrive(own) = self { Some(own) } else { None }
     }
 

@@ -8,14 +8,14 @@ use crate::app::tab::Tab;
 
 /// Which device each tab shows.
 #[derive(Debug, Default)]
-pub(in crate::app) struct Shown {
+pub(crate) struct Shown {
     by_tab: BTreeMap<Tab, SessionId>,
     last: Option<SessionId>,
 }
 
 impl Shown {
     /// The device that a tab shows.
-    pub(in crate::app) fn of(&self, tab: Tab) -> Option<SessionId> {
+    pub(crate) fn of(&self, tab: Tab) -> Option<SessionId> {
         self.by_tab.get(&tab).copied()
     }
 

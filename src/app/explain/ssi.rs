@@ -14,7 +14,7 @@ use crate::worker::ssi::JobError;
 
 pub use check::check;
 pub use family::note;
-pub(super) use refused::{PHRASES, cannot_work};
+pub(crate) use refused::{PHRASES, cannot_work};
 pub use refused::{format, frame_text, layout, settings};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.

@@ -15,7 +15,7 @@ use crate::worker::hiperdrive::HiperdriveJob;
 
 impl Unit {
     /// Does what is asked.
-    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
             // The studio opens links, and knows other sessions.
             Action::Reconnect | Action::WriteInto(_) => {}

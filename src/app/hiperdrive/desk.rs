@@ -52,19 +52,19 @@ impl Studio {
     }
 
     /// Stops all drives of all sessions, whatever moves them.
-    pub(in crate::app) fn stop_motion(&mut self) {
+    pub(crate) fn stop_motion(&mut self) {
         self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut).for_each(|unit| unit.moves.stop());
     }
 
     /// Whatever a person holds is let go, and what turns without an end: the window has lost the keyboard, or has put
     /// something over itself.
-    pub(in crate::app) fn let_go_of_jogs(&mut self) {
+    pub(crate) fn let_go_of_jogs(&mut self) {
         self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut).for_each(|unit| unit.moves.let_go());
     }
 
     /// A jog and a run live only as long as their panel can be seen: another tab or device, a dialog, a question for a file or
     /// any other end them.
-    pub(in crate::app) fn hold_in_sight(&mut self) {
+    pub(crate) fn hold_in_sight(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;
         let seen = self.shown.of(Tab::Hiperdrive).filter(|_| self.settings.tab == Tab::Hiperdrive && !is_covered);
@@ -77,7 +77,7 @@ impl Studio {
     }
 
     /// What is remembered of drives from one start to the next goes to them, and what is new of it into the settings.
-    pub(in crate::app) fn remember_drives(&mut self) {
+    pub(crate) fn remember_drives(&mut self) {
         for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
             let Some(key) = unit.remembered_as() else { continue };
             if let Some(changed) = unit.exchange_remembered(&self.settings.drives(&key)) {
@@ -88,7 +88,7 @@ impl Studio {
 
     /// As long as drives are in hand the settings are read again and again: another window may have marked limits as
     /// unconfirmed.
-    pub(in crate::app) fn look_at_settings(&mut self) {
+    pub(crate) fn look_at_settings(&mut self) {
         let now = self.services.now();
         let is_old = self.keeper.is_older(&now, STALE);
         let mut is_due = self.is_in_control() && self.keeper.is_older(&now, PACE);
@@ -104,7 +104,7 @@ impl Studio {
     }
 
     /// The settings were read.
-    pub(in crate::app) fn saw_settings(&mut self, found: Option<Settings>) {
+    pub(crate) fn saw_settings(&mut self, found: Option<Settings>) {
         if let Some(found) = self.keeper.saw(found, &mut self.settings) {
             for unit in self.devices.iter_mut().filter_map(AnyDevice::hiperdrive_mut) {
                 unit.remembered_as().into_iter().for_each(|key| unit.lock_by(&found.drives(&key)));
@@ -116,7 +116,7 @@ impl Studio {
     }
 
     /// The settings could not be read: no drive in hand moves before they are.
-    pub(in crate::app) fn could_not_see_settings(&mut self, error: &FileError) {
+    pub(crate) fn could_not_see_settings(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.keeper.could_not_look();
         self.hiperdrives_in_hand().for_each(|unit| unit.marks = Marks::Unread);
@@ -127,7 +127,7 @@ impl Studio {
         all.filter(|unit| unit.moves.is_open())
     }
 
-    pub(in crate::app) fn act_hiperdrive(&mut self, id: SessionId, action: Action) {
+    pub(crate) fn act_hiperdrive(&mut self, id: SessionId, action: Action) {
         match action {
             Action::Reconnect => self.reconnect(id),
             Action::WriteInto(_) if self.is_only_looked_at(id) => {}
@@ -141,7 +141,7 @@ impl Studio {
         }
     }
 
-    pub(in crate::app) fn with_hiperdrive(&mut self, id: SessionId, act: impl FnOnce(&mut Unit, &mut Services)) {
+    pub(crate) fn with_hiperdrive(&mut self, id: SessionId, act: impl FnOnce(&mut Unit, &mut Services)) {
         self.with_device(id, |device, services| {
             if let Some(unit) = device.hiperdrive_mut() {
                 act(unit, services);

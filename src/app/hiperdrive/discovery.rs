@@ -67,7 +67,7 @@ impl Discovery {
 ///
 /// # Errors
 /// Nobody could be asked.
-pub(in crate::app) fn ask_all() -> Result<Vec<Found>, Error> {
+pub(crate) fn ask_all() -> Result<Vec<Found>, Error> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut shout = UdpShout::to_all(EXPLICIT_PORT, clock.clone())?;
     discover(&mut shout, &*clock, &Cancel::default())
@@ -75,7 +75,7 @@ pub(in crate::app) fn ask_all() -> Result<Vec<Found>, Error> {
 
 impl Studio {
     /// Asks who is there, as a task.
-    pub(in crate::app) fn discover(&mut self) {
+    pub(crate) fn discover(&mut self) {
         let number = self.new_number();
         let Some(connect) = &mut self.connect else { return };
         connect.discovery = Some(Discovery { number, found: None });
@@ -89,7 +89,7 @@ impl Studio {
     }
 
     /// Answers have come. Those of HIPERDRIVE come first.
-    pub(in crate::app) fn found_drives(&mut self, number: u32, found: Result<Vec<FoundDevice>, Text>) {
+    pub(crate) fn found_drives(&mut self, number: u32, found: Result<Vec<FoundDevice>, Text>) {
         let discovery = self.connect.as_mut().and_then(|connect| connect.discovery.as_mut());
         let Some(discovery) = discovery.filter(|own| own.number == number) else { return };
         discovery.found = Some(found.map(|mut found| {
@@ -99,7 +99,7 @@ impl Studio {
     }
 
     /// Fills in the device that answered; it is connected by the button for that.
-    pub(in crate::app) fn choose_device(&mut self, at: usize) {
+    pub(crate) fn choose_device(&mut self, at: usize) {
         let Some(connect) = &mut self.connect else { return };
         let found = connect.discovery.as_ref().and_then(|own| own.devices().get(at)).cloned();
         let Some(device) = found else { return };

@@ -8,7 +8,7 @@ use crate::profile::hiperdrive::HiperdriveProfile;
 use crate::worker::hiperdrive::Hiperdrive;
 
 /// What is edited, each with its number.
-pub(in crate::app) type Edits = Vec<Kept>;
+pub(crate) type Edits = Vec<Kept>;
 
 impl OnDesk for Unit {
     type Device = Hiperdrive;

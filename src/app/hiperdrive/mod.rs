@@ -32,11 +32,11 @@ mod write;
 
 pub use action::{Action, Motor};
 pub use connect_form::{HiperdriveForm, HiperdriveWay, VirtualHub};
-pub(in crate::app) use discovery::ask_all;
+pub(crate) use discovery::ask_all;
 pub use discovery::{Discovery, FoundDevice};
 pub use moves::Moves;
 pub use record::Record;
-pub(in crate::app) use remembered::LocksAlone;
+pub(crate) use remembered::LocksAlone;
 pub use remembered::Remembered;
 pub use review::{Review, ReviewState};
 pub use rows::Row;

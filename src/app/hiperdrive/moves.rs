@@ -193,12 +193,12 @@ impl Moves {
     }
 
     /// The jog was let go, or can be seen no more: the drive stops now, not at the next look.
-    pub(in crate::app) fn release(&mut self) {
+    pub(crate) fn release(&mut self) {
         self.stop_those(|kind| kind == Kind::Held);
     }
 
     /// Nobody is there for what has no end of its own: a jog, a run.
-    pub(in crate::app) fn let_go(&mut self) {
+    pub(crate) fn let_go(&mut self) {
         self.freed = None;
         self.stop_those(|kind| matches!(kind, Kind::Held | Kind::Run));
     }
@@ -230,7 +230,7 @@ impl Moves {
     }
 
     /// All drives stop, whatever moves them.
-    pub(in crate::app) fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.freed = None;
         if let Some(motion) = &self.motion {
             motion.stop();

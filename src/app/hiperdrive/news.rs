@@ -92,7 +92,7 @@ impl Kind for Hiperdrive {
 
 impl Unit {
     /// The link is open: the device is asked who it is, then for all it has. Nothing is set, and nothing moves.
-    pub(in crate::app) fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
+    pub(crate) fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.records.values_mut().for_each(|record| record.begin(&opened.began));

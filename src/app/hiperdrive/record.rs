@@ -34,7 +34,7 @@ impl Record {
         &self.track.recorder
     }
 
-    pub(in crate::app) fn recorder_mut(&mut self) -> &mut Recorder {
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.track.recorder
     }
 

@@ -31,7 +31,7 @@ pub struct Remembered {
 /// What can be read of a drive's entry whose other parts are broken.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-pub(in crate::app) struct LocksAlone {
+pub(crate) struct LocksAlone {
     unconfirmed: Vec<u8>,
     marks: BTreeMap<u8, u64>,
 }
@@ -51,7 +51,7 @@ pub(super) struct Exchanged {
 
 /// Whether the settings were read since control was taken: another window may have marked limits in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::app) enum Marks {
+pub(crate) enum Marks {
     /// Not yet, or too long ago.
     Unread,
     /// They are being read.
@@ -101,7 +101,7 @@ impl Remembered {
     /// The same with what `ours` has changed since `known`. Limits stay unconfirmed that were marked here meanwhile, whatever
     /// `ours` has confirmed.
     #[must_use]
-    pub(in crate::app) fn with_changes(mut self, known: &Remembered, ours: &Remembered) -> Self {
+    pub(crate) fn with_changes(mut self, known: &Remembered, ours: &Remembered) -> Self {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
             maps.into_iter().flat_map(BTreeMap::keys).copied().collect()
         };
@@ -139,7 +139,7 @@ fn change<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMa
 
 impl Unit {
     /// Under what name it is remembered; `None` before it was read.
-    pub(in crate::app) fn remembered_as(&self) -> Option<String> {
+    pub(crate) fn remembered_as(&self) -> Option<String> {
         let own = self.identity()?;
         let kind = if self.session.is_virtual() { "virtual " } else { "" };
         Some(format!("{kind}{} {}", own.category, own.serial_number))
@@ -147,7 +147,7 @@ impl Unit {
 
     /// Takes what is remembered, and gives what is to be from now on where that is something else. All of it is taken once for
     /// a device; later only limits that were marked elsewhere.
-    pub(in crate::app) fn exchange_remembered(&mut self, kept: &Remembered) -> Option<Remembered> {
+    pub(crate) fn exchange_remembered(&mut self, kept: &Remembered) -> Option<Remembered> {
         let before = match self.exchanged.take() {
             Some(before) => before,
             None => self.take_remembered(kept),
@@ -177,7 +177,7 @@ impl Unit {
     }
 
     /// Locks what was marked elsewhere, before the settings know of it.
-    pub(in crate::app) fn lock_by(&mut self, found: &Remembered) {
+    pub(crate) fn lock_by(&mut self, found: &Remembered) {
         let Some(before) = &mut self.exchanged else { return };
         for drive in found.marked_since(&before.kept).into_iter().filter_map(DriveNumber::new) {
             self.moves.unconfirm(drive);

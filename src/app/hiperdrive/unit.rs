@@ -88,7 +88,7 @@ pub struct Unit {
 
 impl Unit {
     /// A device at a link that is being opened.
-    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Unit::with(Session::at_link(id, url), Staged::default())
     }
 
@@ -124,7 +124,7 @@ impl Unit {
     }
 
     /// A profile of a device.
-    pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
+    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
         let staged = match document.body.get::<HiperdriveProfile>() {
             Some(profile) => {
                 let mut staged = Staged::of_profile(profile.image.clone());
@@ -147,7 +147,7 @@ impl Unit {
     }
 
     /// The profile as the user wants it, where this is one.
-    pub(in crate::app) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
+    pub(crate) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
     }
@@ -206,11 +206,11 @@ impl Unit {
     }
 
     /// The recorders of all drives, that of the one that is shown first.
-    pub(in crate::app) fn recorders(&self) -> impl Iterator<Item = &Recorder> {
+    pub(crate) fn recorders(&self) -> impl Iterator<Item = &Recorder> {
         std::iter::once(&self.record).chain(self.records.values()).map(Record::recorder)
     }
 
-    pub(in crate::app) fn recorders_mut(&mut self) -> impl Iterator<Item = &mut Recorder> {
+    pub(crate) fn recorders_mut(&mut self) -> impl Iterator<Item = &mut Recorder> {
         std::iter::once(&mut self.record).chain(self.records.values_mut()).map(Record::recorder_mut)
     }
 
@@ -333,15 +333,15 @@ impl Unit {
     }
 
     /// Things that are edited.
-    pub(in crate::app) fn edits(&self) -> usize {
+    pub(crate) fn edits(&self) -> usize {
         self.staged.differences().len()
     }
 
-    pub(in crate::app) fn can_undo(&self) -> bool {
+    pub(crate) fn can_undo(&self) -> bool {
         self.staged.can_undo()
     }
 
-    pub(in crate::app) fn can_redo(&self) -> bool {
+    pub(crate) fn can_redo(&self) -> bool {
         self.staged.can_redo()
     }
 
@@ -356,7 +356,7 @@ impl Unit {
     }
 
     /// Ends what runs, and every motion first.
-    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+    pub(crate) fn stop(&mut self, services: &mut Services) {
         self.moves.stop();
         let pace = self.session.line.as_ref().and_then(Line::polling).filter(|_| self.moves.is_open());
         self.session.stop(services);

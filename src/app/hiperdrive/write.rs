@@ -22,7 +22,7 @@ impl Unit {
         self.plan(Change::Write(Box::new(edited)), services);
     }
 
-    pub(in crate::app) fn plan_restore(&mut self, profile: HiperdriveProfile, services: &mut Services) {
+    pub(crate) fn plan_restore(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }

@@ -7,7 +7,7 @@ use crate::profile::hiperface::HiperfaceProfile;
 use crate::worker::hiperface::Hiperface;
 
 /// Edited bytes: field, address, byte.
-pub(in crate::app) type Edits = Vec<(u8, usize, u8)>;
+pub(crate) type Edits = Vec<(u8, usize, u8)>;
 
 impl OnDesk for Encoder {
     type Device = Hiperface;

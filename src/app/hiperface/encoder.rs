@@ -65,7 +65,7 @@ pub struct Encoder {
 
 impl Encoder {
     /// An encoder at a link that is being opened.
-    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Encoder::with(Session::at_link(id, url))
     }
 
@@ -95,7 +95,7 @@ impl Encoder {
     }
 
     /// A profile of an encoder.
-    pub(in crate::app) fn in_file(
+    pub(crate) fn in_file(
         id: SessionId,
         file: ProfileFile,
         document: Document,
@@ -144,15 +144,15 @@ impl Encoder {
     }
 
     /// Bytes that are edited.
-    pub(in crate::app) fn edits(&self) -> usize {
+    pub(crate) fn edits(&self) -> usize {
         self.staged.edits().count()
     }
 
-    pub(in crate::app) fn can_undo(&self) -> bool {
+    pub(crate) fn can_undo(&self) -> bool {
         self.staged.can_undo()
     }
 
-    pub(in crate::app) fn can_redo(&self) -> bool {
+    pub(crate) fn can_redo(&self) -> bool {
         self.staged.can_redo()
     }
 
@@ -162,7 +162,7 @@ impl Encoder {
     }
 
     /// The profile as the user wants it, where this is one.
-    pub(in crate::app) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
+    pub(crate) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
         profile.fields = self.staged.wanted();

@@ -72,7 +72,7 @@ impl Kind for Hiperface {
 
 impl Encoder {
     /// The link is open: the encoder is read.
-    pub(in crate::app) fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
+    pub(crate) fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.session.take_line(opened, services);

@@ -19,13 +19,13 @@ use crate::worker::{Event, Progress};
 /// A search for encoders.
 pub struct Search {
     /// Its number in the studio.
-    pub(in crate::app) number: u32,
+    pub(crate) number: u32,
     /// The link it searches on.
-    pub(in crate::app) url: LinkUrl,
-    pub(in crate::app) options: FindOptions,
-    pub(in crate::app) line: Option<Line<Hiperface>>,
+    pub(crate) url: LinkUrl,
+    pub(crate) options: FindOptions,
+    pub(crate) line: Option<Line<Hiperface>>,
     /// Ends when its link is open or cannot be opened.
-    pub(in crate::app) over: crossbeam_channel::Receiver<()>,
+    pub(crate) over: crossbeam_channel::Receiver<()>,
     /// All that answered so far.
     pub found: Vec<Found>,
     /// How it ended; `None` while it goes on.
@@ -44,7 +44,7 @@ impl Search {
     }
 
     /// The link of an encoder that was found.
-    pub(in crate::app) fn link_to(&self, found: &Found) -> LinkUrl {
+    pub(crate) fn link_to(&self, found: &Found) -> LinkUrl {
         let mut url = self.url.clone();
         url.query.set("baud", &found.format.baud.to_string());
         url.query.set("parity", found.format.parity.word());
@@ -52,11 +52,7 @@ impl Search {
         url
     }
 
-    pub(in crate::app) fn opened(
-        &mut self,
-        result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,
-        services: &Services,
-    ) {
+    pub(crate) fn opened(&mut self, result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>, services: &Services) {
         match result {
             Ok(opened) => {
                 let mut line = Line::new(*opened);
@@ -70,7 +66,7 @@ impl Search {
         }
     }
 
-    pub(in crate::app) fn pump(&mut self) {
+    pub(crate) fn pump(&mut self) {
         let dead = self.line.as_ref().is_some_and(Line::is_dead);
         while let Some(event) = self.line.as_mut().and_then(Line::next) {
             match event {
@@ -110,7 +106,7 @@ impl Search {
         });
     }
 
-    pub(in crate::app) fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         match &mut self.line {
             Some(line) => line.stop(),
             // The link is still being opened, which may take for ever.
@@ -121,7 +117,7 @@ impl Search {
 
 impl Studio {
     /// Searches the line of the form; where a drive may be on it, that is asked before.
-    pub(in crate::app) fn search_for(&mut self, options: FindOptions) {
+    pub(crate) fn search_for(&mut self, options: FindOptions) {
         match self.connect.as_ref().map(Connect::url) {
             Some(Ok(url)) if may_have_other_master(&url) => {
                 self.question = Some(Question::other_master(&url, Then::Search(options)));
@@ -132,7 +128,7 @@ impl Studio {
     }
 
     /// The user says that no drive is on the line of the form.
-    pub(in crate::app) fn search_confirmed(&mut self, options: FindOptions) {
+    pub(crate) fn search_confirmed(&mut self, options: FindOptions) {
         let Some(connect) = &mut self.connect else { return };
         let url = match connect.url() {
             Ok(url) => url,
@@ -155,7 +151,7 @@ impl Studio {
     }
 
     /// Ends the search and forgets it. Where its link was still being opened, that is over when what is given tells so.
-    pub(in crate::app) fn end_search(&mut self) -> Option<Receiver<()>> {
+    pub(crate) fn end_search(&mut self) -> Option<Receiver<()>> {
         let search = self.connect.as_mut()?.search.take()?;
         if let Some(line) = search.line {
             let (session, about) = (SessionId(search.number), search.url.to_string());
@@ -165,7 +161,7 @@ impl Studio {
         Some(search.over)
     }
 
-    pub(in crate::app) fn choose(&mut self, at: usize) {
+    pub(crate) fn choose(&mut self, at: usize) {
         let Some(search) = self.connect.as_ref().and_then(|connect| connect.search.as_ref()) else { return };
         let Some(url) = search.found.get(at).map(|found| search.link_to(found)) else { return };
         self.close_dialog();

@@ -23,7 +23,7 @@ impl Encoder {
         self.plan(Change::Store(edits), services);
     }
 
-    pub(in crate::app) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
+    pub(crate) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }

@@ -13,7 +13,7 @@ impl Studio {
         self.device(self.shown.of(Tab::Interbus)?)?.interbus()
     }
 
-    pub(in crate::app) fn act_interbus(&mut self, id: SessionId, action: Action) {
+    pub(crate) fn act_interbus(&mut self, id: SessionId, action: Action) {
         match action {
             Action::Reconnect => self.reconnect(id),
             Action::WriteInto(_) if self.is_only_looked_at(id) => {}
@@ -27,7 +27,7 @@ impl Studio {
         }
     }
 
-    pub(in crate::app) fn with_interbus(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
+    pub(crate) fn with_interbus(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
         self.with_device(id, |device, services| {
             if let Some(encoder) = device.interbus_mut() {
                 act(encoder, services);

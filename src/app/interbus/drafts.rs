@@ -8,7 +8,7 @@ use crate::profile::interbus::InterbusProfile;
 use crate::worker::interbus::Interbus;
 
 /// What is edited, each with its place.
-pub(in crate::app) type Edits = Vec<Kept>;
+pub(crate) type Edits = Vec<Kept>;
 
 impl OnDesk for Encoder {
     type Device = Interbus;

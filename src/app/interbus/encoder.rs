@@ -69,7 +69,7 @@ pub struct Encoder {
 
 impl Encoder {
     /// An encoder at a link that is being opened.
-    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Encoder::with(Session::at_link(id, url), Staged::default())
     }
 
@@ -96,7 +96,7 @@ impl Encoder {
     }
 
     /// A profile of an encoder.
-    pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
+    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
         let staged = match document.body.get::<InterbusProfile>() {
             Some(profile) => Staged::of_profile(profile.image.clone(), profile.names.clone()),
             None => Staged::default(),
@@ -125,7 +125,7 @@ impl Encoder {
     }
 
     /// The profile as the user wants it, where this is one.
-    pub(in crate::app) fn wanted_profile(&self) -> Option<InterbusProfile> {
+    pub(crate) fn wanted_profile(&self) -> Option<InterbusProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
     }
@@ -218,7 +218,7 @@ impl Encoder {
     }
 
     /// Things that are edited.
-    pub(in crate::app) fn edits(&self) -> usize {
+    pub(crate) fn edits(&self) -> usize {
         self.staged.differences().len()
     }
 
@@ -232,11 +232,11 @@ impl Encoder {
         self.staged.differences().iter().any(|own| !matches!(own.place, Place::Parameter(_)))
     }
 
-    pub(in crate::app) fn can_undo(&self) -> bool {
+    pub(crate) fn can_undo(&self) -> bool {
         self.staged.can_undo()
     }
 
-    pub(in crate::app) fn can_redo(&self) -> bool {
+    pub(crate) fn can_redo(&self) -> bool {
         self.staged.can_redo()
     }
 

@@ -71,7 +71,7 @@ impl Kind for Interbus {
 
 impl Encoder {
     /// The link is open: the word that comes is read, and nothing that a machine would notice is done.
-    pub(in crate::app) fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
+    pub(crate) fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();

@@ -80,7 +80,7 @@ impl Encoder {
     }
 
     /// What a task comes back with.
-    pub(in crate::app) fn done(&mut self, done: Done, services: &mut Services) {
+    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Read(path, Ok(text)) => {
                 let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());

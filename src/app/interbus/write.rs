@@ -37,7 +37,7 @@ impl Encoder {
         Some(edited)
     }
 
-    pub(in crate::app) fn plan_restore(&mut self, profile: InterbusProfile, services: &mut Services) {
+    pub(crate) fn plan_restore(&mut self, profile: InterbusProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }

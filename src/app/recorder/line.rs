@@ -75,13 +75,13 @@ impl Line {
 
     /// The same, hidden.
     #[must_use]
-    pub(in crate::app) fn hidden(self) -> Self {
+    pub(crate) fn hidden(self) -> Self {
         Line { shown: false, ..self }
     }
 
     /// The same, calculated from another line.
     #[must_use]
-    pub(in crate::app) fn derived(self) -> Self {
+    pub(crate) fn derived(self) -> Self {
         Line { derived: true, ..self }
     }
 

@@ -136,7 +136,7 @@ impl Recorder {
     }
 
     /// Nothing is added any more: what is looked for is there or not.
-    pub(in crate::app) fn finish(&mut self) {
+    pub(crate) fn finish(&mut self) {
         self.finished = true;
     }
 
@@ -206,7 +206,7 @@ impl Recorder {
     }
 
     /// Samples are missing before the next ones of a group.
-    pub(in crate::app) fn break_before_next(&mut self, group: GroupId) {
+    pub(crate) fn break_before_next(&mut self, group: GroupId) {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
 
@@ -307,7 +307,7 @@ impl Recorder {
     }
 
     /// Forgets the samples, and lines that have ended; the others, units and the length of the view stay.
-    pub(in crate::app) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         let ended: Vec<LineId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
         ended.into_iter().for_each(|id| self.remove_line(id));
         for Group { history, stamp, columns, capacity, longest_pause } in self.groups.values_mut() {

@@ -75,7 +75,7 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 
 /// How it stands with the draft on disk.
 #[derive(Debug)]
-pub(in crate::app) struct Drafting<E> {
+pub(crate) struct Drafting<E> {
     session: SessionId,
     /// What was last handed over to be kept.
     kept: E,
@@ -229,7 +229,7 @@ impl<E: DraftEdits> Drafting<E> {
     }
 
     /// The draft of an earlier time has been looked for: edits come back after the session was closed.
-    pub(in crate::app) fn has_looked(&self) -> bool {
+    pub(crate) fn has_looked(&self) -> bool {
         self.looked
     }
 

@@ -16,17 +16,17 @@ type Prepared<T> = <<T as OnDesk>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Written>;
 
 /// A plan that a person consented to.
-pub(in crate::app) struct Agreed<K: Reviewed> {
+pub(crate) struct Agreed<K: Reviewed> {
     /// As it was shown.
-    pub(in crate::app) prepared: K::Prepared,
+    pub(crate) prepared: K::Prepared,
     /// The consent to it.
-    pub(in crate::app) consent: Consent,
+    pub(crate) consent: Consent,
     /// Write although the device counts as worn.
-    pub(in crate::app) force_wear: bool,
+    pub(crate) force_wear: bool,
 }
 
 /// Whoever has a memory.
-pub(in crate::app) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
+pub(crate) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
     /// A write on its way.
     fn review(&self) -> Option<&Review<Self::Device>>;
 

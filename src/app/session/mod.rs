@@ -14,15 +14,15 @@ mod saving;
 use std::path::PathBuf;
 use std::time::Duration;
 
-pub(in crate::app) use drafted::Drafted;
+pub(crate) use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
-pub(in crate::app) use kind::{Kind, LastWords};
-pub(in crate::app) use memory::{Agreed, WithMemory};
-pub(in crate::app) use on_desk::OnDesk;
-pub(in crate::app) use on_line::{Cut, OnLine, first};
+pub(crate) use kind::{Kind, LastWords};
+pub(crate) use memory::{Agreed, WithMemory};
+pub(crate) use on_desk::OnDesk;
+pub(crate) use on_line::{Cut, OnLine, first};
 pub use profiles::Listed;
-pub(in crate::app) use saved::{Known, Saved, some, without_edits};
+pub(crate) use saved::{Known, Saved, some, without_edits};
 pub(in crate::app) use saving::Found;
 pub use saving::{Guard, ProfileFile, Saving};
 
@@ -100,10 +100,10 @@ pub struct Session<D: Kind> {
     pub source: Source,
     /// How it stands with the connection.
     pub phase: Phase,
-    pub(in crate::app) line: Option<Line<D>>,
+    pub(crate) line: Option<Line<D>>,
     pub(in crate::app) opening: Option<Opening>,
     /// What the device calls itself, once it is known.
-    pub(in crate::app) title: Option<String>,
+    pub(crate) title: Option<String>,
     /// What has passed over the line.
     pub trace: TraceLog,
     /// Backups, or why there are none.
@@ -115,35 +115,35 @@ pub struct Session<D: Kind> {
     /// Status codes of this device that the logbook knows, the newest first.
     pub statuses: Vec<StatusEntry>,
     /// Nothing has been read since the link was opened.
-    pub(in crate::app) just_connected: bool,
+    pub(crate) just_connected: bool,
     /// Where the profile goes that is being read.
-    pub(in crate::app) save_to: Option<PathBuf>,
+    pub(crate) save_to: Option<PathBuf>,
     /// A profile is on its way into a file: what that says next is not known before it is there.
     pub(in crate::app) is_saving: bool,
     /// How it stands with the draft of its edits.
-    pub(in crate::app) drafting: Drafting<D::Edits>,
+    pub(crate) drafting: Drafting<D::Edits>,
 }
 
 impl<D: Kind> Session<D> {
     /// At a link that is being opened.
-    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Session::new(id, Source::Link(url), Phase::Opening)
     }
 
     /// Tells the log who has answered for the first time since the link was opened, and what is to be known of it.
-    pub(in crate::app) fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
+    pub(crate) fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
         let texts = std::iter::once(Text::new("log.answers").with("link", without_codes(url))).chain(facts).collect();
         services.note(Severity::Note, texts, Some(&self.name()));
     }
 
     /// With a profile.
-    pub(in crate::app) fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {
+    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
     /// With what is in no file yet.
-    pub(in crate::app) fn of_nothing(id: SessionId, suggested: PathBuf) -> Self {
+    pub(crate) fn of_nothing(id: SessionId, suggested: PathBuf) -> Self {
         Session::new(id, Source::New { suggested }, Phase::Offline)
     }
 
@@ -240,7 +240,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Its link is open.
-    pub(in crate::app) fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
+    pub(crate) fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
         self.opening = None;
         self.trace.begin(opened.began.clone());
         self.line = Some(Line::new(opened));
@@ -250,27 +250,21 @@ impl<D: Kind> Session<D> {
     }
 
     /// The device has answered, if only with a refusal.
-    pub(in crate::app) fn answers(&mut self) {
+    pub(crate) fn answers(&mut self) {
         if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;
         }
     }
 
     /// The link is open, and the device does not answer: why, and what to do.
-    pub(in crate::app) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
+    pub(crate) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.settle("session.not_connected", Some(&self.name()));
         services.note(Severity::Error, why, Some(&self.name()));
     }
 
     /// Tells of this device; in the log alone what stands where it was asked for.
-    pub(in crate::app) fn say(
-        &self,
-        severity: Severity,
-        texts: Vec<Text>,
-        stands_there: bool,
-        services: &mut Services,
-    ) {
+    pub(crate) fn say(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
         match stands_there {
             true => services.note(severity, texts, Some(&self.name())),
             false => services.tell(severity, texts, Some(&self.name())),
@@ -278,18 +272,18 @@ impl<D: Kind> Session<D> {
     }
 
     /// Another device was read than the one before.
-    pub(in crate::app) fn tell_of_another(&self, serial: &str, services: &mut Services) {
+    pub(crate) fn tell_of_another(&self, serial: &str, services: &mut Services) {
         let text = Text::new("session.other_encoder").with("serial", serial);
         services.tell(Severity::Warning, vec![text], Some(&self.name()));
     }
 
     /// What was asked for cannot be.
-    pub(in crate::app) fn refuse(&self, why: Text, services: &mut Services) {
+    pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
         services.tell(Severity::Error, vec![why], Some(&self.name()));
     }
 
     /// Samples are wished at this interval, or none any more. Whether they begin with that; `None` without a line.
-    pub(in crate::app) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
+    pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
         let begins = line.polling().is_none();
         line.poll(interval);
@@ -309,7 +303,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Starts a job, or says why not and gives false.
-    pub(in crate::app) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
+    pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
             services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
@@ -330,7 +324,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Why no plan can be made now; `None`: one can.
-    pub(in crate::app) fn why_not_ready(&self) -> Option<Text> {
+    pub(crate) fn why_not_ready(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,
             _ if self.is_busy() => Some(Text::new("session.busy")),
@@ -340,7 +334,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Ends what runs, and gives up a link that is being opened.
-    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+    pub(crate) fn stop(&mut self, services: &mut Services) {
         if self.phase == Phase::Opening {
             let why = Text::new("session.open_cancelled");
             services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
@@ -356,7 +350,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Lets its thread go; what runs ends as `end` says. A write that was cancelled ends by itself, and tells how.
-    pub(in crate::app) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+    pub(crate) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };
         let (url, about) = (url.clone(), self.name());

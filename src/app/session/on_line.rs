@@ -16,7 +16,7 @@ type Sample<T> = <<T as OnDesk>::Device as Device>::Sample;
 type Doing<T> = <<T as OnDesk>::Device as Device>::Doing;
 
 /// How what was asked for on a line came to an early end.
-pub(in crate::app) enum Cut<'e, E> {
+pub(crate) enum Cut<'e, E> {
     /// As the user wished.
     Cancelled(&'e E),
     /// It failed.
@@ -26,7 +26,7 @@ pub(in crate::app) enum Cut<'e, E> {
 }
 
 /// Whoever is at the end of a line.
-pub(in crate::app) trait OnLine: OnDesk {
+pub(crate) trait OnLine: OnDesk {
     /// Samples, and how many were dropped before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
@@ -190,6 +190,6 @@ pub(in crate::app) trait OnLine: OnDesk {
 }
 
 /// The one sentence that stands where there is room for one.
-pub(in crate::app) fn first(texts: &[Text]) -> Text {
+pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

@@ -12,7 +12,7 @@ use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, S
 
 impl<D: Kind> Session<D> {
     /// A name for a profile of it.
-    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
+    pub(crate) fn suggested_file(&self) -> PathBuf {
         if let Source::File { path, .. } | Source::New { suggested: path } = &self.source {
             return path.clone();
         }
@@ -24,18 +24,12 @@ impl<D: Kind> Session<D> {
     }
 
     /// Asks the user for a file for it.
-    pub(in crate::app) fn ask_where_to_save(&self, services: &mut Services) {
+    pub(crate) fn ask_where_to_save(&self, services: &mut Services) {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
     /// What the device has was read for a file; `edits` are not written to it, and `remarks` say what else is not in there.
-    pub(in crate::app) fn write_read(
-        &mut self,
-        body: Body,
-        edits: Option<usize>,
-        remarks: Vec<Text>,
-        services: &mut Services,
-    ) {
+    pub(crate) fn write_read(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
         let remarks = without.into_iter().chain(remarks).collect();
@@ -43,12 +37,12 @@ impl<D: Kind> Session<D> {
     }
 
     /// A profile was read again from its file, or saved into another one.
-    pub(in crate::app) fn take_document(&mut self, file: ProfileFile, document: Document) {
+    pub(crate) fn take_document(&mut self, file: ProfileFile, document: Document) {
         self.source = file.source(document);
     }
 
     /// Reads the profile again, as a task. False: it is none.
-    pub(in crate::app) fn read_file_again(&self, services: &mut Services) -> bool {
+    pub(crate) fn read_file_again(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
         let (path, store, formats) = (path.clone(), services.world.store.clone(), services.world.formats);
@@ -57,7 +51,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Writes a profile on a thread; `remarks` say what is not in it.
-    pub(in crate::app) fn write_document(
+    pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
         document: Document,

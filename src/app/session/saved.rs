@@ -14,15 +14,15 @@ use crate::worker::Device;
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 
 /// What was read as a profile, with what is to be said of it; or what is missing for one, a text each.
-pub(in crate::app) type Known = Result<(Body, Vec<Text>), Vec<Text>>;
+pub(crate) type Known = Result<(Body, Vec<Text>), Vec<Text>>;
 
 /// That so many edits are not in what was read.
-pub(in crate::app) fn without_edits(count: usize) -> Option<Text> {
+pub(crate) fn without_edits(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
 
 /// Whoever can be saved and restored.
-pub(in crate::app) trait Saved: WithMemory {
+pub(crate) trait Saved: WithMemory {
     /// How the logbook knows it; `None` before it was read.
     fn key(&self) -> Option<DeviceKey>;
 
@@ -114,7 +114,7 @@ pub(in crate::app) trait Saved: WithMemory {
 const SAID: usize = 3;
 
 /// Some things in words, the first of many with how many more there are.
-pub(in crate::app) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
+pub(crate) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(SAID);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));
     things.iter().take(SAID).map(words).chain(rest).collect()

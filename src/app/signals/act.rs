@@ -23,7 +23,7 @@ pub struct Signals {
     /// The periods are those of the virtual encoder: they say nothing about a capture.
     periods_of_source: bool,
     /// The virtual encoder, or an adapter.
-    pub(in crate::app) source: Source,
+    pub(crate) source: Source,
     synchronise: Synchronise,
     /// The signals over time.
     pub(super) scope: Scope,
@@ -58,7 +58,7 @@ impl Default for Signals {
 
 impl Studio {
     /// Does what is asked of the Signals tab. An adapter gets its wire first, and is remembered.
-    pub(in crate::app) fn act_signals(&mut self, action: Action) {
+    pub(crate) fn act_signals(&mut self, action: Action) {
         if action != Action::Source(SourceAction::StartAdapter) {
             return self.signals.act(action, &mut self.services);
         }
@@ -79,7 +79,7 @@ impl Studio {
 
 impl Signals {
     /// With the links to adapters that were used, the latest first.
-    pub(in crate::app) fn at(links: &[String]) -> Self {
+    pub(crate) fn at(links: &[String]) -> Self {
         Signals { source: Source::at(links.first()), ..Signals::default() }
     }
 
@@ -99,7 +99,7 @@ impl Signals {
     }
 
     /// Takes what a device has read at rest for this tab.
-    pub(in crate::app) fn follow(&mut self, source: &mut dyn SineCosineSource) {
+    pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
         self.synchronise.follow(source);
     }
 
@@ -138,7 +138,7 @@ impl Signals {
         &self.scope
     }
 
-    pub(in crate::app) fn scope_mut(&mut self) -> &mut Scope {
+    pub(crate) fn scope_mut(&mut self) -> &mut Scope {
         &mut self.scope
     }
 
@@ -155,12 +155,12 @@ impl Signals {
     }
 
     /// There is something to stop.
-    pub(in crate::app) fn can_stop(&self) -> bool {
+    pub(crate) fn can_stop(&self) -> bool {
         self.reading.is_some() || self.source.is_running()
     }
 
     /// Stops all that runs.
-    pub(in crate::app) fn stop(&mut self, services: &mut Services) {
+    pub(crate) fn stop(&mut self, services: &mut Services) {
         self.source.stop(services);
         self.give_up();
     }
@@ -188,7 +188,7 @@ impl Signals {
     }
 
     /// Does what is asked.
-    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
             Action::Open(path) => self.open(Place::File(path), services),
             Action::Example(example) => self.open(Place::Example(example), services),
@@ -223,7 +223,7 @@ impl Signals {
     }
 
     /// A task has come back.
-    pub(in crate::app) fn done(&mut self, done: Done, services: &mut Services) {
+    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Read { number, read } => {
                 if let Some(reading) = self.reading.take_if(|reading| reading.number == number) {

@@ -243,17 +243,17 @@ impl Source {
     }
 
     /// Where the link of the adapter leads; `None` while it is none.
-    pub(in crate::app) fn adapter_url(&self) -> Option<LinkUrl> {
+    pub(crate) fn adapter_url(&self) -> Option<LinkUrl> {
         self.link.parse().ok()
     }
 
     /// The adapter cannot be asked now.
-    pub(in crate::app) fn refuse(&mut self, why: Text) {
+    pub(crate) fn refuse(&mut self, why: Text) {
         self.adapter_problem = Some(why);
     }
 
     /// Lets the adapter go where an encoder is looked for on its wire.
-    pub(in crate::app) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
+    pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
         let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if same_wire(own, url));
         if self.live.as_ref().is_some_and(holds) {
             self.stop(services);
@@ -357,7 +357,7 @@ impl Signals {
     }
 
     /// Lets the adapter of the link sample, after what is still on its wire has ended.
-    pub(in crate::app) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
+    pub(crate) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
         if self.source.start_adapter(earlier, services) {
             self.forget_reading();
             self.replace_scope(Scope::live(false), services);
@@ -373,7 +373,7 @@ impl Signals {
     }
 
     /// Takes what has come, and has it measured when it is time.
-    pub(in crate::app) fn pump(&mut self, services: &mut Services) {
+    pub(crate) fn pump(&mut self, services: &mut Services) {
         let (number, window_ms) = (self.source.runs, self.source.window_ms);
         let judge = self.judge();
         let Some(live) = &mut self.source.live else { return };

@@ -230,7 +230,7 @@ impl Synchronise {
     }
 
     /// Takes what an encoder has read at rest since the last time.
-    pub(in crate::app) fn follow(&mut self, source: &mut dyn SineCosineSource) {
+    pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
             Some(Ok(reading)) => self.take(reading, source.origin()),
             Some(Err(why)) => self.problem = Some(why),

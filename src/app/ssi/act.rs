@@ -20,7 +20,7 @@ use crate::worker::ssi::SsiJob;
 
 impl Encoder {
     /// Does what is asked.
-    pub(in crate::app) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
             // The studio opens links, and knows other sessions.
             Action::Reconnect | Action::WriteInto(_) | Action::SendLayout => {}
@@ -201,7 +201,7 @@ impl Encoder {
     }
 
     /// What a task comes back with.
-    pub(in crate::app) fn done(&mut self, done: Done, services: &mut Services) {
+    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Found { number, hunt } => {
                 if self.hunt == Hunt::Running(number) {
@@ -226,7 +226,7 @@ impl Encoder {
     }
 
     /// Saves the layout.
-    pub(in crate::app) fn save(&mut self, path: PathBuf, services: &mut Services) {
+    pub(crate) fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = only_looked_at(&self.session.source) {
             return self.session.refuse(refusal, services);
         }

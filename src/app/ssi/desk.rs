@@ -21,7 +21,7 @@ impl Studio {
     }
 
     /// Shows a tab. A layout needs no device: where there is none, one to begin with.
-    pub(in crate::app) fn show_tab(&mut self, tab: Tab) {
+    pub(crate) fn show_tab(&mut self, tab: Tab) {
         self.settings.tab = tab;
         if tab == Tab::Ssi && self.ssi().is_none() {
             self.new_layout();
@@ -29,7 +29,7 @@ impl Studio {
     }
 
     /// A layout that is in no file yet, with the first name that no other such layout has.
-    pub(in crate::app) fn new_layout(&mut self) {
+    pub(crate) fn new_layout(&mut self) {
         let taken = |name: &PathBuf| {
             let others = self.devices.iter().map(AnyDevice::source);
             others.into_iter().any(|source| matches!(source, Source::New { suggested } if suggested == name))
@@ -43,7 +43,7 @@ impl Studio {
         self.show(Tab::Ssi, id);
     }
 
-    pub(in crate::app) fn act_ssi(&mut self, id: SessionId, action: Action) {
+    pub(crate) fn act_ssi(&mut self, id: SessionId, action: Action) {
         match action {
             Action::Reconnect => self.reconnect(id),
             Action::WriteInto(target) => {
@@ -67,7 +67,7 @@ impl Studio {
         }
     }
 
-    pub(in crate::app) fn with_ssi(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
+    pub(crate) fn with_ssi(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
         self.with_device(id, |device, services| {
             if let Some(encoder) = device.ssi_mut() {
                 act(encoder, services);
@@ -76,7 +76,7 @@ impl Studio {
     }
 
     /// The families were read; those that cannot be used are told.
-    pub(in crate::app) fn take_families(&mut self, families: Arc<Families>, broken: &[StoreError]) {
+    pub(crate) fn take_families(&mut self, families: Arc<Families>, broken: &[StoreError]) {
         for error in broken {
             self.services.tell(Severity::Warning, vec![explain::store(error)], None);
         }

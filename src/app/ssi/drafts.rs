@@ -10,7 +10,7 @@ use crate::worker::ssi::Ssi;
 
 /// What is changed, an entry each; none where the layout is as it was saved. Earlier versions kept the whole of it, as the
 /// text of a profile.
-pub(in crate::app) type Drafts = Vec<String>;
+pub(crate) type Drafts = Vec<String>;
 
 impl OnDesk for Encoder {
     type Device = Ssi;

@@ -51,14 +51,14 @@ pub struct Encoder {
 
 impl Encoder {
     /// An encoder at a link that is being opened.
-    pub(in crate::app) fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
         let families = services.ssi_families();
         let designer = Designer::at_link(&url, families);
         Encoder::with(Session::at_link(id, url), designer)
     }
 
     /// A layout that is in no file yet, and a name for one: a family's as delivered.
-    pub(in crate::app) fn new_layout(id: SessionId, suggested: PathBuf, services: &mut Services) -> Self {
+    pub(crate) fn new_layout(id: SessionId, suggested: PathBuf, services: &mut Services) -> Self {
         let designer = Designer::delivered(services.ssi_families());
         let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
         encoder.load_draft(services);
@@ -66,12 +66,7 @@ impl Encoder {
     }
 
     /// A layout in a file.
-    pub(in crate::app) fn in_file(
-        id: SessionId,
-        file: ProfileFile,
-        document: Document,
-        services: &mut Services,
-    ) -> Self {
+    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &mut Services) -> Self {
         let families = services.ssi_families();
         let mut designer = Designer::delivered(families);
         if let Some(profile) = document.body.get::<SsiProfile>() {
@@ -139,20 +134,20 @@ impl Encoder {
     }
 
     /// How the adapter is to take words.
-    pub(in crate::app) fn asking(&self) -> Asking {
+    pub(crate) fn asking(&self) -> Asking {
         let reading = &self.design().profile.reading;
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }
 
-    pub(in crate::app) fn edits(&self) -> usize {
+    pub(crate) fn edits(&self) -> usize {
         usize::from(self.designer.is_dirty())
     }
 
-    pub(in crate::app) fn can_undo(&self) -> bool {
+    pub(crate) fn can_undo(&self) -> bool {
         self.designer.can_undo()
     }
 
-    pub(in crate::app) fn can_redo(&self) -> bool {
+    pub(crate) fn can_redo(&self) -> bool {
         self.designer.can_redo()
     }
 
@@ -162,12 +157,12 @@ impl Encoder {
     }
 
     /// The layout as it would be saved.
-    pub(in crate::app) fn wanted_profile(&self) -> SsiProfile {
+    pub(crate) fn wanted_profile(&self) -> SsiProfile {
         self.design().profile.clone()
     }
 
     /// The user's own families were read.
-    pub(in crate::app) fn take_families(&mut self, families: Arc<Families>) {
+    pub(crate) fn take_families(&mut self, families: Arc<Families>) {
         self.designer.take_families(families);
     }
 
@@ -180,7 +175,7 @@ impl Encoder {
     }
 
     /// Another link leads to the same wire: it is read as that says.
-    pub(in crate::app) fn take_link(&mut self, url: &LinkUrl) {
+    pub(crate) fn take_link(&mut self, url: &LinkUrl) {
         if let Source::Link(before) = &self.session.source {
             self.edit(Edit::Reading(self.designer.reading_over(before, url)));
         }

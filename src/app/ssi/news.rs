@@ -57,7 +57,7 @@ impl Kind for Ssi {
 
 impl Encoder {
     /// The link is open: the adapter is asked who it is.
-    pub(in crate::app) fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
+    pub(crate) fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();

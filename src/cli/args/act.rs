@@ -6,35 +6,35 @@ use super::{Consenting, DeviceKind, OfDrive};
 use crate::cli::Failure;
 
 #[derive(Args)]
-pub(in crate::cli) struct Do {
+pub(crate) struct Do {
     /// The kind of device.
     pub(in crate::cli) device: DeviceKind,
     /// What to do.
-    pub(in crate::cli) action: Action,
+    pub(crate) action: Action,
     /// What the action takes, as said there.
     #[arg(allow_negative_numbers = true)]
-    pub(in crate::cli) arguments: Vec<String>,
+    pub(crate) arguments: Vec<String>,
     #[command(flatten)]
-    pub(in crate::cli) consent: Consenting,
+    pub(crate) consent: Consenting,
     #[command(flatten)]
-    pub(in crate::cli) of: OfDrive,
+    pub(crate) of: OfDrive,
     /// hiperdrive factory: everything, the address as well (DHCP), and saved.
     #[arg(long)]
-    pub(in crate::cli) all: bool,
+    pub(crate) all: bool,
     /// hiperface set-position: exactly this value, also when it breaks the phase to the sine signal.
     #[arg(long)]
-    pub(in crate::cli) exact: bool,
+    pub(crate) exact: bool,
     /// hiperface synchronise: the encoder is a kit, where its type does not tell.
     #[arg(long)]
-    pub(in crate::cli) kit: bool,
+    pub(crate) kit: bool,
     /// biss: how long the motor may take to turn, or the shaft to rest, as an action needs it; 30 without a terminal, 300
     /// on one.
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600))]
-    pub(in crate::cli) timeout: Option<u16>,
+    pub(crate) timeout: Option<u16>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Action {
+pub(crate) enum Action {
     /// hiperface: restart the encoder and read its status.
     Reset,
     // Several kinds of device have it.
@@ -104,16 +104,16 @@ pub(in crate::cli) enum Action {
 }
 
 /// The action as it is written.
-pub(in crate::cli) fn action_name(action: Action) -> String {
+pub(crate) fn action_name(action: Action) -> String {
     action.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
 /// An action that is for another kind of device.
-pub(in crate::cli) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
+pub(crate) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
     Failure::Usage(format!("{} is not an action of {kind} devices; these are {known}", action_name(action)))
 }
 
 /// An option that is for another kind of device.
-pub(in crate::cli) fn no_option(option: &str, kind: &str) -> Failure {
+pub(crate) fn no_option(option: &str, kind: &str) -> Failure {
     Failure::Usage(format!("{option} is not for {kind} devices"))
 }

@@ -8,7 +8,7 @@ use crate::cli::interbus::WordMode;
 use crate::protocol::{hiperdrive, interbus};
 
 #[derive(Args)]
-pub(in crate::cli) struct Decode {
+pub(crate) struct Decode {
     /// The kind of device that the bytes came from or went to, or a protocol.
     pub(in crate::cli) protocol: Protocol,
     /// A frame as hex bytes; several frames as one argument each.
@@ -25,14 +25,14 @@ pub(in crate::cli) struct Decode {
     ///
     /// ethernet-ip: frames of a TCP stream, one or several behind each other, cyclic packets (UDP), CIP messages alone.
     #[arg(required = true)]
-    pub(in crate::cli) hex: Vec<String>,
+    pub(crate) hex: Vec<String>,
     #[command(flatten)]
-    pub(in crate::cli) words: Words,
+    pub(crate) words: Words,
 }
 
 /// What bytes are captured of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Protocol {
+pub(crate) enum Protocol {
     /// HIPERFACE motor-feedback encoder.
     Hiperface,
     /// Kit encoder with BiSS C: UBICOM frames, bridge packets, position frames.
@@ -49,27 +49,27 @@ pub(in crate::cli) enum Protocol {
 
 /// What tells the meaning of a word, where it may have several.
 #[derive(Args)]
-pub(in crate::cli) struct Words {
+pub(crate) struct Words {
     /// interbus, hiperdrive: from the device (in) or to it (out); both are told without it, where both fit.
     #[arg(long, value_enum)]
-    pub(in crate::cli) direction: Option<Direction>,
+    pub(crate) direction: Option<Direction>,
     /// interbus: the mode that the encoder was in; with --direction out, a word that is not legal in it is an error.
     #[arg(long, value_enum)]
-    pub(in crate::cli) mode: Option<WordMode>,
+    pub(crate) mode: Option<WordMode>,
     /// interbus: what was read out, by name (temperature, operating-time …) or number (0x5D: chip register 5).
     #[arg(long = "read-out", value_name = "NAME|N")]
-    pub(in crate::cli) read_out: Option<String>,
+    pub(crate) read_out: Option<String>,
     /// interbus: shift_iw, how far the position is shifted under the window of a cam output word.
     #[arg(long, value_name = "0..25", value_parser = clap::value_parser!(u8).range(0..=25))]
-    pub(in crate::cli) shift: Option<u8>,
+    pub(crate) shift: Option<u8>,
     /// hiperdrive: which byte of a number comes first in process data; little where it is left out.
     #[arg(long, value_enum)]
-    pub(in crate::cli) order: Option<Order>,
+    pub(crate) order: Option<Order>,
 }
 
 /// Which way a word went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Direction {
+pub(crate) enum Direction {
     /// From the encoder.
     In,
     /// To the encoder.

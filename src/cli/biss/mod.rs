@@ -26,7 +26,7 @@ use crate::units::{CharacterFormat, Moment};
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// What can be done with BiSS encoders.
-pub(super) const COMMANDS: Kind = Kind {
+pub(crate) const COMMANDS: Kind = Kind {
     name: KIND,
     find: |_, _, _| lacking("find", KIND),
     identify: inspect::identify,

@@ -14,20 +14,20 @@ use crate::protocol::ethernet_ip::{
 };
 
 /// What bytes say.
-pub(super) struct Said {
-    pub(super) lines: Vec<String>,
+pub(crate) struct Said {
+    pub(crate) lines: Vec<String>,
     /// Further keys for a script.
-    pub(super) more: Map<String, Json>,
+    pub(crate) more: Map<String, Json>,
     /// Process data of a cyclic packet, with whether they go to the target.
-    pub(super) data: Option<(Vec<u8>, bool)>,
+    pub(crate) data: Option<(Vec<u8>, bool)>,
 }
 
 /// What the data of an attribute of a class say: its name, and its value or why there is none.
-pub(super) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
+pub(crate) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
 
 /// Whose packets they are.
 #[derive(Clone, Copy)]
-pub(super) enum Device {
+pub(crate) enum Device {
     Any,
     /// One that has no services of its own, and whose attributes are told by more than their numbers.
     Known(AttributeWords),
@@ -35,7 +35,7 @@ pub(super) enum Device {
 
 const NEITHER: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
 
-pub(super) fn decode(output: &Output, words: &[String]) -> Result {
+pub(crate) fn decode(output: &Output, words: &[String]) -> Result {
     let explain = |bytes: &Vec<u8>| {
         let said = explain(bytes, Device::Any).unwrap_or_else(|| Err(NEITHER.to_owned()));
         let (meaning, more) = match said {
@@ -49,7 +49,7 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
 }
 
 /// What a packet says; `None` for bytes that do not begin like one.
-pub(super) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, String>> {
+pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, String>> {
     if let Some(said) = cyclic(bytes) {
         return Some(Ok(said));
     }

@@ -7,32 +7,32 @@ use crate::cli::args::{DeviceKind, OfDrive};
 use crate::protocol::hiperdrive::ByteOrder;
 
 #[derive(Args)]
-pub(in crate::cli) struct Move {
+pub(crate) struct Move {
     /// The kind of device: the others do not move.
     #[arg(value_parser = PossibleValuesParser::new(["hiperdrive"]).map(|_| DeviceKind::Hiperdrive))]
-    pub(in crate::cli) device: DeviceKind,
+    pub(crate) device: DeviceKind,
     /// Where to, in steps as the drive is scaled.
     #[arg(allow_negative_numbers = true)]
-    pub(in crate::cli) target: String,
+    pub(crate) target: String,
     /// Something moves: somebody has looked that it may.
     #[arg(long)]
-    pub(in crate::cli) yes: bool,
+    pub(crate) yes: bool,
     #[command(flatten)]
-    pub(in crate::cli) of: OfDrive,
+    pub(crate) of: OfDrive,
     /// Of the drive's greatest speed.
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(..=100))]
-    pub(in crate::cli) speed: u8,
+    pub(crate) speed: u8,
     /// Of the nominal torque; drives take steps of 25.
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(..=100))]
-    pub(in crate::cli) torque: u8,
+    pub(crate) torque: u8,
     /// It is stopped after so long.
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u16).range(1..))]
-    pub(in crate::cli) timeout: u16,
+    pub(crate) timeout: u16,
 }
 
 /// Which byte of a number comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Order {
+pub(crate) enum Order {
     /// The low one.
     Little,
     /// The high one.

@@ -22,11 +22,11 @@ use crate::app::Text;
 use crate::profile::hiperdrive::{Item, ItemError};
 use crate::protocol::hiperdrive::{KIND, PARAMETERS};
 
-pub(super) use args::{Move, Order};
-pub(super) use r#move::drive_to;
+pub(crate) use args::{Move, Order};
+pub(crate) use r#move::drive_to;
 
 /// What can be done with drives.
-pub(super) const COMMANDS: Kind = Kind {
+pub(crate) const COMMANDS: Kind = Kind {
     name: KIND,
     find: find::find,
     identify: inspect::identify,
@@ -46,7 +46,7 @@ pub(super) const COMMANDS: Kind = Kind {
 };
 
 /// All parameters with their numbers, a line each: for the help, since a number alone says nothing.
-pub(super) fn listed_parameters() -> String {
+pub(crate) fn listed_parameters() -> String {
     let mut text = "\
 Parameters of HIPERDRIVE, of the device below 100, of drive 1 from 101 on (drive 2 from 201 on, and so on to drive 8):
 "

@@ -37,7 +37,7 @@ enum Came {
     Late,
 }
 
-pub(in crate::cli) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Result {
+pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Result {
     let target = parse_number(&wanted.target)
         .ok_or_else(|| Failure::Usage(format!("{} is not a position: a number of steps", wanted.target)))?;
     if !wanted.yes {

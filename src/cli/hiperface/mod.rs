@@ -19,7 +19,7 @@ use crate::sim::hiperface::{Bus, Config};
 use crate::units::{CharacterFormat, Moment};
 
 /// What can be done with HIPERFACE encoders.
-pub(super) const COMMANDS: Kind = Kind {
+pub(crate) const COMMANDS: Kind = Kind {
     name: KIND,
     find: inspect::find,
     identify: inspect::identify,

@@ -6,7 +6,7 @@ use crate::protocol::interbus::Mode;
 
 /// The modes of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum WordMode {
+pub(crate) enum WordMode {
     /// It runs.
     Position,
     /// Parameters are being set.

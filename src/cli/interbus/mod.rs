@@ -23,10 +23,10 @@ use crate::link::Scheme;
 use crate::profile::interbus::{Item, ItemError};
 use crate::protocol::interbus::KIND;
 
-pub(super) use args::WordMode;
+pub(crate) use args::WordMode;
 
 /// What can be done with INTERBUS encoders.
-pub(super) const COMMANDS: Kind = Kind {
+pub(crate) const COMMANDS: Kind = Kind {
     name: KIND,
     find: |_, _, _| lacking("find", KIND),
     identify: inspect::identify,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 
 #[derive(Subcommand)]
-pub(in crate::cli) enum Ssi {
+pub(crate) enum Ssi {
     /// What frames say.
     Decode(SsiDecode),
     /// The frame of a position.
@@ -45,69 +45,69 @@ Beside the frame: name, family (whose times count), direction: \"ccw\", preset: 
   reading: (clock_hz: 400000, pause_us: 200, cable_metres: 20, synchronous: true)";
 
 #[derive(Args)]
-pub(in crate::cli) struct SsiDecode {
+pub(crate) struct SsiDecode {
     #[command(flatten)]
-    pub(in crate::cli) layout: SsiLayout,
+    pub(crate) layout: SsiLayout,
     /// Bits in the order of the clocks (0b1010… or 1010…), or 0x… right-justified; repeatable.
     #[arg(required = true, value_name = "FRAME")]
-    pub(in crate::cli) frames: Vec<String>,
+    pub(crate) frames: Vec<String>,
 }
 
 #[derive(Args)]
-pub(in crate::cli) struct SsiFind {
+pub(crate) struct SsiFind {
     /// A file with a frame a line, in the order of reading: bits in the order of the clocks, or 0x… right-justified. Further
     /// columns are not looked at.
     #[arg(value_name = "FRAMES.txt")]
-    pub(in crate::cli) file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Bits of a frame that is written in hex.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
-    pub(in crate::cli) clocks: Option<u8>,
+    pub(crate) clocks: Option<u8>,
 }
 
 #[derive(Args)]
-pub(in crate::cli) struct SsiEncode {
+pub(crate) struct SsiEncode {
     #[command(flatten)]
-    pub(in crate::cli) layout: SsiLayout,
+    pub(crate) layout: SsiLayout,
     /// Turns and steps as one number; where it is given with them, they have to be the same.
     #[arg(long, value_name = "N", required_unless_present = "steps", allow_negative_numbers = true)]
-    pub(in crate::cli) position: Option<String>,
+    pub(crate) position: Option<String>,
     /// Whole turns; 0 if left out.
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
-    pub(in crate::cli) turns: Option<String>,
+    pub(crate) turns: Option<String>,
     /// Steps within the turn.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    pub(in crate::cli) steps: Option<String>,
+    pub(crate) steps: Option<String>,
     /// An error bit that speaks, by its name; repeatable.
     #[arg(long = "error", value_name = "NAME")]
-    pub(in crate::cli) errors: Vec<String>,
+    pub(crate) errors: Vec<String>,
 }
 
 #[derive(Args)]
-pub(in crate::cli) struct SsiExport {
+pub(crate) struct SsiExport {
     #[command(flatten)]
-    pub(in crate::cli) layout: SsiLayout,
+    pub(crate) layout: SsiLayout,
     /// What to write.
     #[arg(long, value_enum)]
-    pub(in crate::cli) format: SsiFormat,
+    pub(crate) format: SsiFormat,
     /// timing: the clock in hertz; as in the profile, else 400000.
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1_000..=20_000_000))]
-    pub(in crate::cli) clock: Option<u32>,
+    pub(crate) clock: Option<u32>,
     /// timing: the pause behind a burst, in microseconds; as in the profile, else 250.
     #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(in crate::cli) pause: Option<u32>,
+    pub(crate) pause: Option<u32>,
     /// timing: the cable in metres.
     #[arg(long, value_name = "M")]
-    pub(in crate::cli) cable: Option<u16>,
+    pub(crate) cable: Option<u16>,
     /// timing: positions are made when the host clocks.
     #[arg(long)]
-    pub(in crate::cli) synchronous: bool,
+    pub(crate) synchronous: bool,
     /// The file to write; without it, it is printed.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
-    pub(in crate::cli) file: Option<PathBuf>,
+    pub(crate) file: Option<PathBuf>,
 }
 
 #[derive(Args)]
-pub(in crate::cli) struct SsiLayout {
+pub(crate) struct SsiLayout {
     /// A profile of an SSI encoder, or a family with its settings, as ahm36,code=gray,st=12. What is left out is as
     /// delivered, with the largest resolution.
     ///
@@ -119,12 +119,12 @@ pub(in crate::cli) struct SsiLayout {
     /// st= (or steps= with turns= or revolutions=, or bits= with step=), code=, over=, area=, lead=, between=, shift=,
     /// inverted=0|1, parity=even@27|odd@27, repeat=25+1, and clocks of further bits: ones= (always 1), err=, unknown=.
     #[arg(long = "layout", value_name = "FILE|SPEC")]
-    pub(in crate::cli) spec: String,
+    pub(crate) spec: String,
 }
 
 /// What a layout can be exported as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum SsiFormat {
+pub(crate) enum SsiFormat {
     /// A function in C99.
     C,
     /// A function block in IEC 61131-3 structured text.

@@ -14,19 +14,19 @@ use crate::protocol::ssi::{Descriptor, Families, Family, Layout, Resolved, Setti
 use crate::store::Store;
 
 /// A layout to work with.
-pub(in crate::cli) struct Chosen {
+pub(crate) struct Chosen {
     /// All that is known of it.
-    pub(in crate::cli) profile: SsiProfile,
+    pub(crate) profile: SsiProfile,
     /// Its frame, checked.
-    pub(in crate::cli) layout: Layout,
+    pub(crate) layout: Layout,
     /// The times of its family; `None` where it has none, or one that is not known here.
-    pub(in crate::cli) times: Option<Times>,
+    pub(crate) times: Option<Times>,
     /// What to call it.
-    pub(in crate::cli) title: String,
+    pub(crate) title: String,
 }
 
 /// What `--layout` names. What the manual does not speak of is a remark.
-pub(in crate::cli) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Chosen> {
+pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Chosen> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
         let profile = SsiProfile::new(layout.descriptor().clone());

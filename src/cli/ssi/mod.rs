@@ -19,11 +19,11 @@ use crate::sim::AT_ADAPTER;
 use crate::sim::bridge::{Adapter, Attachable};
 use crate::sim::ssi::{AtAdapter, Encoder};
 
-pub(super) use args::Ssi;
+pub(crate) use args::Ssi;
 use args::SsiLayout;
 
 /// What can be done with SSI encoders. They send their position and have no memory.
-pub(super) const COMMANDS: Kind = Kind {
+pub(crate) const COMMANDS: Kind = Kind {
     name: KIND,
     find: |_, _, _| lacking("find", "connect it to an adapter of its own"),
     identify: |_, _| lacking("identify", "its type label says who it is"),
@@ -45,7 +45,7 @@ pub(super) const COMMANDS: Kind = Kind {
 /// Who sets an encoder up.
 const SET: &str = "it is set with its maker's own tool";
 
-pub(super) fn ssi(output: &Output, command: &Ssi) -> Result {
+pub(crate) fn ssi(output: &Output, command: &Ssi) -> Result {
     match command {
         Ssi::Decode(arguments) => frames::decode(output, arguments),
         Ssi::Encode(arguments) => frames::encode(output, arguments),

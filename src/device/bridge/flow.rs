@@ -12,7 +12,7 @@ use crate::units::Moment;
 
 /// What an adapter is to send by itself. What it clocks or samples how was said before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::device) enum Streamed {
+pub(crate) enum Streamed {
     /// Words of SSI, so many microseconds apart.
     Ssi { period_us: u32 },
     /// Frames of BiSS, so many microseconds apart.
@@ -38,7 +38,7 @@ pub struct Portion {
 
 /// A stream that runs.
 #[derive(Clone, Debug)]
-pub(in crate::device) struct Flow {
+pub(crate) struct Flow {
     streamed: Streamed,
     period_ns: i64,
     continuity: Continuity,
@@ -90,7 +90,7 @@ impl Flow {
     ///
     /// # Errors
     /// See [`AdapterError`]; one that is refused as busy runs already.
-    pub(in crate::device) fn begin(
+    pub(crate) fn begin(
         adapter: &mut Adapter<'_, '_>,
         streamed: Streamed,
         after: Option<Time>,
@@ -125,17 +125,17 @@ impl Flow {
     }
 
     /// What it streams.
-    pub(in crate::device) const fn streamed(&self) -> Streamed {
+    pub(crate) const fn streamed(&self) -> Streamed {
         self.streamed
     }
 
     /// When the last sample was taken that has come.
-    pub(in crate::device) const fn last(&self) -> Option<Time> {
+    pub(crate) const fn last(&self) -> Option<Time> {
         self.last
     }
 
     /// Nanoseconds from one sample to the next, as the adapter has set it.
-    pub(in crate::device) const fn period_ns(&self) -> i64 {
+    pub(crate) const fn period_ns(&self) -> i64 {
         self.period_ns
     }
 
@@ -143,11 +143,7 @@ impl Flow {
     ///
     /// # Errors
     /// [`AdapterError::Mute`], [`AdapterError::Restarted`], [`AdapterError::Data`], the wire, or the user's wish.
-    pub(in crate::device) fn next(
-        &mut self,
-        adapter: &mut Adapter<'_, '_>,
-        until: Moment,
-    ) -> Result<Option<Portion>, Failure> {
+    pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Portion>, Failure> {
         let mut bytes = Vec::new();
         loop {
             adapter.line.check_cancel()?;
@@ -178,7 +174,7 @@ impl Flow {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(in crate::device) fn end(&self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
+    pub(crate) fn end(&self, adapter: &mut Adapter<'_, '_>) -> Result<(), Failure> {
         adapter.ask(&self.streamed.stop()).map(drop)
     }
 

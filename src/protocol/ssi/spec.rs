@@ -38,7 +38,7 @@ pub enum SpecError {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting<'t> {
     pub(super) name: &'t str,
-    pub(super) value: &'t str,
+    pub(crate) value: &'t str,
     names: &'static [&'static str],
 }
 

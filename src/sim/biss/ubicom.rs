@@ -41,7 +41,7 @@ struct Work {
 
 /// Of events at the same moment the first of these happens first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::sim) enum Event {
+pub(crate) enum Event {
     EncoderAnswers,
     EncoderHears,
     FrameEnds,

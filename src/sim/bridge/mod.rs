@@ -21,7 +21,7 @@ mod config;
 mod settings;
 mod stream;
 #[cfg(test)]
-pub(in crate::sim) mod tests;
+pub(crate) mod tests;
 mod uart;
 
 pub use adapter::Adapter;

@@ -50,7 +50,7 @@ struct Talk {
 
 /// What happens next; of events at the same moment the first of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::sim) enum Event {
+pub(crate) enum Event {
     EncoderActs(usize),
     EncodersHear,
     HostReceives,

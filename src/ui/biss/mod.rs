@@ -1,10 +1,10 @@
 //! The BiSS tab: its pages, each about one thing that a person wants of an encoder.
 
-pub(in crate::ui) mod connect_form;
+pub(crate) mod connect_form;
 mod data;
 mod encoder;
 mod frame;
-pub(in crate::ui) mod live;
+pub(crate) mod live;
 mod motor;
 mod procedures;
 mod registers;
@@ -21,7 +21,7 @@ use crate::app::{Action, AnyDevice, Studio};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::ui) enum Page {
+pub(crate) enum Page {
     /// Who it is, how it is, its frame, and how it is wired.
     #[default]
     Encoder,
@@ -36,9 +36,9 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 5] = [Page::Encoder, Page::Registers, Page::Data, Page::Procedures, Page::Backups];
+    pub(crate) const ALL: [Page; 5] = [Page::Encoder, Page::Registers, Page::Data, Page::Procedures, Page::Backups];
 
-    pub(super) fn icon(self) -> &'static str {
+    pub(crate) fn icon(self) -> &'static str {
         match self {
             Page::Encoder => icons::CPU,
             Page::Registers => icons::TABLE,
@@ -48,7 +48,7 @@ impl Page {
         }
     }
 
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Page::Encoder => "page.encoder",
             Page::Registers => "page.registers",
@@ -58,7 +58,7 @@ impl Page {
         }
     }
 
-    pub(super) fn help(self) -> &'static str {
+    pub(crate) fn help(self) -> &'static str {
         match self {
             Page::Encoder => "help.biss_encoder",
             Page::Registers => "help.biss_registers",
@@ -76,7 +76,7 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(in crate::ui) struct View {
+pub(crate) struct View {
     /// The open page.
     pub page: Page,
     /// The encoder that the rest is about.
@@ -88,7 +88,7 @@ pub(in crate::ui) struct View {
 
 impl View {
     /// What was selected for another encoder is not for this one.
-    pub(super) fn follow(&mut self, encoder: &Encoder) {
+    pub(crate) fn follow(&mut self, encoder: &Encoder) {
         let Some(own) = encoder.serial_number() else { return };
         if self.serial_number.as_deref().is_some_and(|before| before != own) {
             *self = View { page: self.page, ..View::default() };
@@ -129,7 +129,7 @@ fn lead_back_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<A
 }
 
 /// Draws the open page.
-pub(super) fn page_ui(
+pub(crate) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     (studio, device): (&Studio, &AnyDevice),

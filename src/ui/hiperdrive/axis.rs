@@ -39,7 +39,7 @@ impl View {
 const SETTLES: f64 = 0.6;
 
 /// The run, as it is drawn.
-struct Shown<'a> {
+pub(crate) struct Shown<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a Seen,

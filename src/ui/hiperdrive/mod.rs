@@ -3,16 +3,16 @@
 
 mod axis;
 mod bar;
-pub(in crate::ui) mod connect_form;
+pub(crate) mod connect_form;
 mod device;
 mod errors;
 mod figures;
 mod jog;
 mod leds;
-pub(in crate::ui) mod live;
+pub(crate) mod live;
 mod motion;
 mod network;
-pub(in crate::ui) mod outside;
+pub(crate) mod outside;
 mod parameters;
 mod scale;
 mod state_machine;
@@ -28,7 +28,7 @@ use crate::protocol::hiperdrive::DriveNumber;
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::ui) enum Page {
+pub(crate) enum Page {
     /// The drive's states, and what moves it.
     #[default]
     Motion,
@@ -45,10 +45,10 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 6] =
+    pub(crate) const ALL: [Page; 6] =
         [Page::Motion, Page::Parameters, Page::Axis, Page::Diagnosis, Page::Device, Page::Backups];
 
-    pub(super) fn icon(self) -> &'static str {
+    pub(crate) fn icon(self) -> &'static str {
         match self {
             Page::Motion => icons::GAUGE,
             Page::Parameters => icons::SLIDERS,
@@ -59,7 +59,7 @@ impl Page {
         }
     }
 
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Page::Motion => "page.motion",
             Page::Parameters => "page.parameters",
@@ -70,7 +70,7 @@ impl Page {
         }
     }
 
-    pub(super) fn help(self) -> &'static str {
+    pub(crate) fn help(self) -> &'static str {
         match self {
             Page::Motion => "help.hd_motion",
             Page::Parameters => "help.hd_parameters",
@@ -89,7 +89,7 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(in crate::ui) struct View {
+pub(crate) struct View {
     /// The open page.
     pub page: Page,
     /// The device that the rest is about.
@@ -109,7 +109,7 @@ struct DriveEntries {
 
 impl View {
     /// What was typed for another device is not for this one.
-    pub(super) fn follow(&mut self, unit: &Unit) {
+    pub(crate) fn follow(&mut self, unit: &Unit) {
         let Some(own) = unit.serial_number() else { return };
         if self.serial_number.as_deref().is_some_and(|before| before != own) {
             *self = View { page: self.page, ..View::default() };
@@ -119,7 +119,7 @@ impl View {
 }
 
 /// Draws the open page.
-pub(super) fn page_ui(
+pub(crate) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     (studio, device): (&Studio, &AnyDevice),

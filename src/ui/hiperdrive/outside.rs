@@ -19,7 +19,7 @@ pub(super) struct Draft {
 }
 
 /// The word for it in one line, where a drive is outside its limits.
-pub(in crate::ui) fn badge(skin: &Skin, unit: &Unit) -> Option<RichText> {
+pub(crate) fn badge(skin: &Skin, unit: &Unit) -> Option<RichText> {
     unit.outside_words(unit.drive())?;
     let words = format!("{}  {}", icons::WARNING, skin.say("hd_outside.short"));
     Some(RichText::new(words).font(skin.strong(skin.sizes.body)).color(skin.palette.bad))

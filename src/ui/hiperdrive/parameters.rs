@@ -28,7 +28,7 @@ pub(super) struct View {
 
 /// Which parameters; or not them, but what two of them mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Shown {
+pub(crate) enum Shown {
     All,
     /// Those that can be written; whatever is looked for by name or number.
     #[default]

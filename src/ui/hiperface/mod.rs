@@ -1,9 +1,9 @@
 //! The HIPERFACE tab: its pages, each about one thing that a person wants of an encoder.
 
 mod commutation;
-pub(in crate::ui) mod connect_form;
+pub(crate) mod connect_form;
 mod encoder;
-pub(in crate::ui) mod live;
+pub(crate) mod live;
 mod memory;
 mod setup;
 mod values;
@@ -17,7 +17,7 @@ use crate::app::{Action, AnyDevice, Studio};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::ui) enum Page {
+pub(crate) enum Page {
     /// Who it is, how it is, and how it is wired.
     #[default]
     Encoder,
@@ -34,10 +34,10 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 6] =
+    pub(crate) const ALL: [Page; 6] =
         [Page::Encoder, Page::Memory, Page::Values, Page::Setup, Page::Commutation, Page::Backups];
 
-    pub(super) fn icon(self) -> &'static str {
+    pub(crate) fn icon(self) -> &'static str {
         match self {
             Page::Encoder => icons::CPU,
             Page::Memory => icons::MEMORY,
@@ -48,7 +48,7 @@ impl Page {
         }
     }
 
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Page::Encoder => "page.encoder",
             Page::Memory => "page.memory",
@@ -59,7 +59,7 @@ impl Page {
         }
     }
 
-    pub(super) fn help(self) -> &'static str {
+    pub(crate) fn help(self) -> &'static str {
         match self {
             Page::Encoder => "help.encoder",
             Page::Memory => "help.memory",
@@ -73,7 +73,7 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(in crate::ui) struct View {
+pub(crate) struct View {
     /// The open page.
     pub page: Page,
     /// The encoder that the rest is about.
@@ -86,7 +86,7 @@ pub(in crate::ui) struct View {
 
 impl View {
     /// What was typed for another encoder is not for this one.
-    pub(super) fn follow(&mut self, encoder: &Encoder) {
+    pub(crate) fn follow(&mut self, encoder: &Encoder) {
         let Some(identity) = &encoder.identity else { return };
         let own = &identity.serial.serial_number;
         if self.serial_number.as_ref().is_some_and(|before| before != own) {
@@ -97,7 +97,7 @@ impl View {
 }
 
 /// Draws the open page.
-pub(super) fn page_ui(
+pub(crate) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     (studio, device): (&Studio, &AnyDevice),

@@ -1,10 +1,10 @@
 //! The INTERBUS tab: its pages, each about one thing that a person wants of an encoder.
 
 mod cams;
-pub(in crate::ui) mod connect_form;
+pub(crate) mod connect_form;
 mod encoder;
 mod lamps;
-pub(in crate::ui) mod live;
+pub(crate) mod live;
 mod marks;
 mod parameters;
 mod read_outs;
@@ -20,7 +20,7 @@ use crate::app::{Action, AnyDevice, Studio};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::ui) enum Page {
+pub(crate) enum Page {
     /// Who it is and what it sends.
     #[default]
     Encoder,
@@ -35,9 +35,9 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 5] = [Page::Encoder, Page::Parameters, Page::Cams, Page::Diagnosis, Page::Backups];
+    pub(crate) const ALL: [Page; 5] = [Page::Encoder, Page::Parameters, Page::Cams, Page::Diagnosis, Page::Backups];
 
-    pub(super) fn icon(self) -> &'static str {
+    pub(crate) fn icon(self) -> &'static str {
         match self {
             Page::Encoder => icons::CPU,
             Page::Parameters => icons::SLIDERS,
@@ -47,7 +47,7 @@ impl Page {
         }
     }
 
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Page::Encoder => "page.encoder",
             Page::Parameters => "page.parameters",
@@ -57,7 +57,7 @@ impl Page {
         }
     }
 
-    pub(super) fn help(self) -> &'static str {
+    pub(crate) fn help(self) -> &'static str {
         match self {
             Page::Encoder => "help.ib_encoder",
             Page::Parameters => "help.ib_parameters",
@@ -75,7 +75,7 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(in crate::ui) struct View {
+pub(crate) struct View {
     /// The open page.
     pub page: Page,
     /// The encoder that the rest is about.
@@ -88,7 +88,7 @@ pub(in crate::ui) struct View {
 
 impl View {
     /// What was typed for another encoder is not for this one.
-    pub(super) fn follow(&mut self, encoder: &Encoder) {
+    pub(crate) fn follow(&mut self, encoder: &Encoder) {
         let Some(own) = encoder.serial_number() else { return };
         if self.serial_number.as_deref().is_some_and(|before| before != own) {
             *self = View { page: self.page, ..View::default() };
@@ -98,7 +98,7 @@ impl View {
 }
 
 /// Draws the open page.
-pub(super) fn page_ui(
+pub(crate) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     (studio, device): (&Studio, &AnyDevice),

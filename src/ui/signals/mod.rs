@@ -23,7 +23,7 @@ use crate::app::{Action, SineCosineSource, Text};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::ui) enum Page {
+pub(crate) enum Page {
     /// The signals over time, and their spectrum.
     Scope,
     /// The Lissajous figure and the numbers with their limits.
@@ -38,9 +38,9 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 5] = [Page::Scope, Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
+    pub(crate) const ALL: [Page; 5] = [Page::Scope, Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
 
-    pub(super) fn icon(self) -> &'static str {
+    pub(crate) fn icon(self) -> &'static str {
         match self {
             Page::Scope => icons::WAVE_SINE,
             Page::Quality => icons::TARGET,
@@ -50,7 +50,7 @@ impl Page {
         }
     }
 
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Page::Scope => "page.scope",
             Page::Quality => "page.quality",
@@ -60,7 +60,7 @@ impl Page {
         }
     }
 
-    pub(super) fn help(self) -> &'static str {
+    pub(crate) fn help(self) -> &'static str {
         match self {
             Page::Scope => "help.scope",
             Page::Quality => "help.quality",
@@ -76,7 +76,7 @@ type Draft = Option<(String, Option<Text>)>;
 
 /// What the tab remembers while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(in crate::ui) struct View {
+pub(crate) struct View {
     /// The open page.
     pub page: Page,
     source: source::View,
@@ -89,7 +89,7 @@ pub(in crate::ui) struct View {
 }
 
 /// Draws the open page; `device` is one that is shown in its own tab, and can be read.
-pub(super) fn page_ui(
+pub(crate) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     signals: &Signals,

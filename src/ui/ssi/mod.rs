@@ -1,12 +1,12 @@
 //! The SSI tab: its pages, each about one thing that a person wants of a frame or of an encoder that sends it.
 
-pub(in crate::ui) mod connect_form;
+pub(crate) mod connect_form;
 mod encoder;
 mod export;
 mod find;
 mod form;
 mod frame;
-pub(in crate::ui) mod live;
+pub(crate) mod live;
 mod timing;
 mod trial;
 mod widgets;
@@ -20,7 +20,7 @@ use crate::app::{Action, AnyDevice, Studio};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::ui) enum Page {
+pub(crate) enum Page {
     /// The frame on the drawing board, and a frame to try it with.
     #[default]
     Frame,
@@ -35,9 +35,9 @@ pub(in crate::ui) enum Page {
 }
 
 impl Page {
-    pub(super) const ALL: [Page; 5] = [Page::Frame, Page::Timing, Page::Find, Page::Export, Page::Encoder];
+    pub(crate) const ALL: [Page; 5] = [Page::Frame, Page::Timing, Page::Find, Page::Export, Page::Encoder];
 
-    pub(super) fn icon(self) -> &'static str {
+    pub(crate) fn icon(self) -> &'static str {
         match self {
             Page::Frame => icons::TABLE,
             Page::Timing => icons::CLOCK_COUNTER_CLOCKWISE,
@@ -47,7 +47,7 @@ impl Page {
         }
     }
 
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Page::Frame => "page.frame",
             Page::Timing => "page.timing",
@@ -57,7 +57,7 @@ impl Page {
         }
     }
 
-    pub(super) fn help(self) -> &'static str {
+    pub(crate) fn help(self) -> &'static str {
         match self {
             Page::Frame => "help.ssi_frame",
             Page::Timing => "help.ssi_timing",
@@ -70,7 +70,7 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(in crate::ui) struct View {
+pub(crate) struct View {
     /// The open page.
     pub page: Page,
     form: form::View,
@@ -81,7 +81,7 @@ pub(in crate::ui) struct View {
 }
 
 /// Draws the open page.
-pub(super) fn page_ui(
+pub(crate) fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     (studio, device): (&Studio, &AnyDevice),

@@ -14,7 +14,7 @@ use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, ope
 /// What a link to the virtual adapter may say as it does for a session; there is no other here.
 const BRIDGE: &str = "bridge";
 /// What the serial port of an adapter is set to, which matters only behind a converter.
-pub(in crate::worker) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
+pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
 /// How much later a reply may come than the protocol says.
 const MARGIN: &str = "margin";
 

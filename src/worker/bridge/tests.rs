@@ -17,13 +17,13 @@ use crate::worker::stream::{PATIENCE, Stream};
 const MARGIN: Duration = Duration::from_millis(20);
 
 /// A virtual adapter with its clock and the producer of its stream.
-pub(in crate::worker) struct Bench<S: Stretch> {
-    pub(in crate::worker) clock: Arc<VirtualClock>,
+pub(crate) struct Bench<S: Stretch> {
+    pub(crate) clock: Arc<VirtualClock>,
     adapter: Arc<Mutex<dyn ByteDevice>>,
-    pub(in crate::worker) bridge: Bridge<S>,
+    pub(crate) bridge: Bridge<S>,
 }
 
-pub(in crate::worker) fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> {
+pub(crate) fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -> Bench<S> {
     let clock = Arc::new(VirtualClock::default());
     clock.sleep_until(Moment::after_start(Duration::from_secs(3)));
     let adapter: Arc<Mutex<dyn ByteDevice>> = Arc::new(Mutex::new(device));
@@ -32,13 +32,13 @@ pub(in crate::worker) fn bench<S: Stretch>(stretch: S, device: impl ByteDevice +
     Bench { clock, adapter, bridge }
 }
 
-pub(in crate::worker) fn virtual_adapter(query: &str) -> Adapter {
+pub(crate) fn virtual_adapter(query: &str) -> Adapter {
     let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
     Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), &AT_ADAPTER).unwrap()
 }
 
 /// Position frames as they come.
-pub(in crate::worker) struct RawFrames;
+pub(crate) struct RawFrames;
 
 impl Stretch for RawFrames {
     type Samples = Vec<u64>;
@@ -60,7 +60,7 @@ impl<S: Stretch> Bench<S> {
     }
 
     /// What comes within so much time.
-    pub(in crate::worker) fn take(&mut self, time: Duration) -> Vec<Batch<S::Samples>> {
+    pub(crate) fn take(&mut self, time: Duration) -> Vec<Batch<S::Samples>> {
         let end = self.clock.now() + time;
         let mut batches = Vec::new();
         while self.clock.now() < end {
@@ -81,7 +81,7 @@ impl<S: Stretch> Bench<S> {
     }
 
     /// Bytes that the adapter sends in a second without being asked, beside what is on its way.
-    pub(in crate::worker) fn sends_by_itself(&self) -> usize {
+    pub(crate) fn sends_by_itself(&self) -> usize {
         let mut device = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
             self.clock.sleep_until(self.clock.now() + Duration::from_millis(milliseconds));
@@ -93,7 +93,7 @@ impl<S: Stretch> Bench<S> {
 }
 
 /// Every number is either there or counted as lost before the batch behind it; how many there are of both.
-pub(in crate::worker) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
+pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
     let (mut next, mut there, mut lost) = (0, 0, 0);
     for batch in batches {
         assert_eq!(batch.first, next + batch.lost, "{} lost", batch.lost);

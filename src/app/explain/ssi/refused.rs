@@ -5,7 +5,7 @@ use crate::app::explain::{phrase, plain};
 use crate::protocol::ssi::{FormatError, FrameTextError, LayoutError, SettingsError};
 
 /// What the floor below says of frames in phrases; the first that fits counts.
-pub(in crate::app::explain) const PHRASES: &[&str] = &[
+pub(crate) const PHRASES: &[&str] = &[
     "phrase.ssi_position",
     "phrase.ssi_parity",
     "phrase.ssi_error_bits",
@@ -44,7 +44,7 @@ pub fn layout(error: &LayoutError) -> Text {
 }
 
 /// Why a frame cannot work.
-pub(in crate::app::explain) fn cannot_work(error: &LayoutError) -> Text {
+pub(crate) fn cannot_work(error: &LayoutError) -> Text {
     match error {
         LayoutError::Overlap { clock, first, second } => Text::new("phrase.ssi_overlap")
             .with("clock", clock)

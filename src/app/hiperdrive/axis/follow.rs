@@ -7,14 +7,14 @@ use super::{Ask, Axis, Change, Confirmed, End, Outcome, Over, Place, Seen, Step,
 
 impl Axis {
     /// What is typed has changed.
-    pub(in crate::app) fn edit(&mut self, entries: Entries) {
+    pub(crate) fn edit(&mut self, entries: Entries) {
         if self.over.is_none() {
             self.entries = entries;
         }
     }
 
     /// The position where the axis stands becomes the limit of this step.
-    pub(in crate::app) fn take_limit(&mut self, seen: &Seen) {
+    pub(crate) fn take_limit(&mut self, seen: &Seen) {
         if self.may_take_place(seen).is_err() {
             return;
         }
@@ -28,14 +28,14 @@ impl Axis {
     }
 
     /// To the next step, where this one is done; `when`: the time, as it is written.
-    pub(in crate::app) fn go_on(&mut self, seen: &Seen, when: &str) {
+    pub(crate) fn go_on(&mut self, seen: &Seen, when: &str) {
         if self.over.is_none() && self.may_go_on(seen).is_ok() {
             self.leave(seen, false, when);
         }
     }
 
     /// To the next step without this one, where that may be left out.
-    pub(in crate::app) fn skip(&mut self, seen: &Seen, when: &str) {
+    pub(crate) fn skip(&mut self, seen: &Seen, when: &str) {
         if self.over.is_none() && self.may_skip(seen) {
             self.leave(seen, true, when);
         }
@@ -64,7 +64,7 @@ impl Axis {
     }
 
     /// To the step before, or to the one that has to be done again. What was written stays.
-    pub(in crate::app) fn back(&mut self, seen: &Seen) {
+    pub(crate) fn back(&mut self, seen: &Seen) {
         if self.over.is_some() || self.asked.is_some() || seen.moves {
             return;
         }
@@ -81,7 +81,7 @@ impl Axis {
     }
 
     /// It is over before its end. Whoever calls this stops the drive.
-    pub(in crate::app) fn cancel(&mut self, seen: &Seen, when: &str) {
+    pub(crate) fn cancel(&mut self, seen: &Seen, when: &str) {
         if self.over.is_none() {
             self.going = None;
             self.end_as(End::Cancelled, seen, when);
@@ -93,7 +93,7 @@ impl Axis {
     }
 
     /// What was asked for is under way.
-    pub(in crate::app) fn begin(&mut self, ask: Ask, seen: &Seen) {
+    pub(crate) fn begin(&mut self, ask: Ask, seen: &Seen) {
         match ask {
             Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Restore(_) => self.asked = Some(ask),
             Ask::ConfirmLimits => {
@@ -107,7 +107,7 @@ impl Axis {
     }
 
     /// A test move was begun by this act.
-    pub(in crate::app) fn went(&mut self, place: Place, target: i32, act: u64) {
+    pub(crate) fn went(&mut self, place: Place, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
         }
@@ -115,7 +115,7 @@ impl Axis {
     }
 
     /// What was asked for is written and read back.
-    pub(in crate::app) fn written(&mut self) {
+    pub(crate) fn written(&mut self) {
         match self.asked.take() {
             Some(Ask::Try(values)) => {
                 self.agree(&values, true);
@@ -156,7 +156,7 @@ impl Axis {
     }
 
     /// What was asked for was not written; `begun`: a part of it may have been.
-    pub(in crate::app) fn not_written(&mut self, begun: bool) {
+    pub(crate) fn not_written(&mut self, begun: bool) {
         match self.asked.take() {
             Some(Ask::Try(values)) if begun => {
                 self.agree(&values, false);
@@ -176,7 +176,7 @@ impl Axis {
     }
 
     /// The device has stopped answering.
-    pub(in crate::app) fn lose(&mut self) {
+    pub(crate) fn lose(&mut self) {
         self.not_written(true);
         self.going = None;
         match self.power {
@@ -187,12 +187,12 @@ impl Axis {
     }
 
     /// All parameters were read; `switched`: the virtual supply was off since.
-    pub(in crate::app) fn surveyed(&mut self, seen: &Seen, switched: bool) {
+    pub(crate) fn surveyed(&mut self, seen: &Seen, switched: bool) {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
 
     /// What the drive says now: how far it went, how a test move ended, whether all still holds that was made sure of.
-    pub(in crate::app) fn look(&mut self, seen: &Seen) {
+    pub(crate) fn look(&mut self, seen: &Seen) {
         if self.over.is_some() {
             return;
         }

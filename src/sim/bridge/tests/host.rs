@@ -9,37 +9,37 @@ use crate::sim::{ByteDevice, ConfigError, Faults, Motor};
 use crate::units::Moment;
 
 /// Who asks the adapter.
-pub(in crate::sim) struct Host {
-    pub(in crate::sim) adapter: Adapter,
-    pub(in crate::sim) receiver: Receiver,
-    pub(in crate::sim) seq: u8,
-    pub(in crate::sim) now: Moment,
+pub(crate) struct Host {
+    pub(crate) adapter: Adapter,
+    pub(crate) receiver: Receiver,
+    pub(crate) seq: u8,
+    pub(crate) now: Moment,
 }
 
-pub(in crate::sim) const BISS: Request =
+pub(crate) const BISS: Request =
     Request::BissConfig { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, timeout_us: 18 };
-pub(in crate::sim) const SSI: Request =
+pub(crate) const SSI: Request =
     Request::SsiConfig { clocks: 25, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE };
 
 impl Host {
     /// With an adapter before the invented devices.
-    pub(in crate::sim) fn with(query: &str) -> Self {
+    pub(crate) fn with(query: &str) -> Self {
         Self::to(query, &[&WordGiver, &Dial::SETTINGS])
     }
 
     /// With an adapter before these.
-    pub(in crate::sim) fn to(query: &str, devices: &[&dyn Attachable]) -> Self {
+    pub(crate) fn to(query: &str, devices: &[&dyn Attachable]) -> Self {
         let adapter = Adapter::from_pairs(&pairs(query), devices).unwrap();
         Host { adapter, receiver: Receiver::default(), seq: 0, now: Moment::START }
     }
 
-    pub(in crate::sim) fn send(&mut self, request: &Request) {
+    pub(crate) fn send(&mut self, request: &Request) {
         self.seq += 1;
         self.adapter.on_bytes(self.now, &request.emit(self.seq).emit());
     }
 
     /// What has arrived until a moment.
-    pub(in crate::sim) fn receive(&mut self, until: Moment) -> Vec<(u8, Message)> {
+    pub(crate) fn receive(&mut self, until: Moment) -> Vec<(u8, Message)> {
         while let Some(at) = self.adapter.poll_at().filter(|at| *at <= until) {
             self.now = self.now.max(at);
             let bytes = self.adapter.poll(self.now);
@@ -51,7 +51,7 @@ impl Host {
     }
 
     /// The reply to a request, of which there is no more than one within 100 ms.
-    pub(in crate::sim) fn ask(&mut self, request: Request) -> Option<Message> {
+    pub(crate) fn ask(&mut self, request: Request) -> Option<Message> {
         self.send(&request);
         let mut messages = self.receive(self.now + Duration::from_millis(100));
         messages.retain(|(_, message)| !matches!(message, Message::Data(_)));
@@ -62,12 +62,12 @@ impl Host {
     }
 
     #[track_caller]
-    pub(in crate::sim) fn expect(&mut self, request: Request, reply: Reply) {
+    pub(crate) fn expect(&mut self, request: Request, reply: Reply) {
         assert_eq!(self.ask(request), Some(Message::Reply(reply)));
     }
 
     #[track_caller]
-    pub(in crate::sim) fn refuses(&mut self, request: Request, expected: ErrorCode) {
+    pub(crate) fn refuses(&mut self, request: Request, expected: ErrorCode) {
         let own = request.operation().byte();
         match self.ask(request) {
             Some(Message::Error { op, code, text }) => {
@@ -78,7 +78,7 @@ impl Host {
         }
     }
 
-    pub(in crate::sim) fn stream(&mut self, milliseconds: u64) -> Vec<Data> {
+    pub(crate) fn stream(&mut self, milliseconds: u64) -> Vec<Data> {
         let messages = self.receive(self.now + Duration::from_millis(milliseconds));
         let data = |(_, message)| match message {
             Message::Data(data) => Some(data),
@@ -90,7 +90,7 @@ impl Host {
 
 /// A shaft with 35 bits of position, 17 of them within a revolution, and six bits behind them; and with registers that
 /// keep what is written into them. It stands at 270° of turn 1234h, and needs half a second to start.
-pub(in crate::sim) struct Dial {
+pub(crate) struct Dial {
     motor: Motor,
     revolutions: f64,
     now: Moment,
@@ -100,13 +100,13 @@ pub(in crate::sim) struct Dial {
 }
 
 /// How a dial is set.
-pub(in crate::sim) struct DialSettings;
+pub(crate) struct DialSettings;
 
 /// An SSI device that gives the place of the shaft: 12 bits of turns and 13 within one.
 struct WordGiver;
 
 impl Dial {
-    pub(in crate::sim) const SETTINGS: DialSettings = DialSettings;
+    pub(crate) const SETTINGS: DialSettings = DialSettings;
     const PER_TURN: u64 = 1 << 17;
     const START: Duration = Duration::from_millis(500);
 

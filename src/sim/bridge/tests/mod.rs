@@ -5,7 +5,7 @@ mod line;
 
 use std::time::Duration;
 
-pub(in crate::sim) use host::{BISS, Dial, Host, SSI};
+pub(crate) use host::{BISS, Dial, Host, SSI};
 
 use crate::protocol::bridge::*;
 use crate::sim::ByteDevice;
