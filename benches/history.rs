@@ -8,8 +8,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use encoder_studio::signal::history::{Flags, Grid, History, Kind, Part, Picture};
-use encoder_studio::signal::{Time, Unwrap};
+use encoder_studio::analysis::history::{Flags, Grid, History, Kind, Part, Picture};
+use encoder_studio::analysis::{Time, Unwrap};
 
 const SAMPLES: usize = 10_000_000;
 const SIGNALS: usize = 4;

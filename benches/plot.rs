@@ -10,10 +10,10 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use egui::{Context, RawInput, Rect, Vec2, pos2};
+use encoder_studio::analysis::Time;
+use encoder_studio::analysis::history::{Flags, Kind, Part};
 use encoder_studio::app::recorder::{self, GroupId, Line, Recorder, Scale};
 use encoder_studio::app::{Desk, Language, Look, SessionId, Text, Theme};
-use encoder_studio::signal::Time;
-use encoder_studio::signal::history::{Flags, Kind, Part};
 use encoder_studio::ui::plot::{View, plot_ui};
 use encoder_studio::ui::{Skin, install_fonts};
 

@@ -3,8 +3,8 @@
 //! ARCHITECTURE.md describes the house: six floors, and a file uses only what lies below its own.
 
 // floor 1: words and numbers
+pub mod analysis;
 pub mod bits;
-pub mod signal;
 pub mod units;
 
 // floor 2: bytes ↔ meaning, and what is saved

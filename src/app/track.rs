@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use jiff::{SignedDuration, Zoned};
 
+use crate::analysis::history::{Flags, Kind, Part, Value};
+use crate::analysis::{Rates, Time};
 use crate::app::Text;
 use crate::app::closing::MUCH;
 use crate::app::recorder::{self, GroupId, Line, LineId, Recorder};
-use crate::signal::history::{Flags, Kind, Part, Value};
-use crate::signal::{Rates, Time};
 use crate::units::Moment;
 
 mod follower;

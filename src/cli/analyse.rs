@@ -8,13 +8,13 @@ use super::args::Analyse;
 use super::output::{Lines, Output};
 use super::runner::{Bar, failed};
 use super::{Done, Failure, Result};
+use crate::analysis::analysis::Analysis;
+use crate::analysis::capture::{Capture, Layout, Wishes};
+use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
+use crate::analysis::position_error::{Basis, Samples, harmonics};
+use crate::analysis::quality::Family;
+use crate::analysis::revolution::Revolution;
 use crate::app::{Text, explain};
-use crate::signal::analysis::Analysis;
-use crate::signal::capture::{Capture, Layout, Wishes};
-use crate::signal::diagnosis::{Diagnosis, Record, diagnose};
-use crate::signal::position_error::{Basis, Samples, harmonics};
-use crate::signal::quality::Family;
-use crate::signal::revolution::Revolution;
 use crate::store::read_capture;
 
 pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::file_error::{FileError, FileProblem, FileTask};
-use crate::signal::capture::{Capture, CaptureError, HEAD, Import, Layout, Wishes};
+use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Layout, Wishes};
 
 /// Why a capture could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

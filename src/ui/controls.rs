@@ -5,7 +5,7 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::{Skin, icons};
-use crate::signal::quality::Verdict;
+use crate::analysis::quality::Verdict;
 
 /// Inside a line of text, so that it is as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);

@@ -18,9 +18,9 @@ pub use analogue::{Analogue, Forgotten};
 
 use super::has_ended;
 use super::thread::Never;
+use crate::analysis::Time;
+use crate::analysis::wires::Wires;
 use crate::link::Clock;
-use crate::signal::Time;
-use crate::signal::wires::Wires;
 
 /// How long a producer may wait at once: after so long at most a stop or a change is heard.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(20);

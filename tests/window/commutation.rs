@@ -1,11 +1,11 @@
 //! The commutation assistant: what has to be so before, readings, the offset, both ways to keep it, and what goes wrong on
 //! the way. Numbers are those of section 5 of the sine/cosine reference, or reckoned apart.
 
+use encoder_studio::analysis::quality::Verdict;
 use encoder_studio::app::hiperface::commutation::{Action as Assistant, Form, Kind, Slot, Source, Storage, Vector};
 use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, commutation};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity};
-use encoder_studio::signal::quality::Verdict;
 use encoder_studio::worker::hiperface::Change;
 
 use crate::support::Desk;

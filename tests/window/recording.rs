@@ -3,10 +3,10 @@
 use std::fs;
 use std::time::Duration;
 
+use encoder_studio::analysis::history::Flags;
 use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::recorder::{self, Line, Recorder};
 use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Severity, Studio};
-use encoder_studio::signal::history::Flags;
 
 use crate::losing::lost;
 use crate::support::Desk;

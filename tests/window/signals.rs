@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+use encoder_studio::analysis::capture::{Delimiter, TimeUnit};
+use encoder_studio::analysis::diagnosis::{Finding, What};
+use encoder_studio::analysis::quality::{Family, Finding as Parameter};
+use encoder_studio::analysis::wires::Wire;
 use encoder_studio::app::signals::{Action as Signals, Column, Example, Origin, Place, SourceAction};
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio, Tab};
-use encoder_studio::signal::capture::{Delimiter, TimeUnit};
-use encoder_studio::signal::diagnosis::{Finding, What};
-use encoder_studio::signal::quality::{Family, Finding as Parameter};
-use encoder_studio::signal::wires::Wire;
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::support::{Desk, Outside};
@@ -267,7 +267,7 @@ impl Desk {
 
     /// Polls until what is shown is virtual and as good as asked for.
     #[track_caller]
-    fn until_live(&mut self, what: &str, wanted: impl Fn(&encoder_studio::signal::analysis::Analysis) -> bool) {
+    fn until_live(&mut self, what: &str, wanted: impl Fn(&encoder_studio::analysis::analysis::Analysis) -> bool) {
         self.until(what, |studio| {
             let shown = studio.signals.measurement().filter(|own| own.origin == Origin::Virtual);
             shown.and_then(|own| own.analysis.as_ref().ok()).is_some_and(&wanted)
@@ -303,7 +303,7 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
 
 /// Nothing is worse than good to know.
 fn is_good(findings: &[Finding]) -> bool {
-    findings.iter().all(|own| own.severity == encoder_studio::signal::diagnosis::Severity::Notice)
+    findings.iter().all(|own| own.severity == encoder_studio::analysis::diagnosis::Severity::Notice)
 }
 
 #[test]

@@ -3,11 +3,11 @@
 
 use std::time::Instant;
 
+use encoder_studio::analysis::history::Flags;
+use encoder_studio::analysis::quality::Family;
 use encoder_studio::app::signals::{Action as Signals, Origin, SourceAction, SourceKind};
 use encoder_studio::app::{Action, Desk as Of, Severity, Studio, Tab};
 use encoder_studio::protocol::bridge::Request;
-use encoder_studio::signal::history::Flags;
-use encoder_studio::signal::quality::Family;
 
 use crate::screen::Screen;
 use crate::served::Served;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use encoder_studio::analysis::revolution::RevolutionError;
 use encoder_studio::app::signals::{Action as Signals, Column, SourceAction};
 use encoder_studio::app::{Action, Tab};
-use encoder_studio::signal::revolution::RevolutionError;
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;

@@ -1,9 +1,9 @@
 //! The virtual encoder without drawing: held, stopped, set anew and started while something else is under way.
 
+use encoder_studio::analysis::history::Flags;
+use encoder_studio::analysis::quality::Family;
 use encoder_studio::app::signals::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::app::{Action, Desk as Of, Studio};
-use encoder_studio::signal::history::Flags;
-use encoder_studio::signal::quality::Family;
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::signals::circle;

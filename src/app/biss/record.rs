@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use jiff::Zoned;
 
+use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::explain::{self, plain};
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::device::biss::{Error, FrameRun, PositionReading, Sample, WatchedReading};
 use crate::protocol::biss::{Decoded, Decoding, Register};
-use crate::signal::history::Value;
 
 /// Positions of the same widths that came one after the other.
 #[derive(Default)]

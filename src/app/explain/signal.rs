@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use super::file;
+use crate::analysis::analysis::{AnalysisError, LEAST_OCTANTS};
+use crate::analysis::capture::CaptureError;
+use crate::analysis::diagnosis::{Finding, Stuck, Untold, What};
+use crate::analysis::ellipse::{Channel, FitError, LEAST_POINTS};
+use crate::analysis::nonlinearity::NonlinearityError;
+use crate::analysis::quality::{Finding as Parameter, Verdict};
+use crate::analysis::revolution::RevolutionError;
+use crate::analysis::spectrum::SpectrumError;
 use crate::app::Text;
 use crate::app::number::decimals;
-use crate::signal::analysis::{AnalysisError, LEAST_OCTANTS};
-use crate::signal::capture::CaptureError;
-use crate::signal::diagnosis::{Finding, Stuck, Untold, What};
-use crate::signal::ellipse::{Channel, FitError, LEAST_POINTS};
-use crate::signal::nonlinearity::NonlinearityError;
-use crate::signal::quality::{Finding as Parameter, Verdict};
-use crate::signal::revolution::RevolutionError;
-use crate::signal::spectrum::SpectrumError;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
@@ -269,9 +269,9 @@ pub fn setting(error: &SettingError) -> Text {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::diagnosis::Severity;
+    use crate::analysis::wires::Wire;
     use crate::app::Language;
-    use crate::signal::diagnosis::Severity;
-    use crate::signal::wires::Wire;
     use crate::sim::sine_cosine::Settings;
 
     #[test]

@@ -184,7 +184,7 @@ pub fn evidence(evidence: &Evidence) -> Text {
 
 /// How often and when there was something to say.
 pub fn noted(noted: &Noted) -> Text {
-    let seconds = |time: crate::signal::Time| time.nanoseconds() as f64 / 1e9;
+    let seconds = |time: crate::analysis::Time| time.nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
     Text::new(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(
         "last",

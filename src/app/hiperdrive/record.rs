@@ -5,12 +5,12 @@ use std::time::Duration;
 use jiff::Zoned;
 
 use super::ruler::{Measure, Ruler};
+use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::device::hiperdrive::Reading;
 use crate::protocol::hiperdrive::SpeedScale;
-use crate::signal::history::Value;
 
 /// What stands beside the position.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,12 +9,12 @@ mod outcome;
 mod place;
 mod report;
 
+use crate::analysis::arctan::{Phase, exact};
+use crate::analysis::quality::{Limits, Verdict};
+use crate::analysis::synchronise::Synchroniser;
 use crate::app::Text;
 use crate::device::hiperface::Rest;
 use crate::protocol::hiperface::{Geometry, STEPS_PER_PERIOD};
-use crate::signal::arctan::{Phase, exact};
-use crate::signal::quality::{Limits, Verdict};
-use crate::signal::synchronise::Synchroniser;
 
 pub use form::{Form, Inputs, Slot, Source, Storage, Vector};
 pub use outcome::{Offset, Setting, Stored, may_read, stored};

@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use jiff::Zoned;
 
+use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::device::hiperface::{PositionReading, Sample, Watch, WatchedReading};
 use crate::protocol::hiperface::{Geometry, STEPS_PER_PERIOD};
-use crate::signal::history::Value;
 
 /// The recorder of an encoder, and what it said last.
 #[derive(Debug, Default)]

@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use jiff::Zoned;
 
+use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::device::interbus::Reading;
 use crate::protocol::interbus::{CamNumber, Gear, StartupMode};
-use crate::signal::history::Value;
 use crate::units::Moment;
 
 /// What an encoder sends instead of its position, or with it.

@@ -1,8 +1,8 @@
 //! Two cursors, and what lies between them: from the raw samples, not from what was reduced for a picture.
 
 use super::{Line, Recorder};
-use crate::signal::Time;
-use crate::signal::history::Sample;
+use crate::analysis::Time;
+use crate::analysis::history::Sample;
 
 /// One of the two cursors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -77,7 +77,7 @@ impl Recorder {
             return None;
         }
         let at = |time: Option<Time>| self.at(line, time?).filter(|sample| line.value(sample).is_finite());
-        let good = |time| at(time).filter(|sample| !sample.flags.contains(crate::signal::history::Flags::BAD));
+        let good = |time| at(time).filter(|sample| !sample.flags.contains(crate::analysis::history::Flags::BAD));
         let (at_a, at_b) = (good(a), good(b));
         let difference = at_a.zip(at_b).map(|(a, b)| line.difference(&a, &b));
         let between = a.zip(b).and_then(|(a, b)| self.between(line, a.min(b), a.max(b)));

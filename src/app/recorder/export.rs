@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
 use super::{GroupId, Line, Recorder, SAMPLE};
-use crate::signal::Time;
-use crate::signal::history::{Flags, History};
+use crate::analysis::Time;
+use crate::analysis::history::{Flags, History};
 use crate::store::{FileError, write_by};
 
 /// Rows of a portion, and portions that wait.

@@ -1,8 +1,8 @@
 //! A line of a recorder: a column of samples with its name and the units in which it can be seen.
 
 use super::GroupId;
+use crate::analysis::history::{Sample, Value};
 use crate::app::Text;
-use crate::signal::history::{Sample, Value};
 
 /// A line's number in its recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -20,9 +20,9 @@ pub use line::{Line, LineId, Scale};
 pub use trigger::{Trigger, TriggerState, When};
 pub use view::View;
 
+use crate::analysis::Time;
+use crate::analysis::history::{History, Kind, Part, Refused, Sample};
 use crate::app::Text;
-use crate::signal::Time;
-use crate::signal::history::{History, Kind, Part, Refused, Sample};
 use trigger::Watch;
 
 /// Something that is done with a recorder.

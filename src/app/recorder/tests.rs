@@ -1,8 +1,8 @@
 //! What a recorder does with samples whose values are known.
 
 use super::*;
+use crate::analysis::history::Flags;
 use crate::app::Text;
-use crate::signal::history::Flags;
 
 const MILLISECOND: i64 = 1_000_000;
 

@@ -1,8 +1,8 @@
 //! Waiting for something to happen in a line, and a picture of it with what was before.
 
 use super::{GroupId, LineId, Recorder, View};
-use crate::signal::Time;
-use crate::signal::history::{Flags, Sample};
+use crate::analysis::Time;
+use crate::analysis::history::{Flags, Sample};
 
 /// What a trigger waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Which stretch of time is shown.
 
 use super::Recorder;
-use crate::signal::Time;
+use crate::analysis::Time;
 
 /// Nanoseconds that a view never becomes shorter than.
 const SHORTEST: i64 = 100;

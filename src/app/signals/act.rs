@@ -7,13 +7,13 @@ use super::synchronise::Synchronise;
 use super::{
     Action, Done, Failed, Judge, Measurement, Place, Read, Results, Scope, Source, SourceAction, Table, promise,
 };
+use crate::analysis::capture::Wishes;
+use crate::analysis::diagnosis::{Changes, Finding, compare};
+use crate::analysis::quality::Family;
 use crate::app::number::MOST_PERIODS;
 use crate::app::recorder;
 use crate::app::services::Services;
 use crate::app::{Severity, SineCosineSource, Studio, Tab, Text, explain};
-use crate::signal::capture::Wishes;
-use crate::signal::diagnosis::{Changes, Finding, compare};
-use crate::signal::quality::Family;
 use crate::store::ReadCaptureError;
 
 /// All that the Signals tab knows.

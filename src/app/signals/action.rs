@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::{Column, Example, Measurement, Scope, SourceAction, Table, synchronise};
-use crate::signal::capture::{Delimiter, TimeUnit};
-use crate::signal::quality::Family;
+use crate::analysis::capture::{Delimiter, TimeUnit};
+use crate::analysis::quality::Family;
 use crate::store::ReadCaptureError;
 
 /// Something to be done.

@@ -3,14 +3,14 @@
 //! 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
+use crate::analysis::analysis::Analysis;
+use crate::analysis::arctan::{Phase, exact};
+use crate::analysis::capture::Capture;
+use crate::analysis::nonlinearity::{Deviation, Nonlinearity};
+use crate::analysis::outliers::kept;
+use crate::analysis::revolution::{Revolution, RevolutionError};
+use crate::analysis::synchronise::{STEPS, measure_offset};
 use crate::app::Text;
-use crate::signal::analysis::Analysis;
-use crate::signal::arctan::{Phase, exact};
-use crate::signal::capture::Capture;
-use crate::signal::nonlinearity::{Deviation, Nonlinearity};
-use crate::signal::outliers::kept;
-use crate::signal::revolution::{Revolution, RevolutionError};
-use crate::signal::synchronise::{STEPS, measure_offset};
 
 /// DNL and INL, as measured and corrected.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,7 +164,7 @@ mod tests {
     }
 
     fn analysed(capture: &Capture) -> Analysis {
-        let samples = crate::signal::position_error::Samples {
+        let samples = crate::analysis::position_error::Samples {
             time_s: &capture.time_s,
             sine_v: &capture.sine_v,
             cosine_v: &capture.cosine_v,

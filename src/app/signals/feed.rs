@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use crossbeam_channel::Receiver;
 
+use crate::analysis::wires::Wires;
 use crate::app::services::Services;
 use crate::app::{Text, bridge, explain};
 use crate::device::bridge::{Streaming, TapError};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
-use crate::signal::wires::Wires;
 use crate::sim::sine_cosine::Checked;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;

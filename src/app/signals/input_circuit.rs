@@ -1,9 +1,9 @@
 //! The calculator of a drive's input circuit: how fast the signals are at a speed, and what the filter does to them there
 //! and on the way to the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
 
+use crate::analysis::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, quantity_within, whole, within};
-use crate::signal::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
 
 /// The entries, as typed.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,8 +4,8 @@
 use std::sync::LazyLock;
 
 use super::forms;
+use crate::analysis::arctan::{self, DEGREES, OctantTable, Phase};
 use crate::app::Text;
-use crate::signal::arctan::{self, DEGREES, OctantTable, Phase};
 
 /// Sizes of tables that are told about.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];

@@ -8,14 +8,14 @@ use super::recent::{MOST, Recent};
 use super::{Done, Failed, Measurement, Origin, Scope, Signals, promise};
 use crossbeam_channel::Receiver;
 
+use crate::analysis::Time;
+use crate::analysis::quality::Family;
+use crate::analysis::wires::Wire;
 use crate::app::leaving::same_wire;
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::device::bridge::Streaming;
 use crate::link::LinkUrl;
-use crate::signal::Time;
-use crate::signal::quality::Family;
-use crate::signal::wires::Wire;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 
 /// What a person asks of the source.

@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{AbsoluteOffset, Example, NoOffset, Nonlinearities, Spectra, beside};
+use crate::analysis::analysis::{Analysis, AnalysisError};
+use crate::analysis::capture::Capture;
+use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
+use crate::analysis::ellipse::Correction;
+use crate::analysis::lissajous::{Density, Square};
+use crate::analysis::position_error::Samples;
+use crate::analysis::quality::Family;
+use crate::analysis::revolution::RevolutionError;
+use crate::analysis::spectrum::SpectrumError;
 use crate::app::{Language, Text, explain};
-use crate::signal::analysis::{Analysis, AnalysisError};
-use crate::signal::capture::Capture;
-use crate::signal::diagnosis::{Diagnosis, Record, diagnose};
-use crate::signal::ellipse::Correction;
-use crate::signal::lissajous::{Density, Square};
-use crate::signal::position_error::Samples;
-use crate::signal::quality::Family;
-use crate::signal::revolution::RevolutionError;
-use crate::signal::spectrum::SpectrumError;
 
 /// Where a capture comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]

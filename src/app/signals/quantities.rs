@@ -2,9 +2,9 @@
 //! `signal::quality` has them; SICK 8010701 for amplitudes and bandwidth.
 
 use super::Results;
-use crate::signal::analysis::{Analysis, LEAST_OCTANTS};
-use crate::signal::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
-use crate::signal::quality::{Family, Verdict};
+use crate::analysis::analysis::{Analysis, LEAST_OCTANTS};
+use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
+use crate::analysis::quality::{Family, Verdict};
 
 /// A number that was measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -204,8 +204,8 @@ pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quanti
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::capture::Capture;
     use crate::app::signals::{Judge, Measurement, Origin};
-    use crate::signal::capture::Capture;
     use std::sync::Arc;
 
     /// Section 7 of the reference: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°; here 1000 samples over two periods in

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::{Judge, Measurement, Origin, Place, Read, Scope, Table};
-use crate::signal::capture::{Capture, CaptureError, HEAD, Import, Wishes};
+use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Wishes};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
 /// A capture that ships with the program.

@@ -5,9 +5,9 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::feed::Channels;
-use crate::signal::Time;
-use crate::signal::capture::Capture;
-use crate::signal::wires::Wires;
+use crate::analysis::Time;
+use crate::analysis::capture::Capture;
+use crate::analysis::wires::Wires;
 use crate::worker::stream::Batch;
 
 /// The newest samples without a gap.

@@ -2,12 +2,12 @@
 //! they were recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
 
 use super::feed::Channels;
+use crate::analysis::Time;
+use crate::analysis::capture::Capture;
+use crate::analysis::history::{Kind, Part, Refused};
+use crate::analysis::wires::Wires;
 use crate::app::Text;
 use crate::app::recorder::{self, GroupId, Line, Recorder, SAMPLE, Scale};
-use crate::signal::Time;
-use crate::signal::capture::Capture;
-use crate::signal::history::{Kind, Part, Refused};
-use crate::signal::wires::Wires;
 use crate::worker::stream::Batch;
 
 /// A recorder with the signals.
@@ -141,7 +141,7 @@ impl Scope {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::history::Flags;
+    use crate::analysis::history::Flags;
 
     fn names(scope: &Scope) -> Vec<&'static str> {
         scope.recorder.shown().map(|line| line.name.id()).collect()

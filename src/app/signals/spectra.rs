@@ -1,8 +1,8 @@
 //! The spectra of both channels, thinned out for a picture: in each stretch of frequencies the highest line, so that no
 //! peak is lost.
 
-use crate::signal::position_error::Samples;
-use crate::signal::spectrum::{Line, Spectrum, SpectrumError, sample_rate_hz};
+use crate::analysis::position_error::Samples;
+use crate::analysis::spectrum::{Line, Spectrum, SpectrumError, sample_rate_hz};
 
 /// Both spectra.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,11 +2,11 @@
 //! ahead of the other over many readings. SICK 8010701, forming the absolute position; section 4 of the project's
 //! sine/cosine reference.
 
+use crate::analysis::arctan::{Phase, exact};
+use crate::analysis::quality::{Limits, Verdict};
+use crate::analysis::synchronise::{STEPS, Synchronised, Synchroniser, Unsynchronisable, measure_offset};
 use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
-use crate::signal::arctan::{Phase, exact};
-use crate::signal::quality::{Limits, Verdict};
-use crate::signal::synchronise::{STEPS, Synchronised, Synchroniser, Unsynchronisable, measure_offset};
 
 /// What can be done.
 #[derive(Clone, Debug, PartialEq)]

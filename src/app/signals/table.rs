@@ -1,7 +1,7 @@
 //! The table that a capture comes from: its first lines, what was found out about it, and what a person says instead.
 
 use super::Place;
-use crate::signal::capture::{Columns, Delimiter, Layout, Wishes, decode_head};
+use crate::analysis::capture::{Columns, Delimiter, Layout, Wishes, decode_head};
 
 /// The beginning of a table, and how it is read.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,11 +7,11 @@ use std::time::Duration;
 use jiff::Zoned;
 
 use super::trial::Decoded;
+use crate::analysis::Time;
 use crate::app::recorder::{GroupId, Line, Recorder};
 use crate::app::track::{Meaning, Sighting, Track, Watchable};
 use crate::device::ssi::Words;
 use crate::protocol::ssi::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
-use crate::signal::Time;
 use crate::units::Moment;
 
 /// Words that are kept as they came, to be read with another layout and to be searched.

@@ -2,7 +2,7 @@
 //! cannot have come round unseen.
 
 use super::Meaning;
-use crate::signal::{Motion, Rates, Time, Unwrap, Unwrapped};
+use crate::analysis::{Motion, Rates, Time, Unwrap, Unwrapped};
 
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::signal::capture::Columns;
-use crate::signal::quality::Family;
+use crate::analysis::capture::Columns;
+use crate::analysis::quality::Family;
 
 #[derive(Args)]
 pub(in crate::cli) struct Analyse {

@@ -6,6 +6,7 @@ use super::args::SsiLayout;
 use super::frames::{Told, name};
 use super::layout::{Chosen, choose};
 use super::run::{begin, words};
+use crate::analysis::Time;
 use crate::app::explain;
 use crate::cli::args::{Common, Position, Status};
 use crate::cli::output::{Lines, Output, count, say};
@@ -13,7 +14,6 @@ use crate::cli::positions::readings;
 use crate::cli::runner::Ended;
 use crate::cli::{Done, Failure, Result};
 use crate::protocol::ssi::{Finding, Layout, Meaning, Place, Tally};
-use crate::signal::Time;
 use crate::units::Moment;
 use crate::worker::ssi::{Ssi, SsiJob};
 

@@ -2,7 +2,7 @@
 //! have been sampled after it came: the one that was least under way tells how the clocks stand, and a stretch of time later
 //! another one. Ours is followed slowly, so that samples stay at equal distances and no time goes back.
 
-use crate::signal::Time;
+use crate::analysis::Time;
 
 /// How the clock of an adapter that streams stands to ours.
 #[derive(Clone, Debug, Default)]

@@ -3,12 +3,12 @@
 use std::fmt;
 use std::time::Duration;
 
+use crate::analysis::Time;
 use crate::device::bridge::flow::Flow;
 use crate::device::bridge::{AdapterState, SupplyAfter};
 use crate::device::line::{LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::bridge::Hello;
-use crate::signal::Time;
 use crate::units::SupplyVoltage;
 
 /// Link parameters that describe the line and the encoder's supply.

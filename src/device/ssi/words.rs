@@ -79,8 +79,8 @@ impl Words {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::Time;
     use crate::protocol::bridge::Data;
-    use crate::signal::Time;
 
     #[test]
     fn a_packet_is_a_run_of_words_with_a_moment_each() {

@@ -3,7 +3,7 @@
 //! and is recognised in a backup as a value of the mounting.
 
 use super::HiperfaceProfile;
-use crate::signal::commutation::ElectricalAngle;
+use crate::analysis::commutation::ElectricalAngle;
 
 /// What is stored for one motor.
 ///

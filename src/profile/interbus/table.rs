@@ -13,8 +13,8 @@ mod tests;
 pub use emit::emit as emit_table;
 
 use super::{Names, Outside, Scale, Unit};
+use crate::analysis::capture::Delimiter;
 use crate::protocol::interbus::{Cam, CamNumber, Program, ProgramNumber, Value};
-use crate::signal::capture::Delimiter;
 
 /// How a table is to be read.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 
 use super::explain::Finding;
 use super::layout::{Flags, Layout, Reading};
-use crate::signal::Time;
+use crate::analysis::Time;
 
 /// How often there was something to say, of frames that were noted in their order.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
+use crate::analysis::Time;
 use crate::protocol::bridge::{AnalogData, BissData, BissStatus, Data, MAX_BODY, SsiData};
-use crate::signal::Time;
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
 

@@ -20,8 +20,8 @@ use std::f64::consts::TAU;
 
 pub use settings::{Checked, Quantity, References, SettingError, Settings};
 
-use crate::signal::Time;
-use crate::signal::wires::{Wire, Wires};
+use crate::analysis::Time;
+use crate::analysis::wires::{Wire, Wires};
 
 /// Parts of a turn: so many that 0.001 rev/min for a nanosecond is one of them.
 const TURN: u64 = 60_000 * 1_000_000_000;

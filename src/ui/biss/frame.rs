@@ -2,12 +2,12 @@
 
 use egui::Ui;
 
+use crate::analysis::quality::Verdict;
 use crate::app::biss::Action as Biss;
 use crate::app::biss::Encoder;
 use crate::app::{Action, Text};
 use crate::device::biss::PositionReading;
 use crate::protocol::biss::{Layout, Reading};
-use crate::signal::quality::Verdict;
 use crate::ui::Skin;
 use crate::ui::controls::{card_with, enabled_button, paragraph, row};
 use crate::ui::icons;

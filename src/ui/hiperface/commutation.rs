@@ -4,10 +4,10 @@ mod result;
 
 use egui::{RichText, Ui};
 
+use crate::analysis::quality::Verdict;
 use crate::app::hiperface::commutation::{Action as Assistant, Form, Slot, Source, Vector, kind_words, may_read};
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::{Action, Text};
-use crate::signal::quality::Verdict;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, labelled_entry, paragraph, row, split, text_entry,
     verdict_ui,

@@ -153,7 +153,14 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
 }
 
 /// The raw sample nearest to a time, as a dot.
-fn dot(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, line: &Line, time: crate::signal::Time) {
+fn dot(
+    painter: &Painter,
+    context: &Context<'_>,
+    layout: &Layout,
+    lane: &Lane,
+    line: &Line,
+    time: crate::analysis::Time,
+) {
     let Some(sample) = context.recorder.at(line, time) else { return };
     let place = pos2(layout.time.x(sample.time), lane.axis().y(line.value(&sample)));
     if place.is_finite() && lane.rect.contains(place) {

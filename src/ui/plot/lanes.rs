@@ -7,8 +7,8 @@ use egui::{Rect, pos2};
 
 use super::axes;
 use super::trace::{TimeAxis, ValueAxis};
+use crate::analysis::history::{Cut, Grid, Picture};
 use crate::app::recorder::{Line, LineId, Recorder, Stamp};
-use crate::signal::history::{Cut, Grid, Picture};
 
 /// Between two lanes, in points.
 const BETWEEN: f32 = 6.0;
@@ -101,7 +101,7 @@ impl Reduced {
     fn extent(&self, line: &Line, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
         let picture = self.picture(line.id)?;
         // The neighbours beyond the edges are there for the line to lead to them, not to be fitted.
-        let visible = |pixel: &&crate::signal::history::Pixel| {
+        let visible = |pixel: &&crate::analysis::history::Pixel| {
             time.x(pixel.to) >= chart.left() && time.x(pixel.from) <= chart.right()
         };
         let factor = line.factor();
@@ -182,10 +182,10 @@ fn range(lines: &[&Line], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::Time;
+    use crate::analysis::history::{Kind, Part};
     use crate::app::Text;
     use crate::app::recorder::{Action, Scale};
-    use crate::signal::Time;
-    use crate::signal::history::{Kind, Part};
 
     /// 1000 samples, a microsecond apart, of one value.
     fn recorder(value: f64) -> Recorder {

@@ -111,7 +111,7 @@ fn chart_ui(
     view: &mut View,
     height: f32,
     empty: &str,
-) -> Option<crate::signal::Time> {
+) -> Option<crate::analysis::Time> {
     let (skin, recorder) = (context.skin, context.recorder);
     let size = vec2(ui.available_width().max(0.0), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());

@@ -4,8 +4,8 @@ use egui::{EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui}
 
 use super::Context;
 use super::lanes::Layout;
+use crate::analysis::Time;
 use crate::app::recorder::{Action, Cursor};
-use crate::signal::Time;
 
 /// So near, in points, the pointer is on a cursor.
 const NEAR: f32 = 6.0;

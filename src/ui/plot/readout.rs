@@ -3,9 +3,9 @@
 use egui::{RichText, Sense, Ui, vec2};
 
 use super::{Context, axes, chart};
+use crate::analysis::Time;
+use crate::analysis::history::{Flags, Sample};
 use crate::app::recorder::{Line, Measured, SAMPLE};
-use crate::signal::Time;
-use crate::signal::history::{Flags, Sample};
 use crate::ui::Skin;
 
 pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {

@@ -4,8 +4,8 @@
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-use crate::signal::Time;
-use crate::signal::history::{Flags, Picture};
+use crate::analysis::Time;
+use crate::analysis::history::{Flags, Picture};
 
 /// Thickness of a line in points.
 const WIDTH: f32 = 1.5;
@@ -245,7 +245,7 @@ fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Ve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::signal::history::{Grid, History, Kind, Part};
+    use crate::analysis::history::{Grid, History, Kind, Part};
 
     const LANE: Rect = Rect { min: Pos2::ZERO, max: pos2(100.0, 50.0) };
     const PEN: Pen =

@@ -3,9 +3,9 @@
 use egui::Ui;
 
 use super::{View, nonlinearity, numbers, octant, quality, source};
+use crate::analysis::position_error::{Basis, PositionError, harmonics};
 use crate::app::signals::{Results, Signals, error_quantities};
 use crate::app::{Action, Text};
-use crate::signal::position_error::{Basis, PositionError, harmonics};
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, split};
 use crate::ui::widgets::{Chart, Trace, chart};

@@ -3,8 +3,8 @@
 
 use egui::{RichText, Ui, WidgetInfo};
 
+use crate::analysis::quality::Verdict;
 use crate::app::signals::{Bound, Quantity, Unit};
-use crate::signal::quality::Verdict;
 use crate::ui::{Skin, controls};
 
 /// Width from which a value also stands in its second unit; else that is its tooltip.

@@ -2,8 +2,8 @@
 
 use egui::Ui;
 
+use crate::analysis::arctan::OctantTable;
 use crate::app::signals::interpolation::{INTERVALS, interpolate, table_errors};
-use crate::signal::arctan::OctantTable;
 use crate::ui::Skin;
 use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
 

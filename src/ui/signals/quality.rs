@@ -5,12 +5,12 @@ use std::sync::Arc;
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
 use super::{View, numbers, source};
+use crate::analysis::analysis::Analysis;
+use crate::analysis::diagnosis::{Changes, Finding, Severity};
+use crate::analysis::lissajous::Square;
+use crate::analysis::quality::Family;
 use crate::app::signals::{Action as Signals_, Measurement, Results, Signals, forms, quantities};
 use crate::app::{Action, Text, explain};
-use crate::signal::analysis::Analysis;
-use crate::signal::diagnosis::{Changes, Finding, Severity};
-use crate::signal::lissajous::Square;
-use crate::signal::quality::Family;
 use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
 use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
 use crate::ui::{Skin, icons};

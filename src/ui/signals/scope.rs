@@ -100,7 +100,7 @@ fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, vo
     }
     traces.push(trace("signals.cosine", &spectra.cosine, 2, false));
     traces.push(trace("signals.sine", &spectra.sine, 0, false));
-    let mark = |line: &crate::signal::spectrum::Line| {
+    let mark = |line: &crate::analysis::spectrum::Line| {
         let words = with_unit(skin, line.frequency_hz / 1e3, 3, Unit::Kilohertz);
         (line.frequency_hz / 1e3, shown(volts, line.amplitude_v), words)
     };

@@ -3,9 +3,9 @@
 use egui::{ScrollArea, Ui};
 
 use super::Draft;
+use crate::analysis::capture::{Delimiter, TimeUnit};
 use crate::app::signals::{Action as Signals, Column, Table, forms};
 use crate::app::{Action, Text};
-use crate::signal::capture::{Delimiter, TimeUnit};
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Skin, icons};
 

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use super::bit_cell::BitCell;
 use super::series;
-use crate::signal::quality::Verdict;
+use crate::analysis::quality::Verdict;
 use crate::ui::{Skin, controls};
 
 use place::{Placed, Want, place};

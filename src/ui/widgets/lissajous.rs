@@ -13,8 +13,8 @@ use egui::{
     Align2, Color32, ColorImage, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, TextureId, Ui, Vec2, WidgetInfo,
 };
 
+use crate::analysis::lissajous::{Density, Square};
 use crate::app::Text;
-use crate::signal::lissajous::{Density, Square};
 use crate::ui::Skin;
 use crate::ui::widgets::series;
 

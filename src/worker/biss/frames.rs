@@ -40,8 +40,8 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
+    use crate::analysis::Time;
     use crate::protocol::biss::Reading;
-    use crate::signal::Time;
     use crate::worker::bridge::tests::{bench, count, virtual_adapter};
     use crate::worker::stream::Producer;
 

@@ -3,12 +3,12 @@
 use std::sync::Mutex;
 
 use super::*;
+use crate::analysis::quality::Family;
 use crate::device::bridge::AdapterError;
 use crate::link::{LinkError, LinkErrorKind, SimLink, VirtualClock};
 use crate::protocol::bridge::{
     AnalogData, BissData, BissStatus, Capabilities, ErrorCode, Hello, Message, Operation, Receiver, Reply, Request,
 };
-use crate::signal::quality::Family;
 use crate::sim::bridge::Adapter;
 use crate::sim::{AT_ADAPTER, ByteDevice};
 use crate::units::{CharacterFormat, Moment};

@@ -4,9 +4,9 @@
 use std::time::Duration;
 
 use super::{Batch, Producer};
+use crate::analysis::Time;
+use crate::analysis::wires::Wires;
 use crate::link::Clock;
-use crate::signal::Time;
-use crate::signal::wires::Wires;
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
 

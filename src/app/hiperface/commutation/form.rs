@@ -1,10 +1,10 @@
 //! What is ticked, chosen and typed in the commutation assistant, and what it means.
 
+use crate::analysis::arctan::Phase;
+use crate::analysis::commutation::Motor;
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole, within};
 use crate::protocol::hiperface::Geometry;
-use crate::signal::arctan::Phase;
-use crate::signal::commutation::Motor;
 
 /// The form of the assistant. An empty number of periods is that of the encoder's type.
 #[derive(Clone, Debug, PartialEq)]

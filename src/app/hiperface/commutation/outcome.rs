@@ -2,14 +2,14 @@
 //! the position of method 2.
 
 use super::{Commutation, Inputs, Kind, Place, Slot, Source, Storage};
+use crate::analysis::arctan::Phase;
+use crate::analysis::commutation::{ElectricalAngle, position_to_set};
+use crate::analysis::quality::Verdict;
 use crate::app::Text;
 use crate::app::hiperface::{Allowed, Staged};
 use crate::app::number::whole;
 use crate::profile::hiperface::{CommutationRecord, Damaged};
 use crate::protocol::hiperface::{Geometry, STEPS_PER_PERIOD};
-use crate::signal::arctan::Phase;
-use crate::signal::commutation::{ElectricalAngle, position_to_set};
-use crate::signal::quality::Verdict;
 
 /// Method 2 is refused where its step is this or more: the torque may have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::*;
-use crate::signal::history::Flags;
+use crate::analysis::history::Flags;
 use crate::units::Moment;
 
 /// 32 steps a period, 4096 a turn; 4096 turns.

@@ -1,8 +1,8 @@
 //! What is told of a table of cams that was read.
 
+use crate::analysis::capture::Delimiter;
 use crate::app::Text;
 use crate::profile::interbus::{CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableRow, Unit, Wrong};
-use crate::signal::capture::Delimiter;
 
 /// Decimals beyond which nobody reads.
 const MOST_DECIMALS: usize = 6;

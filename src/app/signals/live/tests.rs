@@ -3,11 +3,11 @@
 use std::time::{Duration, Instant};
 
 use super::*;
+use crate::analysis::capture::Capture;
+use crate::analysis::quality::Family;
 use crate::app::services::World;
 use crate::app::signals::{Action, Judge};
 use crate::profile::Formats;
-use crate::signal::capture::Capture;
-use crate::signal::quality::Family;
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {

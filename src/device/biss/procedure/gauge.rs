@@ -4,8 +4,8 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use crate::analysis::{Time, Unwrap};
 use crate::device::biss::PositionReading;
-use crate::signal::{Time, Unwrap};
 
 /// Follows positions over a stretch of time.
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! Which column of a table holds what: as its header says in English or German, else as many as there are.
 
 use super::Column;
+use crate::analysis::capture::Delimiter;
 use crate::profile::interbus::Unit;
-use crate::signal::capture::Delimiter;
 
 /// Columns by their place, from 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

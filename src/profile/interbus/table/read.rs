@@ -4,9 +4,9 @@ use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use super::columns::{self, Columns};
 use super::{CamTable, Column, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableRow, Wrong};
+use crate::analysis::capture::Delimiter;
 use crate::profile::interbus::{Outside, Placed, Unit};
 use crate::protocol::interbus::{CamNumber, Program, ProgramNumber};
-use crate::signal::capture::Delimiter;
 
 /// What is more is no table of cams: eight programs of eight, with room for what is wrong in it.
 const MOST_ROWS: usize = 1000;

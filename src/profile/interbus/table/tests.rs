@@ -1,9 +1,9 @@
 //! Tables as they come: from spreadsheets, from drawings, with what is wrong in them.
 
 use super::{CamTable, Column, TableNote, TableOptions, TableProblem, Wrong, emit_table};
+use crate::analysis::capture::Delimiter;
 use crate::profile::interbus::{Direction, Image, Names, Outside, Parameters, Scale, Unit};
 use crate::protocol::interbus::{Cam, CamNumber, Program, ProgramNumber, Value};
-use crate::signal::capture::Delimiter;
 
 fn number(program: u8) -> ProgramNumber {
     ProgramNumber::new(program).unwrap()

@@ -3,10 +3,10 @@
 use egui::{RichText, Ui};
 
 use super::{ask, number};
+use crate::analysis::quality::Verdict;
 use crate::app::hiperface::commutation::{Action as Assistant, Form, Storage, Stored, stored};
 use crate::app::hiperface::{Action as Hiperface, Encoder};
 use crate::app::{Action, Text};
-use crate::signal::quality::Verdict;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, paragraph, primary, row, verdict_ui,
 };

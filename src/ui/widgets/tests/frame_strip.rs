@@ -3,7 +3,7 @@
 use egui_kittest::kittest::Queryable;
 
 use super::{skin, window};
-use crate::signal::quality::Verdict;
+use crate::analysis::quality::Verdict;
 use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
 
 fn field(name: &str, value: &str, bits: usize, lit: Option<Verdict>) -> StripField {

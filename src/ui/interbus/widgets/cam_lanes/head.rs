@@ -140,7 +140,7 @@ impl Lanes<'_> {
             }
         }
         if lamp.differs() {
-            let (icon, colour) = controls::verdict(skin, crate::signal::quality::Verdict::Warn);
+            let (icon, colour) = controls::verdict(skin, crate::analysis::quality::Verdict::Warn);
             let font = FontId::proportional(skin.sizes.body);
             painter.text(pos2(rect.left() + 7.0, middle.y), Align2::CENTER_CENTER, icon, font, colour.into());
         }

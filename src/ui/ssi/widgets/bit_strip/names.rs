@@ -8,9 +8,9 @@ use egui::text::{LayoutJob, TextWrapping};
 use egui::{Color32, FontId, Galley, Painter, Rect, Stroke, Ui, Vec2, pos2};
 
 use super::rows::{NAME, Rows};
+use crate::analysis::quality::Verdict;
 use crate::app::ssi::strip::{Field, Strip, bare, name, short};
 use crate::protocol::ssi::Meaning;
-use crate::signal::quality::Verdict;
 use crate::ui::{Skin, controls};
 
 /// A name and where it is.

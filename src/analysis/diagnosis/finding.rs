@@ -1,8 +1,8 @@
 //! What can be found in a signal, with the numbers that say how much of it there is.
 
 use super::OutOfLimits;
-use crate::signal::ellipse::Channel;
-use crate::signal::wires::Wire;
+use crate::analysis::ellipse::Channel;
+use crate::analysis::wires::Wire;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,7 +2,7 @@
 //! run unoptimised; `benches/history.rs` does the whole day.
 
 use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture};
-use crate::signal::{Motion, Time, Unwrap};
+use crate::analysis::{Motion, Time, Unwrap};
 
 const MILLISECOND: i64 = 1_000_000;
 

@@ -8,7 +8,7 @@ use super::flags::Flags;
 use super::number::Number;
 use super::series::Series;
 use super::{Column, FAN, History};
-use crate::signal::Time;
+use crate::analysis::Time;
 
 /// Equal steps of time, one a pixel column, whose edges are multiples of their width: a picture that scrolls at one zoom
 /// keeps its columns.

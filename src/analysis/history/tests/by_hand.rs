@@ -1,7 +1,7 @@
 //! Cases small enough to be written down.
 
 use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture, Refused, Value};
-use crate::signal::Time;
+use crate::analysis::Time;
 
 fn time(nanoseconds: i64) -> Time {
     Time::from_nanoseconds(nanoseconds)

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture, Pixel, Value};
 use super::model::Model;
-use crate::signal::Time;
+use crate::analysis::Time;
 
 /// What the values of a run of samples look like.
 #[derive(Clone, Copy, Debug)]

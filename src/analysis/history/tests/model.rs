@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::{BLOCK, Flags, Grid, Pixel, Reduced, Value};
-use crate::signal::Time;
+use crate::analysis::Time;
 
 /// One column with its times, and what is still there of it.
 #[derive(Default)]

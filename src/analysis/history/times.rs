@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::BLOCK;
-use crate::signal::Time;
+use crate::analysis::Time;
 
 /// When the samples were taken, in blocks that begin and end with those of the values.
 #[derive(Debug)]

@@ -9,10 +9,10 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::LEAST_LINE;
-use crate::signal::analysis::Analysis;
-use crate::signal::ellipse::Correction;
-use crate::signal::position_error::Samples;
-use crate::signal::spectrum::{Spectrum, sample_rate_hz};
+use crate::analysis::analysis::Analysis;
+use crate::analysis::ellipse::Correction;
+use crate::analysis::position_error::Samples;
+use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 
 /// Frequencies of the mains.
 pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];

@@ -2,7 +2,7 @@
 
 use super::super::import::Import;
 use super::*;
-use crate::signal::capture::Capture;
+use crate::analysis::capture::Capture;
 
 fn read_in(pieces: usize, text: &[u8], wishes: &Wishes) -> Result<(Layout, Capture), CaptureError> {
     let mut import = Import::begin(text, wishes)?;
