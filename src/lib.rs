@@ -5,6 +5,7 @@
 // floor 1: words and numbers
 pub mod analysis;
 pub mod bits;
+pub mod buses;
 pub mod units;
 
 // floor 2: bytes ↔ meaning, and what is saved

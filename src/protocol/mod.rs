@@ -7,4 +7,3 @@ pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 pub mod ssi;
-pub mod ubicom;

@@ -5,11 +5,11 @@ use crate::app::bridge::traced as adapter;
 use crate::app::explain::{self, plain};
 use crate::app::{Explained, Text, TraceFault};
 use crate::bits::ByteOrder;
+use crate::buses::ubicom::protocol::{Frame, Reply, Request, SYNC, Written};
 use crate::device::biss::Damage;
 use crate::link::{Direction, TraceEntry};
 use crate::protocol::biss::RegisterAddress;
 use crate::protocol::bridge;
-use crate::protocol::ubicom::{Frame, Reply, Request, SYNC, Written};
 
 /// Reads frames in the order in which they went over the line.
 #[derive(Debug, Default)]

@@ -9,11 +9,11 @@ mod ubicom;
 use serde_json::{Map, json};
 
 use super::KIND;
+use crate::buses::ubicom::protocol::{Request, SYNC};
 use crate::cli::decode::{self, Explained, show};
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
-use crate::protocol::ubicom::{Request, SYNC};
 
 /// What an argument holds.
 enum Captured {

@@ -16,9 +16,9 @@ use super::kind::{Kind, lacking};
 use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
+use crate::buses::ubicom::protocol as ubicom;
 use crate::profile::biss::{ItemError, RegisterRange};
 use crate::protocol::biss::KIND;
-use crate::protocol::ubicom;
 use crate::sim::{AT_ADAPTER, ConfigError, biss, bridge};
 use crate::units::{CharacterFormat, Moment};
 

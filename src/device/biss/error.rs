@@ -2,11 +2,11 @@
 
 use std::fmt;
 
+use crate::buses::ubicom::protocol::ReplyError;
 use crate::device::bridge::{AdapterError, Failure};
 use crate::device::line::LineError;
 use crate::link::LinkError;
 use crate::protocol::biss::{DeviceMode, FrameError, Identity, RegisterAddress};
-use crate::protocol::ubicom::ReplyError;
 
 /// What was asked of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

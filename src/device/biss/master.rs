@@ -14,10 +14,10 @@ use std::time::Duration;
 use super::error::{Asked, Damage};
 use super::position::PositionReading;
 use super::{Error, Station, Way};
+use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
 use crate::device::line::{Line, TRIES};
 use crate::link::Ctx;
 use crate::protocol::biss::{Description, RegisterAddress};
-use crate::protocol::ubicom::{BYTE_TIME_OUT, Request, order_told_by};
 use crate::units::Moment;
 use bus::NoFrame;
 

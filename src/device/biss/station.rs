@@ -8,12 +8,12 @@ use super::flags::Flags;
 use super::identify::FrameSource;
 use crate::analysis::Time;
 use crate::bits::ByteOrder;
+use crate::buses::ubicom::protocol::{FORMAT, REPLY_TIME_OUT};
 use crate::device::bridge::flow::Flow;
 use crate::device::bridge::{AdapterState, SupplyAfter};
 use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::protocol::biss::{Access, Crc, Description, Firmware, Layout, RegisterAddress};
-use crate::protocol::ubicom::{FORMAT, REPLY_TIME_OUT};
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
 /// Link parameters that describe the line and the encoder.

@@ -2,7 +2,7 @@
 //! warning bit in it.
 
 use super::single_cycle::{Layout, Reading};
-use crate::protocol::ubicom::PositionWord;
+use crate::buses::ubicom::protocol::PositionWord;
 
 impl Layout {
     /// The word of a position. Bits of the multiturn for which there is no place are left out.

@@ -7,8 +7,10 @@ use std::time::Duration;
 use super::config::Config;
 use super::encoder::Encoder;
 use crate::bits::ByteOrder;
+use crate::buses::ubicom::protocol::{
+    BYTE_TIME_OUT, FORMAT, Frame, NODE, Receiver, Reply, Request, Written, character_bits,
+};
 use crate::protocol::biss::RegisterAddress;
-use crate::protocol::ubicom::{BYTE_TIME_OUT, FORMAT, Frame, NODE, Receiver, Reply, Request, Written, character_bits};
 use crate::sim::Faults;
 use crate::sim::line::{Line, Queue, Wires};
 use crate::units::Moment;

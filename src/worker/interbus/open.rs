@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::Interbus;
 use crate::bits::MaskedBytes;
+use crate::buses::ubicom::protocol::FORMAT;
 use crate::device::interbus::{PARAMETERS, Station};
 use crate::link::{Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, TraceEntry, Wire};
-use crate::protocol::ubicom::FORMAT;
 use crate::sim::interbus::{Config, Gateway};
 use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes, read_recording};

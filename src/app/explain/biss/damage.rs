@@ -1,9 +1,9 @@
 //! What was wrong with a reply, in words.
 
 use crate::app::Text;
+use crate::buses::ubicom::protocol::ReplyError;
 use crate::device::biss::Damage;
 use crate::protocol::biss::FrameError;
-use crate::protocol::ubicom::ReplyError;
 
 /// What was wrong with a reply.
 pub fn damage(damage: &Damage) -> Text {

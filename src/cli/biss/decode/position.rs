@@ -5,9 +5,9 @@ use serde_json::{Map, Value as Json, json};
 
 use super::form;
 use crate::bits::{hex, hex_compact};
+use crate::buses::ubicom::protocol::PositionWord;
 use crate::cli::decode::Explained;
 use crate::protocol::biss::{FrameError, Layout, Reading};
-use crate::protocol::ubicom::PositionWord;
 
 /// Bytes that hold a frame, right-justified.
 pub(super) const BYTES: usize = 6;

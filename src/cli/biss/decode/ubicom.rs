@@ -3,10 +3,10 @@
 use super::form;
 use crate::bits::ByteOrder;
 use crate::bits::{hex, hex_compact};
+use crate::buses::ubicom::protocol::{Frame, NODE, PositionWord, Reply, Request, Written};
 use crate::cli::biss::words;
 use crate::cli::decode::Explained;
 use crate::protocol::biss::{Layout, RegisterAddress};
-use crate::protocol::ubicom::{Frame, NODE, PositionWord, Reply, Request, Written};
 
 /// What the frames say. `asked` is the request before them, and the last of theirs afterwards.
 pub(super) fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explained> {
@@ -54,7 +54,7 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
         return Ok(lines);
     }
     let unknown = |error: &dyn std::fmt::Display| format!("a UBICOM frame that is neither request nor reply: {error}");
-    let command = crate::protocol::ubicom::Command::from_byte(frame.command)
+    let command = crate::buses::ubicom::protocol::Command::from_byte(frame.command)
         .ok_or_else(|| unknown(&format!("0x{:02X} is not a command", frame.command)))?;
     let own = Frame { address: NODE, ..*frame };
     lines.push(match Reply::parse(&own, command).map_err(|error| unknown(&error))? {

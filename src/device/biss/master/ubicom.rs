@@ -7,14 +7,14 @@ use std::time::Duration;
 use super::{Attempt, Master, Taken, Trouble};
 use crate::bits::ByteOrder;
 use crate::bits::MaskedBytes;
+use crate::buses::ubicom::protocol::{
+    BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
+};
 use crate::device::biss::error::Damage;
 use crate::device::biss::position::PositionReading;
 use crate::device::biss::{Echo, Error};
 use crate::device::line::MOST_KEPT;
 use crate::protocol::biss::RegisterAddress;
-use crate::protocol::ubicom::{
-    BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
-};
 use crate::units::Moment;
 
 /// Bytes of the longest frame: the reply to 03h.

@@ -187,7 +187,7 @@ fn another_speed_gives_no_frame() {
     let format = CharacterFormat { baud: Baud::B9600, parity: Parity::None };
     line.port.set_host_format(line.now, format);
     line.expect(READ_TEMPERATURE, "");
-    line.port.set_host_format(line.now, crate::protocol::ubicom::FORMAT);
+    line.port.set_host_format(line.now, crate::buses::ubicom::protocol::FORMAT);
     line.expect(READ_TEMPERATURE, TEMPERATURE);
 }
 

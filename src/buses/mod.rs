@@ -1,0 +1,3 @@
+//! What several devices speak.
+
+pub mod ubicom;

@@ -1,0 +1,3 @@
+//! UBICOM: registers and positions over a serial line.
+
+pub mod protocol;
