@@ -4,7 +4,6 @@
 pub(crate) mod action;
 pub mod biss;
 mod brakes;
-pub mod bridge;
 pub mod check;
 mod closing;
 pub mod connect;

@@ -1,3 +1,4 @@
 //! What several devices speak.
 
+pub mod bridge;
 pub mod ubicom;

@@ -1,7 +1,6 @@
 //! What one does with a device: procedures that read like the manuals' step tables.
 
 pub mod biss;
-pub mod bridge;
 pub mod check;
 pub mod hiperdrive;
 pub mod hiperface;

@@ -1,7 +1,7 @@
 //! The virtual encoders that hang on the virtual adapter, a line each.
 
-use super::bridge::Attachable;
 use super::{biss, hiperface, ssi};
+use crate::buses::bridge::sim::Attachable;
 
 /// Which encoders there are. The settings of the last one are named last.
 pub const AT_ADAPTER: [&dyn Attachable; 3] = [&hiperface::AtAdapter, &ssi::AtAdapter::DELIVERED, &biss::AtAdapter];
@@ -9,8 +9,8 @@ pub const AT_ADAPTER: [&dyn Attachable; 3] = [&hiperface::AtAdapter, &ssi::AtAda
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::buses::bridge::sim::{Adapter, keys};
     use crate::sim::ConfigError;
-    use crate::sim::bridge::{Adapter, keys};
     use crate::sim::setting::pairs;
     use proptest::prelude::*;
 

@@ -6,7 +6,6 @@
 
 mod at_adapter;
 pub mod biss;
-pub mod bridge;
 mod fault;
 pub mod hiperdrive;
 pub mod hiperface;

@@ -9,7 +9,6 @@
 
 mod agenda;
 pub mod biss;
-pub mod bridge;
 pub(crate) mod commit;
 pub mod hiperdrive;
 pub mod hiperface;

@@ -5,10 +5,10 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use encoder_studio::protocol::bridge::{Receiver, Request};
+use encoder_studio::buses::bridge::protocol::{Receiver, Request};
+use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::units::Moment;
 
 /// An adapter behind a TCP port, one connection after the other.

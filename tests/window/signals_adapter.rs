@@ -7,7 +7,7 @@ use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
 use encoder_studio::app::signals::{Action as Signals, Origin, SourceAction, SourceKind};
 use encoder_studio::app::{Action, Desk as Of, Severity, Studio, Tab};
-use encoder_studio::protocol::bridge::Request;
+use encoder_studio::buses::bridge::protocol::Request;
 
 use crate::screen::Screen;
 use crate::served::Served;

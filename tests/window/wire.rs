@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
+use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
 use encoder_studio::sim::biss::Port;
-use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::sim::hiperdrive::Target;
 use encoder_studio::sim::hiperface::Bus;
 use encoder_studio::sim::interbus::Gateway;

@@ -4,11 +4,12 @@ use crate::app::Text;
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::bits::ByteOrder;
+use crate::buses::bridge::procedures::SupplyAfter;
+use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol::FORMAT;
 use crate::device::biss::{Echo, PARAMETERS, Way};
-use crate::device::bridge::SupplyAfter;
 use crate::link::{LinkUrl, Scheme};
-use crate::sim::{AT_ADAPTER, biss, bridge};
+use crate::sim::{AT_ADAPTER, biss};
 use crate::units::Parity;
 use crate::worker::biss::check;
 

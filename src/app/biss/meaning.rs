@@ -1,15 +1,15 @@
 //! What the frames of the trace say: a reply is read with the request before it, a register over the bus with the bank that
 //! was selected.
 
-use crate::app::bridge::traced as adapter;
 use crate::app::explain::{self, plain};
 use crate::app::{Explained, Text, TraceFault};
 use crate::bits::ByteOrder;
+use crate::buses::bridge::protocol as bridge;
+use crate::buses::bridge::state::traced as adapter;
 use crate::buses::ubicom::protocol::{Frame, Reply, Request, SYNC, Written};
 use crate::device::biss::Damage;
 use crate::link::{Direction, TraceEntry};
 use crate::protocol::biss::RegisterAddress;
-use crate::protocol::bridge;
 
 /// Reads frames in the order in which they went over the line.
 #[derive(Debug, Default)]

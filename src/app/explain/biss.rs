@@ -14,7 +14,7 @@ pub use write::{change, failure, op, preset, wear, weight, written};
 
 use super::{link, not_begun, store};
 use crate::app::Text;
-use crate::app::bridge::adapter;
+use crate::buses::bridge::state::adapter;
 use crate::device::biss::{Asked, Error};
 use crate::link::LinkError;
 use crate::profile::biss::BissProfile;
@@ -178,8 +178,8 @@ fn byte(byte: u8) -> String {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
+    use crate::buses::bridge::procedures::AdapterError;
     use crate::device::biss::Damage;
-    use crate::device::bridge::AdapterError;
     use crate::link::LinkErrorKind;
     use crate::protocol::biss::{Identity, ProfileId, RegisterAddress};
 

@@ -6,7 +6,7 @@ mod refused;
 
 use super::link;
 use crate::app::Text;
-use crate::app::bridge::adapter;
+use crate::buses::bridge::state::adapter;
 use crate::protocol::ssi::{
     Advice, Code, Coded, Doubt, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning,
 };
@@ -197,7 +197,7 @@ pub fn noted(noted: &Noted) -> Text {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
-    use crate::device::bridge::AdapterError;
+    use crate::buses::bridge::procedures::AdapterError;
     use crate::link::{LinkError, LinkErrorKind};
 
     /// What happened, and what to do: two sentences or more in both languages, with the facts in them.

@@ -7,13 +7,14 @@ use crossbeam_channel::Receiver;
 
 use crate::analysis::wires::Wires;
 use crate::app::services::Services;
-use crate::app::{Text, bridge, explain};
-use crate::device::bridge::{Streaming, TapError};
+use crate::app::{Text, explain};
+use crate::buses::bridge::jobs::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};
+use crate::buses::bridge::procedures::{Streaming, TapError};
+use crate::buses::bridge::state as bridge;
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::sim::sine_cosine::Checked;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
-use crate::worker::bridge::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};
 use crate::worker::stream::{Analogue, Batch, End, Producer, Stream};
 
 /// Both signals in volts, equally long.

@@ -14,7 +14,7 @@ use crate::analysis::wires::Wire;
 use crate::app::leaving::same_wire;
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
-use crate::device::bridge::Streaming;
+use crate::buses::bridge::procedures::Streaming;
 use crate::link::LinkUrl;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 

@@ -113,7 +113,7 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worker::bridge::Pair;
+    use crate::buses::bridge::jobs::Pair;
 
     fn batch(first: u64, count: usize, period_ns: i64, lost: u64) -> Batch<Channels> {
         let column = |at: f64| (0..count).map(|own| (first as f64 + own as f64) * at).collect();

@@ -3,10 +3,11 @@
 use crate::app::Text;
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{adapter_in_network, checked, entered, parted, to_adapter};
-use crate::device::bridge::SupplyAfter;
+use crate::buses::bridge::procedures::SupplyAfter;
+use crate::buses::bridge::sim as bridge;
 use crate::device::ssi::PARAMETERS;
 use crate::link::{LinkUrl, Scheme};
-use crate::sim::{AT_ADAPTER, bridge};
+use crate::sim::AT_ADAPTER;
 use crate::worker::ssi::check;
 
 /// How the encoder is reached.

@@ -9,7 +9,7 @@ use crate::app::action::{Attempt, Done, Opened};
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Drafted, Kind, OnLine};
 use crate::app::{Severity, Text, explain};
-use crate::device::bridge::AdapterError;
+use crate::buses::bridge::procedures::AdapterError;
 use crate::device::ssi::{Identity, Words};
 use crate::link::TraceEntry;
 use crate::protocol::ssi::KIND;

@@ -1,9 +1,9 @@
 //! What the frames of the trace say.
 
-use crate::app::bridge::traced;
 use crate::app::{Explained, Text};
+use crate::buses::bridge::protocol::Request;
+use crate::buses::bridge::state::traced;
 use crate::link::{Direction, TraceEntry};
-use crate::protocol::bridge::Request;
 
 /// What a frame says.
 pub(super) fn meaning(entry: &TraceEntry) -> Explained {

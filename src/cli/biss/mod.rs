@@ -16,10 +16,11 @@ use super::kind::{Kind, lacking};
 use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
+use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol as ubicom;
 use crate::profile::biss::{ItemError, RegisterRange};
 use crate::protocol::biss::KIND;
-use crate::sim::{AT_ADAPTER, ConfigError, biss, bridge};
+use crate::sim::{AT_ADAPTER, ConfigError, biss};
 use crate::units::{CharacterFormat, Moment};
 
 /// How long is waited for a motor, or a shaft at rest, where nobody can be told.

@@ -14,9 +14,9 @@ use super::kind::Kind;
 use super::output::Output;
 use super::simulate::{Simulated, settings};
 use super::{Failure, Result};
+use crate::buses::bridge::sim::{Adapter, Attachable};
 use crate::protocol::ssi::KIND;
 use crate::sim::AT_ADAPTER;
-use crate::sim::bridge::{Adapter, Attachable};
 use crate::sim::ssi::{AtAdapter, Encoder};
 
 pub(crate) use args::Ssi;

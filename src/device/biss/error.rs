@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use crate::buses::bridge::procedures::{AdapterError, Failure};
 use crate::buses::ubicom::protocol::ReplyError;
-use crate::device::bridge::{AdapterError, Failure};
 use crate::device::line::LineError;
 use crate::link::LinkError;
 use crate::protocol::biss::{DeviceMode, FrameError, Identity, RegisterAddress};

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::device::bridge::Portion;
+use crate::buses::bridge::procedures::Portion;
+use crate::buses::bridge::protocol::{BissData, BissStatus};
 use crate::protocol::biss::{FrameError, Layout, Reading};
-use crate::protocol::bridge::{BissData, BissStatus};
 use crate::units::Moment;
 
 /// Why a frame of a stream has no reading.

@@ -7,13 +7,13 @@ use super::registers::Registers;
 use super::widths::find_widths;
 use super::{Error, Master, Station, Way};
 use crate::bits::ByteOrder;
+use crate::buses::bridge::protocol::Hello;
 use crate::profile::Unknown;
 use crate::profile::biss::ProfileIdentity;
 use crate::protocol::biss::{
     Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
     RegisterAddress, Role, eds_layout,
 };
-use crate::protocol::bridge::Hello;
 
 /// An encoder as it says who it is.
 #[derive(Clone, Debug, PartialEq)]

@@ -207,8 +207,8 @@ fn motion(layout: &Layout, positions: &[u64]) -> Line {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::buses::bridge::protocol::{Capabilities, Hello};
     use crate::device::ssi::{Asking, Supply};
-    use crate::protocol::bridge::{Capabilities, Hello};
     use crate::protocol::ssi::{Families, Settings};
 
     fn layout(text: &str) -> Layout {

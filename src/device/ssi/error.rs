@@ -1,6 +1,6 @@
 //! What can go wrong with the adapter before an encoder. Of the encoder itself only its words tell.
 
-use crate::device::bridge::{AdapterError, Failure};
+use crate::buses::bridge::procedures::{AdapterError, Failure};
 use crate::device::line::LineError;
 use crate::link::LinkError;
 

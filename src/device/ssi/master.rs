@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use super::station::{Identity, Supply};
 use super::{Asking, Error, Station, Words};
-use crate::device::bridge::flow::{Flow, Streamed};
-use crate::device::bridge::{Adapter, AdapterError, Failure};
+use crate::buses::bridge::procedures::flow::{Flow, Streamed};
+use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
+use crate::buses::bridge::protocol::{Capabilities, Data, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags};
 use crate::device::line::Line;
 use crate::link::Ctx;
-use crate::protocol::bridge::{Capabilities, Data, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags};
 use crate::units::Moment;
 
 /// A wish to end is heard so often.

@@ -4,11 +4,11 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::analysis::Time;
-use crate::device::bridge::flow::Flow;
-use crate::device::bridge::{AdapterState, SupplyAfter};
+use crate::buses::bridge::procedures::flow::Flow;
+use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
+use crate::buses::bridge::protocol::Hello;
 use crate::device::line::{LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
-use crate::protocol::bridge::Hello;
 use crate::units::SupplyVoltage;
 
 /// Link parameters that describe the line and the encoder's supply.

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::station::Asking;
-use crate::device::bridge::Portion;
-use crate::protocol::bridge::SsiData;
+use crate::buses::bridge::procedures::Portion;
+use crate::buses::bridge::protocol::SsiData;
 use crate::units::Moment;
 
 /// Words that follow each other at equal distances, or one that was asked for by itself.
@@ -80,7 +80,7 @@ impl Words {
 mod tests {
     use super::*;
     use crate::analysis::Time;
-    use crate::protocol::bridge::Data;
+    use crate::buses::bridge::protocol::Data;
 
     #[test]
     fn a_packet_is_a_run_of_words_with_a_moment_each() {

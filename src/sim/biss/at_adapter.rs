@@ -1,7 +1,7 @@
 //! The kit encoder on the bus of a virtual adapter.
 
 use super::{Config, Encoder};
-use crate::sim::bridge::{Attachable, Attached, BissDevice};
+use crate::buses::bridge::sim::{Attachable, Attached, BissDevice};
 use crate::sim::{ConfigError, Faults, Motor};
 use crate::units::Moment;
 

@@ -1,8 +1,8 @@
 //! The encoder at the serial line of a virtual adapter, where it is asked for.
 
 use super::{Bus, Config};
+use crate::buses::bridge::sim::{Attachable, Attached, SerialDevice};
 use crate::sim::ConfigError;
-use crate::sim::bridge::{Attachable, Attached, SerialDevice};
 use crate::sim::setting::Setting;
 use crate::units::Moment;
 

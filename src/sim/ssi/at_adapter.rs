@@ -2,8 +2,8 @@
 
 use super::encoder::{Encoder, Sending};
 use super::trouble::Trouble;
+use crate::buses::bridge::sim::{Attachable, Attached};
 use crate::sim::ConfigError;
-use crate::sim::bridge::{Attachable, Attached};
 use crate::sim::setting::Setting;
 
 /// The SSI frame of an encoder that nothing else is said of: 12 bits of turns, 13 within one.

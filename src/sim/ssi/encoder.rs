@@ -1,8 +1,8 @@
 //! A frame with the encoder's position in it.
 
 use super::trouble::Trouble;
+use crate::buses::bridge::sim::SsiDevice;
 use crate::protocol::ssi::{Direction, Families, Flags, Layout, Settings};
-use crate::sim::bridge::SsiDevice;
 use crate::units::Moment;
 
 /// A virtual SSI encoder.

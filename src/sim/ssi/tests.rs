@@ -3,10 +3,10 @@
 use proptest::prelude::*;
 
 use super::AtAdapter;
-use crate::protocol::bridge::*;
+use crate::buses::bridge::protocol::*;
+use crate::buses::bridge::sim::Attachable;
+use crate::buses::bridge::sim::tests::{Dial, Host, SSI};
 use crate::sim::ConfigError;
-use crate::sim::bridge::Attachable;
-use crate::sim::bridge::tests::{Dial, Host, SSI};
 use crate::sim::setting::pairs;
 
 /// On the shaft of a test.

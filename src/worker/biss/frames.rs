@@ -1,10 +1,10 @@
 //! Position frames that an adapter streams.
 
+use crate::buses::bridge::jobs::Stretch;
+use crate::buses::bridge::procedures::{Streaming, Wanted};
+use crate::buses::bridge::protocol::Data;
 use crate::device::biss::{Frame, frames};
-use crate::device::bridge::{Streaming, Wanted};
 use crate::protocol::biss::Layout;
-use crate::protocol::bridge::Data;
-use crate::worker::bridge::Stretch;
 
 /// Position frames of BiSS, with their checksums looked at.
 #[derive(Clone, Debug)]
@@ -41,8 +41,8 @@ mod tests {
 
     use super::*;
     use crate::analysis::Time;
+    use crate::buses::bridge::jobs::tests::{bench, count, virtual_adapter};
     use crate::protocol::biss::Reading;
-    use crate::worker::bridge::tests::{bench, count, virtual_adapter};
     use crate::worker::stream::Producer;
 
     /// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.

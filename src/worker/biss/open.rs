@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::Biss;
+use crate::buses::bridge::procedures::SupplyAfter;
+use crate::buses::bridge::sim::{self as bridge, Adapter};
 use crate::device::biss::{Echo, Station, Way};
-use crate::device::bridge::SupplyAfter;
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
 use crate::sim::biss::{Config, Port};
-use crate::sim::bridge::{self, Adapter};
 use crate::sim::{AT_ADAPTER, ConfigError, Motor};
 use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::Ssi;
+use crate::buses::bridge::jobs::FORMAT;
+use crate::buses::bridge::sim::Adapter;
 use crate::device::ssi::{PARAMETERS, Station};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::sim::AT_ADAPTER;
-use crate::sim::bridge::Adapter;
 use crate::store::Store;
-use crate::worker::bridge::FORMAT;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
 

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
+use encoder_studio::buses::bridge::procedures::AdapterError;
+use encoder_studio::buses::bridge::protocol::Operation;
 use encoder_studio::device::biss::{Error, Supply};
-use encoder_studio::device::bridge::AdapterError;
 use encoder_studio::protocol::biss::{Crc, Layout};
-use encoder_studio::protocol::bridge::Operation;
 use encoder_studio::sim::biss::Encoder;
 use encoder_studio::units::Moment;
 

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use encoder_studio::bits::ByteOrder;
+use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::device::biss::{Echo, Error, Survey};
-use encoder_studio::device::bridge::AdapterError;
 use encoder_studio::link::{Cancel, LinkUrl, TraceEntry, write_entry, write_header};
 use encoder_studio::store::Store;
 use encoder_studio::worker::biss::{BissJob, BissOutput, JobError, open};

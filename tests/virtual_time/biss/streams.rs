@@ -3,14 +3,14 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use encoder_studio::buses::bridge::procedures::AdapterError;
+use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
+use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::device::biss::{Error, FrameRun, Sample, Station, Supply};
-use encoder_studio::device::bridge::AdapterError;
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::profile::biss::RegisterRange;
-use encoder_studio::protocol::bridge::{Operation, Receiver};
 use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
 use encoder_studio::worker::biss::{Biss, BissJob, JobError};

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
+use encoder_studio::buses::bridge::procedures::SupplyAfter::{AsFound, Off, On};
 use encoder_studio::device::biss::write::Left;
-use encoder_studio::device::bridge::SupplyAfter::{AsFound, Off, On};
 use encoder_studio::units::SupplyVoltage;
 use encoder_studio::worker::biss::{BissJob, JobError};
 

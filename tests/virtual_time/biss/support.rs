@@ -3,18 +3,18 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
+use encoder_studio::buses::bridge::procedures::{SupplyAfter, Tap as Stream, Wanted};
+use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
+use encoder_studio::buses::bridge::sim::Adapter;
 pub(crate) use encoder_studio::device::biss::Way;
 use encoder_studio::device::biss::procedure::News;
 use encoder_studio::device::biss::{Master, Station, Supply};
-use encoder_studio::device::bridge::{SupplyAfter, Tap as Stream, Wanted};
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
 use encoder_studio::protocol::biss::{Descriptions, RegisterAddress};
-use encoder_studio::protocol::bridge::{Operation, Receiver};
 use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::sim::Motor;
 use encoder_studio::sim::biss::{Config, Encoder, Port};
-use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::store::Store;
 use encoder_studio::units::{Moment, SupplyVoltage};
 use encoder_studio::worker::biss::{Biss, BissJob, BissOutput, Doing, JobError};

@@ -1,8 +1,8 @@
 //! Who the adapter is, how words are taken, a word.
 
-use encoder_studio::device::bridge::AdapterError;
+use encoder_studio::buses::bridge::procedures::AdapterError;
+use encoder_studio::buses::bridge::protocol::{Capabilities, Operation};
 use encoder_studio::device::ssi::{Asking, Error, Identity, Supply};
-use encoder_studio::protocol::bridge::{Capabilities, Operation};
 use encoder_studio::worker::ssi::{SsiJob, SsiOutput};
 
 use super::support::{QUICK, Stand};

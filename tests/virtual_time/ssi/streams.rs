@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use encoder_studio::device::bridge::AdapterError;
+use encoder_studio::buses::bridge::procedures::AdapterError;
+use encoder_studio::buses::bridge::protocol::Operation;
+use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::device::ssi::{Asking, Error, Words};
 use encoder_studio::link::Clock;
-use encoder_studio::protocol::bridge::Operation;
 use encoder_studio::sim::AT_ADAPTER;
-use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::worker::ssi::SsiJob;
 
 use super::support::{QUICK, Stand};

@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use encoder_studio::buses::bridge::protocol::{Operation, Packet, Receiver};
+use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::device::ssi::{Asking, Station, Words};
 use encoder_studio::link::{Clock, VirtualClock};
-use encoder_studio::protocol::bridge::{Operation, Packet, Receiver};
 use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::bridge::Adapter;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 use encoder_studio::worker::ssi::{Ssi, SsiJob, SsiOutput};

@@ -100,7 +100,8 @@ fn a_wrong_setting_of_a_virtual_encoder_is_told_in_both_languages() {
                    ssi-error=x ssi=afs60&ssi-error=x supply=x uart=x motor=x version=x";
     for text in queries.split_whitespace() {
         let query: Query = text.parse().unwrap();
-        let error = crate::sim::bridge::Adapter::from_pairs(query.pairs(), &crate::sim::AT_ADAPTER).err().unwrap();
+        let error =
+            crate::buses::bridge::sim::Adapter::from_pairs(query.pairs(), &crate::sim::AT_ADAPTER).err().unwrap();
         check(&setting(&error), &error);
     }
 }

@@ -4,11 +4,11 @@ use serde_json::Map;
 
 use super::{form, position};
 use crate::bits::{hex, hex_compact};
-use crate::cli::decode::Explained;
-use crate::protocol::bridge::{
+use crate::buses::bridge::protocol::{
     AnalogData, BissData, BissStatus, BodyError, Capabilities, Data, ErrorCode, Hello, Message, Operation, Packet,
     PacketError, Reply, Request, SsiData,
 };
+use crate::cli::decode::Explained;
 
 /// What the packets say. Nothing between two 00 is no packet.
 pub(super) fn explain(bytes: &[u8]) -> Vec<Explained> {

@@ -4,13 +4,13 @@
 use std::time::Duration;
 
 use super::{Attempt, Master, Taken, Trouble};
+use crate::buses::bridge::procedures::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
+use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
 use crate::device::biss::error::{Asked, Damage, Error};
 use crate::device::biss::position::PositionReading;
 use crate::device::biss::station::Bus;
-use crate::device::bridge::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
 use crate::device::line::LineError;
 use crate::protocol::biss::{FrameError, RegisterAddress};
-use crate::protocol::bridge::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
 use crate::units::Moment;
 
 /// The encoder's number on a line with no other.

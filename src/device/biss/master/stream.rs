@@ -5,12 +5,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::Master;
+use crate::buses::bridge::procedures::flow::{Flow, Streamed};
+use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
+use crate::buses::bridge::protocol::Data;
 use crate::device::biss::frames::{FrameRun, frames};
 use crate::device::biss::station::Way;
 use crate::device::biss::{Error, Station};
-use crate::device::bridge::flow::{Flow, Streamed};
-use crate::device::bridge::{Adapter, AdapterError, Failure};
-use crate::protocol::bridge::Data;
 
 /// A wish to end is heard so often.
 const SLICE: Duration = Duration::from_millis(20);

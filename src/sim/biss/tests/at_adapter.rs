@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
+use crate::buses::bridge::protocol::*;
+use crate::buses::bridge::sim::tests::{BISS, Host};
 use crate::protocol::biss::{FrameError, Layout, Reading};
-use crate::protocol::bridge::*;
 use crate::sim::ByteDevice;
 use crate::sim::biss::{AtAdapter, Encoder};
-use crate::sim::bridge::tests::{BISS, Host};
 
 fn behind_adapter(query: &str) -> Host {
     Host::to(query, &[&AtAdapter])

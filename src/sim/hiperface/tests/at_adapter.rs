@@ -1,7 +1,7 @@
 //! What a host sees of the encoder at the serial line of the virtual adapter.
 
-use crate::protocol::bridge::*;
-use crate::sim::bridge::tests::Host;
+use crate::buses::bridge::protocol::*;
+use crate::buses::bridge::sim::tests::Host;
 use crate::sim::hiperface::AtAdapter;
 
 /// The reference's question for the status and its answer; the times are those of HIPERFACE: eleven bits a character,

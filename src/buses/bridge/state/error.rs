@@ -1,8 +1,8 @@
 //! What an adapter does not do, in words, whatever bus is behind it.
 
 use crate::app::Text;
-use crate::device::bridge::AdapterError;
-use crate::protocol::bridge::{ErrorCode, Operation};
+use crate::buses::bridge::procedures::AdapterError;
+use crate::buses::bridge::protocol::{ErrorCode, Operation};
 
 /// An adapter that does not answer, or not with what was asked for.
 pub fn adapter(error: &AdapterError) -> Text {
@@ -59,7 +59,7 @@ fn number(operation: Operation) -> String {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
-    use crate::protocol::bridge::BodyError;
+    use crate::buses::bridge::protocol::BodyError;
 
     #[test]
     fn each_code_has_words_of_its_own() {

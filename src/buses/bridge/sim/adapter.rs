@@ -13,7 +13,7 @@ use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, actual_clock};
 use super::config::Config;
 use super::stream::{Analog, Clocked, Kind};
 use super::uart::Uart;
-use crate::protocol::bridge::{
+use crate::buses::bridge::protocol::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
 };
 use crate::sim::line::Queue;

@@ -10,10 +10,10 @@ mod tap;
 use std::time::Duration;
 
 use crate::bits::MaskedBytes;
-use crate::device::line::{Line, LineError, LineState};
-use crate::protocol::bridge::{
+use crate::buses::bridge::protocol::{
     BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
+use crate::device::line::{Line, LineError, LineState};
 use crate::units::{Moment, SupplyVoltage};
 use power::Power;
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 use super::drift::Drift;
 use super::{Adapter, AdapterError, Failure, other};
 use crate::analysis::Time;
+use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Reply, Request};
 use crate::device::line::LineError;
-use crate::protocol::bridge::{Continuity, Data, Gap, Message, Packet, Reply, Request};
 use crate::units::Moment;
 
 /// What an adapter is to send by itself. What it clocks or samples how was said before.

@@ -8,12 +8,12 @@ use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use super::OpenError;
-use super::stream::{Batch, Counted, Producer};
-use crate::device::bridge::{Portion, Streaming, Tap, TapError, Wanted};
+use crate::buses::bridge::procedures::{Portion, Streaming, Tap, TapError, Wanted};
+use crate::buses::bridge::protocol::Data;
 use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
-use crate::protocol::bridge::Data;
 use crate::units::SupplyVoltage;
+use crate::worker::OpenError;
+use crate::worker::stream::{Batch, Counted, Producer};
 
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;

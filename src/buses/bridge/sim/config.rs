@@ -1,6 +1,6 @@
 //! The settings of a virtual adapter, as the query of a `sim:` link gives them: its own. What hangs on it has others.
 
-use crate::protocol::bridge::VERSION;
+use crate::buses::bridge::protocol::VERSION;
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 

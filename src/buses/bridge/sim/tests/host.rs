@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use crate::protocol::bridge::*;
-use crate::sim::bridge::{Adapter, Attachable, Attached, BissDevice, SsiDevice};
+use crate::buses::bridge::protocol::*;
+use crate::buses::bridge::sim::{Adapter, Attachable, Attached, BissDevice, SsiDevice};
 use crate::sim::setting::{Setting, pairs};
 use crate::sim::{ByteDevice, ConfigError, Faults, Motor};
 use crate::units::Moment;

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::attached::SerialDevice;
-use crate::protocol::bridge::MAX_BODY;
+use crate::buses::bridge::protocol::MAX_BODY;
 use crate::units::{Baud, CharacterFormat, Moment, Parity};
 
 /// The line, as it is set.

@@ -4,12 +4,12 @@ use std::sync::Mutex;
 
 use super::*;
 use crate::analysis::quality::Family;
-use crate::device::bridge::AdapterError;
-use crate::link::{LinkError, LinkErrorKind, SimLink, VirtualClock};
-use crate::protocol::bridge::{
+use crate::buses::bridge::procedures::AdapterError;
+use crate::buses::bridge::protocol::{
     AnalogData, BissData, BissStatus, Capabilities, ErrorCode, Hello, Message, Operation, Receiver, Reply, Request,
 };
-use crate::sim::bridge::Adapter;
+use crate::buses::bridge::sim::Adapter;
+use crate::link::{LinkError, LinkErrorKind, SimLink, VirtualClock};
 use crate::sim::{AT_ADAPTER, ByteDevice};
 use crate::units::{CharacterFormat, Moment};
 use crate::worker::stream::{PATIENCE, Stream};

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 pub(crate) use host::{BISS, Dial, Host, SSI};
 
-use crate::protocol::bridge::*;
+use crate::buses::bridge::protocol::*;
 use crate::sim::ByteDevice;
 use crate::units::Moment;
 

@@ -2,7 +2,7 @@
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
-use crate::protocol::bridge::{Message, Packet, Reply, Request};
+use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 
 /// The packet in bytes as they pass over the line; `None`: they are none.
 pub fn packet(bytes: &[u8]) -> Option<Packet> {

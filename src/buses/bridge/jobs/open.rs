@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::Open;
+use crate::buses::bridge::sim::Adapter;
 use crate::link::{Clock, LinkUrl, Query, Scheme, UrlError};
 use crate::sim::AT_ADAPTER;
-use crate::sim::bridge::Adapter;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use crate::analysis::Time;
-use crate::protocol::bridge::{AnalogData, BissData, BissStatus, Data, MAX_BODY, SsiData};
+use crate::buses::bridge::protocol::{AnalogData, BissData, BissStatus, Data, MAX_BODY, SsiData};
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
 

@@ -5,7 +5,7 @@ use fastrand::Rng;
 
 use super::attached::{BissDevice, SsiDevice};
 use super::config::{Config, Line};
-use crate::protocol::bridge::BissStatus;
+use crate::buses::bridge::protocol::BissStatus;
 use crate::units::Moment;
 
 /// The wires with their encoders.

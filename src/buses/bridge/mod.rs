@@ -1,0 +1,7 @@
+//! The open adapter.
+
+pub mod jobs;
+pub mod procedures;
+pub mod protocol;
+pub mod sim;
+pub mod state;
