@@ -12,11 +12,13 @@ use std::thread::{JoinHandle, sleep, spawn};
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, unbounded};
+use encoder_studio::buses::ethernet_ip::protocol::{
+    ForwardClose, IoPacket, Owner, Path, RealTimeFormat, RequestTimeout,
+};
 use encoder_studio::device::hiperdrive::cyclic::{Drives, Histogram};
 use encoder_studio::device::hiperdrive::dead_man::{Effort, Intent, Permit, Wish};
 use encoder_studio::device::hiperdrive::{DriveLimits, Opened, Rules};
 use encoder_studio::link::{Clock, DatagramPort, Datagrams, RealClock, UdpPort};
-use encoder_studio::protocol::ethernet_ip::{ForwardClose, IoPacket, Owner, Path, RealTimeFormat, RequestTimeout};
 use encoder_studio::protocol::hiperdrive::{
     ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutImage, Topology, Variant,
 };

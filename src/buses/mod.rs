@@ -1,4 +1,5 @@
 //! What several devices speak.
 
 pub mod bridge;
+pub mod ethernet_ip;
 pub mod ubicom;

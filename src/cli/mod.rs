@@ -7,7 +7,6 @@ mod biss;
 pub(crate) mod check;
 pub(crate) mod consent;
 pub(crate) mod decode;
-mod ethernet_ip;
 mod hiperdrive;
 mod hiperface;
 mod interbus;
@@ -23,6 +22,7 @@ pub(crate) mod runner;
 pub(crate) mod simulate;
 mod ssi;
 
+use crate::buses::ethernet_ip::commands as ethernet_ip;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

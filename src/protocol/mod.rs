@@ -1,7 +1,6 @@
 //! Bytes ↔ meaning. Pure functions and tables: no socket, port, clock, thread, channel or file.
 
 pub mod biss;
-pub mod ethernet_ip;
 pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;

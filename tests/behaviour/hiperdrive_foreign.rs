@@ -5,11 +5,11 @@ use std::net::SocketAddrV4;
 use std::sync::Arc;
 use std::time::Duration;
 
+use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::device::hiperdrive::{Asked, Error, Found, discover};
 use encoder_studio::link::{Cancel, RealClock, UdpShout};
 use encoder_studio::profile::Consent;
 use encoder_studio::profile::hiperdrive::{Image, NetworkSettings, Service};
-use encoder_studio::protocol::ethernet_ip::AddressSource;
 use encoder_studio::protocol::hiperdrive::{DriveNumber, ParameterNumber, Topology, Value, Variant};
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;

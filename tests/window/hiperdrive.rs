@@ -5,9 +5,9 @@ use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, LimitsStay, Ma
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, Wish, connect};
+use encoder_studio::buses::ethernet_ip::protocol::{Identity, IdentityItem, Revision, SocketAddress};
 use encoder_studio::device::hiperdrive::Found;
 use encoder_studio::device::hiperdrive::dead_man::{Goal, Lock};
-use encoder_studio::protocol::ethernet_ip::{Identity, IdentityItem, Revision, SocketAddress};
 use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR};
 
 use crate::support::Desk;

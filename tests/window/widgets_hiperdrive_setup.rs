@@ -8,8 +8,8 @@ use encoder_studio::app::hiperdrive::axis::Step;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Mark, Motor};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, Text, connect};
+use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::device::hiperdrive::dead_man::Goal;
-use encoder_studio::protocol::ethernet_ip::AddressSource;
 use encoder_studio::protocol::hiperdrive::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
 use encoder_studio::units::Moment;
 

@@ -7,9 +7,9 @@ use super::connect_form::HiperdriveWay;
 use crate::app::action::Done;
 use crate::app::studio::Studio;
 use crate::app::{Text, explain};
+use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
 use crate::device::hiperdrive::{Error, Found, discover};
 use crate::link::{Cancel, Clock, RealClock, UdpShout};
-use crate::protocol::ethernet_ip::EXPLICIT_PORT;
 
 /// A question to all, and its answers.
 #[derive(Clone, Debug, PartialEq, Eq)]

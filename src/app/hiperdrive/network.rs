@@ -4,8 +4,8 @@
 use core::net::Ipv4Addr;
 
 use crate::app::{Severity, Text};
+use crate::buses::ethernet_ip::protocol::{AddressError, AddressSource, InterfaceConfiguration};
 use crate::profile::hiperdrive::NetworkSettings;
-use crate::protocol::ethernet_ip::{AddressError, AddressSource, InterfaceConfiguration};
 use crate::protocol::hiperdrive::AddressSwitch;
 
 /// What is wanted, as it is typed.

@@ -3,11 +3,11 @@
 use crate::app::explain;
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
-use crate::device::hiperdrive::Damage;
-use crate::link::{Direction, TraceEntry};
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     Command, EncapsulationStatus, Frame, GeneralStatus, LogicalKind, Reply, Request, Service,
 };
+use crate::device::hiperdrive::Damage;
+use crate::link::{Direction, TraceEntry};
 use crate::protocol::hiperdrive::ParameterNumber;
 
 /// What a frame says.

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use serde_json::{Value as Json, json};
 
 use crate::app::explain;
+use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
 use crate::cli::args::{Common, Find, no_option};
 use crate::cli::output::Output;
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
 use crate::device::hiperdrive::{Found, discover};
 use crate::link::{Cancel, Clock, LinkUrl, RealClock, Scheme, UdpShout, Wire};
-use crate::protocol::ethernet_ip::EXPLICIT_PORT;
 use crate::protocol::hiperdrive::KIND;
 
 pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {

@@ -7,8 +7,8 @@ use super::identify::{drive_status, identify, of, own};
 use super::limits::ends_by_itself;
 use super::network::network;
 use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
+use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::device::check;
-use crate::protocol::ethernet_ip::AddressSource;
 use crate::protocol::hiperdrive::{
     AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, Reach, State, StatusBit, Topology, Travel,
     Variant,

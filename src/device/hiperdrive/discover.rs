@@ -4,8 +4,8 @@ use core::net::Ipv4Addr;
 use std::time::Duration;
 
 use super::Error;
+use crate::buses::ethernet_ip::protocol::{Body, Command, Frame, IdentityItem};
 use crate::link::{Cancel, Clock, Shout};
-use crate::protocol::ethernet_ip::{Body, Command, Frame, IdentityItem};
 use crate::protocol::hiperdrive::VENDOR;
 
 /// A device that has answered.

@@ -3,11 +3,11 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::device::line::LineError;
-use crate::link::LinkError;
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     EncapsulationStatus, ExtendedStatusRow, GeneralStatus, PacketError, Service, extended_row,
 };
+use crate::device::line::LineError;
+use crate::link::LinkError;
 use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, ParameterNumber, Topology, ValueError};
 
 /// What a device was asked for.

@@ -14,12 +14,12 @@ pub use connection::Opened;
 use super::error::{Asked, Damage, Late, Refusal, WrongLength};
 use super::{Error, Station};
 use crate::bits::MaskedBytes;
-use crate::device::line::{Line, TRIES};
-use crate::link::Ctx;
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
     Request,
 };
+use crate::device::line::{Line, TRIES};
+use crate::link::Ctx;
 use crate::protocol::hiperdrive::{Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError};
 use crate::units::Moment;
 

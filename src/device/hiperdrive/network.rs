@@ -3,8 +3,8 @@
 use super::error::Asked;
 use super::identify::own;
 use super::{Error, Master};
+use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration, PacketError};
 use crate::profile::hiperdrive::NetworkSettings;
-use crate::protocol::ethernet_ip::{ConfigurationControl, InterfaceConfiguration, PacketError};
 use crate::protocol::hiperdrive::AddressSwitch;
 
 /// Address and where it comes from. What the device refuses to say is not there.

@@ -6,10 +6,10 @@ use std::fmt;
 use std::hash::{BuildHasher, Hasher};
 use std::time::Duration;
 
+use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
 use crate::device::Replies;
 use crate::device::line::LineState;
 use crate::link::{Query, UrlError};
-use crate::protocol::ethernet_ip::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
 use crate::protocol::hiperdrive::{ByteOrder, Topology};
 use crate::units::Moment;
 

@@ -11,9 +11,9 @@ use super::error::Asked;
 use super::identify::{drive_status, drive_text, of, own, topology};
 use super::network::settings;
 use super::{Error, Identity, Master};
+use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
 use crate::profile::Consent;
 use crate::profile::hiperdrive::{HiperdrivePlan, Item, NetworkSettings, Op, Service};
-use crate::protocol::ethernet_ip::{ConfigurationControl, InterfaceConfiguration};
 use crate::protocol::hiperdrive::{
     DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
 };

@@ -1,7 +1,7 @@
 //! Why something cannot be planned.
 
 use super::Item;
-use crate::protocol::ethernet_ip::AddressError;
+use crate::buses::ethernet_ip::protocol::AddressError;
 use crate::protocol::hiperdrive::{DriveNumber, OutOfRange, Topology, Variant};
 
 /// A profile and a device of two types: as a whole (parameter 13), or in the drive at a place (parameter 120), whose variant

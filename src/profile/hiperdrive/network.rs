@@ -2,7 +2,7 @@
 //! where the address switch is at 0, its addresses also where that is at 97.
 
 use super::{Base, HiperdrivePlan, Op, PlanError};
-use crate::protocol::ethernet_ip::{AddressSource, InterfaceConfiguration};
+use crate::buses::ethernet_ip::protocol::{AddressSource, InterfaceConfiguration};
 use crate::protocol::hiperdrive::ParameterNumber;
 
 /// What the object says.
@@ -45,9 +45,9 @@ pub(super) const SWITCH: u16 = 12;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::buses::ethernet_ip::protocol::AddressError;
     use crate::profile::Operation;
     use crate::profile::hiperdrive::{Warning, warnings};
-    use crate::protocol::ethernet_ip::AddressError;
     use crate::protocol::hiperdrive::AddressSwitch;
 
     fn settings(source: AddressSource, address: [u8; 4]) -> NetworkSettings {

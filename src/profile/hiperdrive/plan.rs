@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{Image, Item, NetworkSettings};
+use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::profile::{Operation, Plan};
-use crate::protocol::ethernet_ip::AddressSource;
 use crate::protocol::hiperdrive::{DriveNumber, ParameterNumber};
 
 /// What a write to an adapter or a hub would do.

@@ -5,7 +5,7 @@
 
 use super::axis::TURN;
 use super::drive::Drive;
-use crate::protocol::ethernet_ip::GeneralStatus;
+use crate::buses::ethernet_ip::protocol::GeneralStatus;
 use crate::protocol::hiperdrive::{ErrorCode, PkwError, Value, nearest_reference};
 use crate::units::Moment;
 

@@ -6,8 +6,8 @@ use egui::{RichText, Ui};
 use crate::app::hiperdrive::network::{self, Form};
 use crate::app::hiperdrive::{Action as Hiperdrive, Unit};
 use crate::app::{Action, Severity, Text};
+use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::profile::hiperdrive::NetworkSettings;
-use crate::protocol::ethernet_ip::AddressSource;
 use crate::ui::controls::{
     allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row,
     severity, split,

@@ -14,8 +14,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::Motion;
+use crate::buses::ethernet_ip::protocol::Receiver;
 use crate::link::{ByteLink, Clock, LinkError};
-use crate::protocol::ethernet_ip::Receiver;
 use crate::units::{CharacterFormat, Moment};
 
 /// While a drive moves, something is asked at least so often.

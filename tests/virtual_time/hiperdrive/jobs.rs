@@ -4,8 +4,8 @@ use encoder_studio::device::hiperdrive::check::{Finding, Step, Verdict};
 use encoder_studio::device::hiperdrive::{Error, Late};
 use std::sync::{Arc, Mutex};
 
+use encoder_studio::buses::ethernet_ip::protocol::{AddressSource, Service};
 use encoder_studio::link::{Clock, TraceEntry, write_entry, write_header};
-use encoder_studio::protocol::ethernet_ip::{AddressSource, Service};
 use encoder_studio::protocol::hiperdrive::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
 use encoder_studio::store::Store;
 use encoder_studio::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput, JobError, open};

@@ -4,11 +4,11 @@ use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
+use encoder_studio::buses::ethernet_ip::protocol::{Body, Command, Frame, Request};
 use encoder_studio::device::hiperdrive::{Station, Survey};
 use encoder_studio::link::{Clock, SimPort, VirtualClock};
 use encoder_studio::profile::Consent;
 use encoder_studio::profile::hiperdrive::Image;
-use encoder_studio::protocol::ethernet_ip::{Body, Command, Frame, Request};
 use encoder_studio::protocol::hiperdrive::{DriveNumber, ParameterNumber, Value};
 use encoder_studio::sim::hiperdrive::{Config, Target};
 use encoder_studio::store::Store;
@@ -131,7 +131,7 @@ impl Stand {
 
     /// What was set, as parameter and data.
     pub(crate) fn sets(&self) -> Vec<(u16, Vec<u8>)> {
-        use encoder_studio::protocol::ethernet_ip::{LogicalKind, Service};
+        use encoder_studio::buses::ethernet_ip::protocol::{LogicalKind, Service};
         let of_parameter = |request: &Request| {
             let class = request.path.number(LogicalKind::Class)?;
             ParameterNumber::of_attribute(class, request.path.number(LogicalKind::Attribute)?)

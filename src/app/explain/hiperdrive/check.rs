@@ -4,8 +4,8 @@ use super::names::{error, state, variant};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
+use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::device::hiperdrive::check::{Finding, Line, Step};
-use crate::protocol::ethernet_ip::AddressSource;
 use crate::protocol::hiperdrive::{AddressSwitch, DriveNumber};
 
 /// The lines of a check.

@@ -3,8 +3,8 @@
 use super::names::parameter;
 use crate::app::Text;
 use crate::app::explain::{link, plain};
+use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
 use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal, WrongLength};
-use crate::protocol::ethernet_ip::{EncapsulationStatus, GeneralStatus};
 use crate::protocol::hiperdrive::{OutOfRange, ParameterNumber, Range, Topology};
 
 /// What a device did not do.

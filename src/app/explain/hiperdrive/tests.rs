@@ -5,10 +5,10 @@ use std::time::Duration;
 use super::{device, ended, lock, plan, warning, weight, wrong_length};
 use crate::app::explain::plain;
 use crate::app::{Language, Severity, Text};
+use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
 use crate::device::hiperdrive::dead_man::{Ended, Lock, Refusal};
 use crate::device::hiperdrive::{Asked, Damage, Error, Late, Refusal as Refused, WrongLength};
 use crate::profile::hiperdrive::{Item, OtherType, PlanError, Warning};
-use crate::protocol::ethernet_ip::{AddressError, GeneralStatus, Service};
 use crate::protocol::hiperdrive::{
     DriveNumber, OutOfRange, ParameterNumber, Range, State, Topology, ValueError, Variant,
 };

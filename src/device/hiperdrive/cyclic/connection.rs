@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::LinkFigures;
+use crate::buses::ethernet_ip::protocol::{Arrival, Arrivals, IoPacket, RealTimeFormat, RunIdle};
 use crate::device::hiperdrive::Opened;
-use crate::protocol::ethernet_ip::{Arrival, Arrivals, IoPacket, RealTimeFormat, RunIdle};
 use crate::protocol::hiperdrive::{InImage, Layout, OutImage};
 use crate::units::Moment;
 

@@ -5,9 +5,9 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::{Connection, CyclicLost, Drives};
+use crate::buses::ethernet_ip::protocol::{ForwardClose, Owner, Path, RequestTimeout};
 use crate::device::hiperdrive::Opened;
 use crate::device::hiperdrive::dead_man::{Effort, Ended, Goal, Intent, Permit, Wish};
-use crate::protocol::ethernet_ip::{ForwardClose, Owner, Path, RequestTimeout};
 use crate::protocol::hiperdrive::{ByteOrder, Direction, DriveNumber, Layout, OutData, OutImage, Topology};
 use crate::units::Moment;
 

@@ -7,12 +7,12 @@ use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
 use super::{Master, ONCE, Repeats};
-use crate::device::hiperdrive::Error;
-use crate::device::hiperdrive::error::{Asked, Refusal};
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     ConnectionTimeout, ForwardClose, ForwardOpen, ForwardOpened, GeneralStatus, IoPacket, Item, NetworkParameters,
     NetworkPriority, NetworkType, Owner, Path, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
 };
+use crate::device::hiperdrive::Error;
+use crate::device::hiperdrive::error::{Asked, Refusal};
 use crate::protocol::hiperdrive::{ASSEMBLIES, Layout, Topology};
 
 /// A cyclic connection that was opened.

@@ -2,10 +2,10 @@
 //! it, and what a value may be at the moment.
 
 use super::{Master, Repeats, settable};
+use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
 use crate::device::hiperdrive::Error;
 use crate::device::hiperdrive::error::{Asked, Refusal};
 use crate::device::hiperdrive::identify::topology;
-use crate::protocol::ethernet_ip::{GeneralStatus, Request};
 use crate::protocol::hiperdrive::{
     DriveNumber, OutOfRange, ParameterNumber, ParameterRow, PositionScale, Range, Travel, Value, Variant,
 };

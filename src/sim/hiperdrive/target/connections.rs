@@ -10,7 +10,7 @@ use std::time::Duration;
 use super::cyclic::Cyclic;
 use super::objects::{object, wrong};
 use super::plant::{Originator, Plant};
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     ElectronicKey, ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused, GeneralStatus,
     IMPLICIT_PORT, IoPacket, Item, Items, LogicalKind, NetworkType, Owner, Path, RealTimeFormat, Reply, Request,
     Segment, Service, SocketAddress, Trigger,

@@ -8,7 +8,9 @@ use std::net::SocketAddrV4;
 use std::time::Duration;
 
 use super::plant::Plant;
-use crate::protocol::ethernet_ip::{Arrival, Arrivals, ForwardOpen, Frame, IoPacket, Owner, RealTimeFormat, RunIdle};
+use crate::buses::ethernet_ip::protocol::{
+    Arrival, Arrivals, ForwardOpen, Frame, IoPacket, Owner, RealTimeFormat, RunIdle,
+};
 use crate::protocol::hiperdrive::{Layout, OutImage};
 use crate::units::Moment;
 

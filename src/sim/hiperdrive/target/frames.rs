@@ -3,7 +3,7 @@
 use std::net::SocketAddrV4;
 
 use super::plant::{Originator, Plant};
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, GeneralStatus, IdentityItem, Item, Items, Reply, Request, Service,
     SocketAddress,
 };

@@ -27,7 +27,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::config::Config;
 use super::station::Station;
-use crate::protocol::ethernet_ip::Receiver;
+use crate::buses::ethernet_ip::protocol::Receiver;
 use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, DatagramDevice, Faults};
 use crate::units::{CharacterFormat, Moment};

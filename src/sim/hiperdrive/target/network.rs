@@ -6,7 +6,9 @@
 use std::net::Ipv4Addr;
 
 use super::objects::wrong;
-use crate::protocol::ethernet_ip::{AddressSource, ConfigurationControl, GeneralStatus, InterfaceConfiguration, Path};
+use crate::buses::ethernet_ip::protocol::{
+    AddressSource, ConfigurationControl, GeneralStatus, InterfaceConfiguration, Path,
+};
 use crate::protocol::hiperdrive::AddressSwitch;
 
 /// Where the address comes from, and what it is.

@@ -1,7 +1,7 @@
 //! What CIP asks of the objects: identity, parameters (reference 7), and those of the network.
 
 use super::plant::Plant;
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     ConfigurationControl, GeneralStatus, Identity, LogicalKind, PacketError, Path, Reply, Request, Revision, Segment,
     Service,
 };

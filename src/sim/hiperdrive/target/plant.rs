@@ -11,7 +11,7 @@ use super::super::station::Station;
 use super::Figures;
 use super::connections::Connections;
 use super::network::Network;
-use crate::protocol::ethernet_ip::{Command, EXPLICIT_PORT, Frame, IMPLICIT_PORT};
+use crate::buses::ethernet_ip::protocol::{Command, EXPLICIT_PORT, Frame, IMPLICIT_PORT};
 use crate::protocol::hiperdrive::ByteOrder;
 use crate::sim::Faults;
 use crate::sim::line::Queue;

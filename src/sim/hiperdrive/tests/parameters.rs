@@ -2,7 +2,7 @@
 
 use super::super::Refused;
 use super::*;
-use crate::protocol::ethernet_ip::GeneralStatus;
+use crate::buses::ethernet_ip::protocol::GeneralStatus;
 use crate::protocol::hiperdrive::{Answer, PARAMETERS, PkwError, Task};
 
 fn value(number: i64) -> Value {

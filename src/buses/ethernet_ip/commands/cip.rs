@@ -2,12 +2,12 @@
 
 use super::Device;
 use crate::bits::hex;
-use crate::cli::output::count;
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     AddressSource, ConfigurationControl, ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused,
     GeneralStatus, LogicalKind, NetworkParameters, NetworkType, Owner, Path, Reply, Request, Segment, Service,
     class_name, extended_row,
 };
+use crate::cli::output::count;
 
 /// A message with what it is; `None` for bytes that are none.
 pub(super) fn message(bytes: &[u8], device: Device) -> Option<(&'static str, Vec<String>)> {

@@ -5,13 +5,13 @@ mod cip;
 
 use serde_json::{Map, Value as Json, json};
 
-use super::Result;
-use super::decode::{Explained, frames, show};
-use super::output::{Output, count};
 use crate::bits::{hex, hex_compact};
-use crate::protocol::ethernet_ip::{
+use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, IoPacket, Item, Items, RealTimeFormat, SocketAddress,
 };
+use crate::cli::Result;
+use crate::cli::decode::{Explained, frames, show};
+use crate::cli::output::{Output, count};
 
 /// What bytes say.
 pub(crate) struct Said {

@@ -1,0 +1,4 @@
+//! EtherNet/IP.
+
+pub mod commands;
+pub mod protocol;
