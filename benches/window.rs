@@ -166,8 +166,9 @@ fn write_capture(path: &std::path::Path) {
 /// The whole window with the capture in its scope: every picture another stretch, as fast as they come.
 fn plot() {
     use encoder_studio::analysis::Time;
-    use encoder_studio::app::{Action, Desk, Look, Studio, World, recorder, signals};
+    use encoder_studio::app::{Action, Desk, Look, Studio, World, recorder};
     use encoder_studio::kinds::FORMATS;
+    use encoder_studio::signals::state as signals;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
 

@@ -6,6 +6,7 @@
 pub mod analysis;
 pub mod bits;
 pub mod buses;
+pub mod signals;
 pub mod units;
 
 // floor 2: bytes ↔ meaning, and what is saved

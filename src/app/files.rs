@@ -9,11 +9,11 @@ use super::hiperdrive;
 use super::interbus;
 use super::question::{Question, Then};
 use super::recorder::{self, Exported, Recorder};
-use super::signals;
 use super::ssi;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Picture, Severity, Text, explain};
 use crate::link::{LinkUrl, Scheme};
+use crate::signals::state as signals;
 use crate::store::{FileError, Folders};
 
 impl Studio {

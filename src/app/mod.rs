@@ -35,7 +35,6 @@ pub mod review;
 pub(crate) mod services;
 pub mod session;
 mod settings;
-pub mod signals;
 mod sine_cosine;
 pub mod ssi;
 pub(crate) mod studio;

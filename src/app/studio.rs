@@ -12,12 +12,12 @@ use super::hiperface::{self, Encoder};
 use super::keep::Keeper;
 use super::question::{Question, Then};
 use super::services::{Services, World};
-use super::signals::{self, Signals};
 use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
+use crate::signals::state::{self as signals, Signals};
 use crate::worker::biss::Change;
 
 /// A session's number, from the start of the program on.

@@ -22,7 +22,6 @@ pub(crate) mod panels;
 pub mod plot;
 mod review;
 mod run;
-mod signals;
 mod skin;
 mod ssi;
 pub(crate) mod stopping;
@@ -31,6 +30,7 @@ mod window;
 pub(crate) mod wires;
 mod workspace;
 
+use crate::signals::views as signals;
 pub use run::run;
 pub use skin::{Skin, install_fonts};
 pub use window::{Views, Window};

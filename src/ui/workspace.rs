@@ -5,10 +5,11 @@ use egui::{Align, Layout, RichText, Ui};
 use super::controls::{button, empty, paragraph, spinner};
 use super::page::apart;
 use super::panels::plot_ui;
-use super::{Skin, Views, biss, hiperdrive, hiperface, icons, interbus, signals, ssi};
+use super::{Skin, Views, biss, hiperdrive, hiperface, icons, interbus, ssi};
 use crate::app::connect;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Studio, Tab, Wish};
+use crate::signals::views as signals;
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {

@@ -3,7 +3,7 @@
 use encoder_studio::app::Severity;
 use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::signals::{Action as Signals, SourceAction};
+use encoder_studio::signals::state::{Action as Signals, SourceAction};
 
 use crate::biss_support::{ask, connect, encoder, is_read};
 use crate::served::Served;

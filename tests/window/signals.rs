@@ -7,8 +7,8 @@ use encoder_studio::analysis::capture::{Delimiter, TimeUnit};
 use encoder_studio::analysis::diagnosis::{Finding, What};
 use encoder_studio::analysis::quality::{Family, Finding as Parameter};
 use encoder_studio::analysis::wires::Wire;
-use encoder_studio::app::signals::{Action as Signals, Column, Example, Origin, Place, SourceAction};
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio, Tab};
+use encoder_studio::signals::state::{Action as Signals, Column, Example, Origin, Place, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::support::{Desk, Outside};
@@ -216,7 +216,7 @@ fn reading_is_given_up_and_a_stale_capture_is_dropped() {
     desk.act(Action::Open(large.clone()));
     assert!(desk.studio.can_stop());
     desk.act(Action::Escape);
-    assert!(desk.studio.signals.reading().is_some_and(encoder_studio::app::signals::Reading::is_cancelled));
+    assert!(desk.studio.signals.reading().is_some_and(encoder_studio::signals::state::Reading::is_cancelled));
     desk.until_measured();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::Healthy))));
     assert_eq!(desk.studio.signals.table().unwrap().place, Place::Example(Example::Healthy));

@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
-use encoder_studio::app::signals::{Action as Signals, Origin, SourceAction, SourceKind};
 use encoder_studio::app::{Action, Desk as Of, Severity, Studio, Tab};
 use encoder_studio::buses::bridge::protocol::Request;
+use encoder_studio::signals::state::{Action as Signals, Origin, SourceAction, SourceKind};
 
 use crate::screen::Screen;
 use crate::served::Served;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use encoder_studio::analysis::revolution::RevolutionError;
-use encoder_studio::app::signals::{Action as Signals, Column, SourceAction};
 use encoder_studio::app::{Action, Tab};
+use encoder_studio::signals::state::{Action as Signals, Column, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;
@@ -81,7 +81,7 @@ fn both_are_shown_and_the_offset_is_taken_over() {
     assert!(screen.shows("All samples of reference.csv"));
     screen.click("synchronise.use_captured");
     assert_eq!(screen.studio().signals.synchronise().form.offset, "2.50");
-    screen.act(Action::Signals(Signals::Example(encoder_studio::app::signals::Example::Healthy)));
+    screen.act(Action::Signals(Signals::Example(encoder_studio::signals::state::Example::Healthy)));
     screen.until("it is read", |studio| studio.signals.measurement().is_some_and(|own| own.nonlinearities.is_none()));
     assert!(screen.shows(&screen.say("synchronise.not_captured")));
     screen.click("page.error");

@@ -2,8 +2,8 @@
 
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
-use encoder_studio::app::signals::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::app::{Action, Desk as Of, Studio};
+use encoder_studio::signals::state::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::signals::circle;
@@ -115,7 +115,7 @@ fn a_kept_capture_keeps_no_samples() {
     desk.until_measured();
     let samples = std::sync::Arc::downgrade(&desk.studio.signals.measurement().unwrap().capture);
     desk.signals(Signals::Keep);
-    desk.signals(Signals::Example(encoder_studio::app::signals::Example::Healthy));
+    desk.signals(Signals::Example(encoder_studio::signals::state::Example::Healthy));
     desk.until_measured();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
     // A circle of 100 samples a period.

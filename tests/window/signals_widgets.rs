@@ -2,8 +2,8 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::signals::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::app::{Action, Language, Tab, Theme};
+use encoder_studio::signals::state::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;

@@ -4,8 +4,8 @@ use egui::Ui;
 
 use super::{View, nonlinearity, numbers, octant, quality, source};
 use crate::analysis::position_error::{Basis, PositionError, harmonics};
-use crate::app::signals::{Results, Signals, error_quantities};
 use crate::app::{Action, Text};
+use crate::signals::state::{Results, Signals, error_quantities};
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, split};
 use crate::ui::widgets::{Chart, Trace, chart};

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::analysis::arctan::OctantTable;
-use crate::app::signals::interpolation::{INTERVALS, interpolate, table_errors};
+use crate::signals::state::interpolation::{INTERVALS, interpolate, table_errors};
 use crate::ui::Skin;
 use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
 

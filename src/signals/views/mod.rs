@@ -16,10 +16,10 @@ mod virtual_encoder;
 
 use egui::Ui;
 
-use super::{Skin, icons, page};
-use crate::app::signals::Signals;
-use crate::app::signals::input_circuit::Form as Circuit;
 use crate::app::{Action, SineCosineSource, Text};
+use crate::signals::state::Signals;
+use crate::signals::state::input_circuit::Form as Circuit;
+use crate::ui::{Skin, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,8 +6,8 @@ use super::*;
 use crate::analysis::capture::Capture;
 use crate::analysis::quality::Family;
 use crate::app::services::World;
-use crate::app::signals::{Action, Judge};
 use crate::profile::Formats;
+use crate::signals::state::{Action, Judge};
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {

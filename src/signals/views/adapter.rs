@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use crate::analysis::quality::Family;
-use crate::app::signals::{Action as Signals, Source, SourceAction, VIRTUAL_ADAPTER};
 use crate::app::{Action, Text};
+use crate::signals::state::{Action as Signals, Source, SourceAction, VIRTUAL_ADAPTER};
 use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
 use crate::ui::{Skin, icons};
 

@@ -2,9 +2,9 @@
 
 use egui::Ui;
 
-use crate::app::signals::synchronise::{Action as Page, Form, Synchronise, ToldAs};
-use crate::app::signals::{Action as Signals, Signals as State, synchronise::Told};
 use crate::app::{Action, SineCosineSource, Text};
+use crate::signals::state::synchronise::{Action as Page, Form, Synchronise, ToldAs};
+use crate::signals::state::{Action as Signals, Signals as State, synchronise::Told};
 use crate::ui::controls::{
     card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row, split,
     verdict_ui,

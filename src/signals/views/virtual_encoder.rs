@@ -3,8 +3,8 @@
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
 use crate::analysis::wires::Wire;
-use crate::app::signals::{Action as Signals, Source, SourceAction};
 use crate::app::{Action, Text, explain, number};
+use crate::signals::state::{Action as Signals, Source, SourceAction};
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};
 use crate::ui::{Skin, icons};

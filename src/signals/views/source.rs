@@ -3,9 +3,9 @@
 use egui::{RichText, Ui};
 
 use super::{adapter, table, virtual_encoder};
-use crate::app::signals::{Action as Signals_, Example, Origin, Place, Signals, SourceAction, SourceKind};
 use crate::app::{Action, Text};
 use crate::buses::bridge::protocol::Capabilities;
+use crate::signals::state::{Action as Signals_, Example, Origin, Place, Signals, SourceAction, SourceKind};
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
 use crate::ui::widgets::series;
 use crate::ui::{Skin, icons};

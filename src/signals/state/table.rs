@@ -129,7 +129,7 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::signals::Example;
+    use crate::signals::state::Example;
 
     fn table(text: &str) -> Table {
         Table::of(Place::Example(Example::Healthy), text.as_bytes(), Wishes::default())

@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use super::numbers;
-use crate::app::signals::{Nonlinearities, Results, nonlinearity_quantities};
 use crate::app::{Text, explain};
+use crate::signals::state::{Nonlinearities, Results, nonlinearity_quantities};
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};

@@ -4,8 +4,8 @@ use egui::{ScrollArea, Ui};
 
 use super::Draft;
 use crate::analysis::capture::{Delimiter, TimeUnit};
-use crate::app::signals::{Action as Signals, Column, Table, forms};
 use crate::app::{Action, Text};
+use crate::signals::state::{Action as Signals, Column, Table, forms};
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Skin, icons};
 

@@ -4,7 +4,7 @@
 use egui::{RichText, Ui, WidgetInfo};
 
 use crate::analysis::quality::Verdict;
-use crate::app::signals::{Bound, Quantity, Unit};
+use crate::signals::state::{Bound, Quantity, Unit};
 use crate::ui::{Skin, controls};
 
 /// Width from which a value also stands in its second unit; else that is its tooltip.

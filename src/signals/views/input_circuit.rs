@@ -4,8 +4,8 @@ use egui::{RichText, Ui};
 
 use crate::analysis::input_circuit::BANDWIDTH_HZ;
 use crate::app::Text;
-use crate::app::signals::Unit;
-use crate::app::signals::input_circuit::{Circuit, Form, Point};
+use crate::signals::state::Unit;
+use crate::signals::state::input_circuit::{Circuit, Form, Point};
 use crate::ui::controls::{card, labelled_entry, paragraph, problem, row, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Skin, icons};

@@ -4,8 +4,8 @@ use egui::{Ui, vec2};
 
 use super::numbers::with_unit;
 use super::{View, quality, source};
-use crate::app::signals::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, Unit, dbv};
 use crate::app::{Action, Desk, Text, explain};
+use crate::signals::state::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, Unit, dbv};
 use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Skin, plot};

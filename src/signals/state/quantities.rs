@@ -205,7 +205,7 @@ pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quanti
 mod tests {
     use super::*;
     use crate::analysis::capture::Capture;
-    use crate::app::signals::{Judge, Measurement, Origin};
+    use crate::signals::state::{Judge, Measurement, Origin};
     use std::sync::Arc;
 
     /// Section 7 of the reference: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°; here 1000 samples over two periods in
