@@ -5,13 +5,13 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::hiperface::Station;
+use encoder_studio::devices::hiperface::jobs::HiperfaceJob;
+use encoder_studio::devices::hiperface::procedures::Station;
+use encoder_studio::devices::hiperface::protocol::{EncoderTypes, LineSettings};
+use encoder_studio::devices::hiperface::sim::{Bus, Config};
 use encoder_studio::link::{ByteLink, Clock, RealClock, SimLink, VirtualClock};
-use encoder_studio::protocol::hiperface::{EncoderTypes, LineSettings};
-use encoder_studio::sim::hiperface::{Bus, Config};
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
-use encoder_studio::worker::hiperface::HiperfaceJob;
 
 /// The virtual encoder's time for 42h.
 const PROCESSING: f64 = 3.7;

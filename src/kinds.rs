@@ -1,8 +1,8 @@
 //! The kinds of devices that this program knows: the one file that names them all.
 
+use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::profile::biss::BissProfile;
 use crate::profile::hiperdrive::HiperdriveProfile;
-use crate::profile::hiperface::HiperfaceProfile;
 use crate::profile::interbus::InterbusProfile;
 use crate::profile::ssi::SsiProfile;
 use crate::profile::{Formats, Profile};

@@ -6,6 +6,7 @@
 pub mod analysis;
 pub mod bits;
 pub mod buses;
+pub mod devices;
 pub mod signals;
 pub mod units;
 

@@ -14,7 +14,6 @@ use super::action::{Known, ReadError, ReviewAction};
 use super::biss;
 use super::closing::MUCH;
 use super::hiperdrive;
-use super::hiperface;
 use super::interbus;
 use super::line::Progressing;
 use super::recorder::Recorder;
@@ -27,6 +26,7 @@ use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::trace::TraceLog;
+use crate::devices::hiperface::state as hiperface;
 use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::store::{Backup, DeviceKey, Entry, FileError, StatusEntry};
@@ -93,7 +93,7 @@ impl AnyDevice {
         services: &mut Services,
     ) -> Option<Self> {
         Some(match document.body.kind() {
-            crate::protocol::hiperface::KIND => {
+            crate::devices::hiperface::protocol::KIND => {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
             }

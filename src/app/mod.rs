@@ -14,7 +14,6 @@ pub(crate) mod edits;
 pub mod explain;
 mod files;
 pub mod hiperdrive;
-pub mod hiperface;
 pub(crate) mod history;
 mod hold;
 pub mod interbus;

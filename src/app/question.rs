@@ -6,7 +6,7 @@ use super::Text;
 use super::action::{Desk, FileQuestion};
 use super::session::{Saving, without_codes};
 use super::studio::SessionId;
-use crate::device::hiperface::find::FindOptions;
+use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::link::LinkUrl;
 
 /// A question that has to be answered before something is done.

@@ -8,7 +8,6 @@ use super::connect::Connect;
 use super::devices::{AnyDevice, Shown};
 use super::diverged::Diverged;
 use super::documents::{is_capture, read_document};
-use super::hiperface::{self, Encoder};
 use super::keep::Keeper;
 use super::question::{Question, Then};
 use super::services::{Services, World};
@@ -16,6 +15,7 @@ use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
+use crate::devices::hiperface::state::{self as hiperface, Encoder};
 use crate::link::LinkUrl;
 use crate::signals::state::{self as signals, Signals};
 use crate::worker::biss::Change;
@@ -245,13 +245,13 @@ impl Studio {
 
     /// Something runs or is read all the time, in any session: there is something to stop.
     pub fn can_stop(&self) -> bool {
-        let search = self.search().is_some_and(super::hiperface::Search::is_running);
+        let search = self.search().is_some_and(crate::devices::hiperface::state::Search::is_running);
         self.devices.iter().any(AnyDevice::is_active) || search || self.signals.can_stop()
     }
 
     /// Something runs that comes to an end by itself, or measures; being read all the time is none of that.
     pub fn works(&self) -> bool {
-        let search = self.search().is_some_and(super::hiperface::Search::is_running);
+        let search = self.search().is_some_and(crate::devices::hiperface::state::Search::is_running);
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
         self.devices.iter().any(device) || search || self.signals.can_stop()
     }
@@ -261,7 +261,7 @@ impl Studio {
         self.devices.iter().any(AnyDevice::is_polling) || self.is_in_control()
     }
 
-    fn search(&self) -> Option<&super::hiperface::Search> {
+    fn search(&self) -> Option<&crate::devices::hiperface::state::Search> {
         self.connect.as_ref()?.search.as_ref()
     }
 

@@ -4,8 +4,9 @@ use super::biss::BissForm;
 use super::hiperdrive::HiperdriveForm;
 use super::interbus::InterbusForm;
 use super::ssi::SsiForm;
+use crate::devices::hiperface::jobs as hiperface;
 use crate::link::LinkUrl;
-use crate::worker::{OpenError, biss, hiperdrive, hiperface, interbus, ssi};
+use crate::worker::{OpenError, biss, hiperdrive, interbus, ssi};
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]

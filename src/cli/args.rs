@@ -16,8 +16,8 @@ pub(crate) use decode::{Decode, Direction, Protocol, Words};
 
 use super::hiperdrive::{Move, listed_parameters};
 use super::ssi::Ssi;
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
 use crate::link::LinkUrl;
-use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
 /// window.

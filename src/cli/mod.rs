@@ -8,7 +8,6 @@ pub(crate) mod check;
 pub(crate) mod consent;
 pub(crate) mod decode;
 mod hiperdrive;
-mod hiperface;
 mod interbus;
 pub(crate) mod kind;
 pub(crate) mod number;
@@ -31,9 +30,9 @@ use clap::Parser;
 use args::{Arguments, Command, Common, DeviceKind, OfDrive, Protocol, Words};
 use output::Output;
 
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
 use crate::link::LinkUrl;
 use crate::profile::Formats;
-use crate::protocol::hiperface::{AccessCode, CodeNumber};
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,6 @@
 pub mod biss;
 pub mod check;
 pub mod hiperdrive;
-pub mod hiperface;
 pub mod interbus;
 pub(crate) mod line;
 mod replies;

@@ -8,7 +8,6 @@ pub(crate) mod difference;
 mod document;
 mod error;
 pub mod hiperdrive;
-pub mod hiperface;
 pub mod interbus;
 mod misspelt;
 pub(crate) mod mounting;

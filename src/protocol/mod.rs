@@ -2,6 +2,5 @@
 
 pub mod biss;
 pub mod hiperdrive;
-pub mod hiperface;
 pub mod interbus;
 pub mod ssi;

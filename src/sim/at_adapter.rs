@@ -1,7 +1,8 @@
 //! The virtual encoders that hang on the virtual adapter, a line each.
 
-use super::{biss, hiperface, ssi};
+use super::{biss, ssi};
 use crate::buses::bridge::sim::Attachable;
+use crate::devices::hiperface::sim as hiperface;
 
 /// Which encoders there are. The settings of the last one are named last.
 pub const AT_ADAPTER: [&dyn Attachable; 3] = [&hiperface::AtAdapter, &ssi::AtAdapter::DELIVERED, &biss::AtAdapter];

@@ -8,7 +8,6 @@ mod at_adapter;
 pub mod biss;
 mod fault;
 pub mod hiperdrive;
-pub mod hiperface;
 pub mod interbus;
 pub(crate) mod line;
 mod motor;

@@ -11,7 +11,6 @@ mod end;
 pub(crate) mod foot;
 mod header;
 mod hiperdrive;
-mod hiperface;
 pub mod icons;
 mod interbus;
 mod keys;
@@ -30,6 +29,7 @@ mod window;
 pub(crate) mod wires;
 mod workspace;
 
+use crate::devices::hiperface::views as hiperface;
 use crate::signals::views as signals;
 pub use run::run;
 pub use skin::{Skin, install_fonts};

@@ -11,9 +11,10 @@ use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Skin, biss, header, hiperdrive, hiperface, interbus, review, ssi, stopping};
-use crate::app::hiperface::Encoder;
+use super::{Skin, biss, header, hiperdrive, interbus, review, ssi, stopping};
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
+use crate::devices::hiperface::state::Encoder;
+use crate::devices::hiperface::views as hiperface;
 use crate::signals::views as signals;
 
 /// What views remember while the window is open: text buffers and selections, nothing of the state.

@@ -11,7 +11,6 @@ mod agenda;
 pub mod biss;
 pub(crate) mod commit;
 pub mod hiperdrive;
-pub mod hiperface;
 pub mod interbus;
 mod interruption;
 #[cfg(test)]

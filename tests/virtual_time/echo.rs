@@ -1,9 +1,9 @@
 //! Converters that give our own bytes back: learned where it can be learned, and never a value by mistake.
 
-use encoder_studio::device::hiperface::{Echo, Station};
-use encoder_studio::profile::hiperface::{FieldRange, Item};
-use encoder_studio::protocol::hiperface::{Command, LineSettings};
-use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, Value};
+use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Value};
+use encoder_studio::devices::hiperface::procedures::{Echo, Station};
+use encoder_studio::devices::hiperface::profile::{FieldRange, Item};
+use encoder_studio::devices::hiperface::protocol::{Command, LineSettings};
 
 use crate::support::{Desk, MARGIN};
 

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use encoder_studio::device::hiperface::find::{FindOptions, Findings, Found};
+use encoder_studio::devices::hiperface::jobs::{HiperfaceJob, HiperfaceOutput, Remark};
+use encoder_studio::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
+use encoder_studio::devices::hiperface::protocol::LineSettings;
 use encoder_studio::link::{Cancel, Clock};
-use encoder_studio::protocol::hiperface::LineSettings;
 use encoder_studio::units::CharacterFormat;
-use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput, Remark};
 use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;

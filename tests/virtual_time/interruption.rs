@@ -1,12 +1,12 @@
 //! A restore that is cancelled, or cut off, or robbed of its power at every single transaction: what the encoder then
 //! holds is described, nothing else has changed, and a second run completes it.
 
-use encoder_studio::device::hiperface::Error;
-use encoder_studio::device::hiperface::write::Interrupted;
+use encoder_studio::devices::hiperface::jobs::{Change, Committed, JobError, Prepared};
+use encoder_studio::devices::hiperface::procedures::Error;
+use encoder_studio::devices::hiperface::procedures::write::Interrupted;
+use encoder_studio::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile, Op};
+use encoder_studio::devices::hiperface::protocol::{DataFieldStatus, StatusCode};
 use encoder_studio::link::Cancel;
-use encoder_studio::profile::hiperface::{FieldImage, FieldRange, HiperfaceProfile, Op};
-use encoder_studio::protocol::hiperface::{DataFieldStatus, StatusCode};
-use encoder_studio::worker::hiperface::{Change, Committed, JobError, Prepared};
 
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 
@@ -286,7 +286,7 @@ fn cut_off_at_every_transaction() {
 }
 
 /// Frames an encoder has taken: the least number after which the fault "silent" has come already.
-fn frames_so_far(bus: &encoder_studio::sim::hiperface::Bus) -> usize {
+fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();
         probe.set_faults(&format!("silent-after:{frames}").parse().unwrap());
@@ -304,7 +304,8 @@ fn power_lost_in_the_middle_of_every_store() {
         desk.know_code(2, 0x66);
         let before = desk.memory();
         let prepared = desk.prepare(restore_of(&wanted)).unwrap();
-        let stores = desk.bus().encoders()[0].wear().writes(encoder_studio::protocol::hiperface::Command::StoreData);
+        let stores =
+            desk.bus().encoders()[0].wear().writes(encoder_studio::devices::hiperface::protocol::Command::StoreData);
         desk.bus().set_faults(&format!("die-in-store:{}", stores + store).parse().unwrap());
         let error = desk.commit(&prepared).unwrap_err();
         let JobError::Interrupted { interrupted, backup: path, planned: 12, .. } = error else { panic!("{error:?}") };
@@ -321,7 +322,8 @@ fn power_lost_in_the_middle_of_every_store() {
     }
     let mut desk = original.copied();
     desk.know_code(2, 0x66);
-    let stores = desk.bus().encoders()[0].wear().writes(encoder_studio::protocol::hiperface::Command::StoreData);
+    let stores =
+        desk.bus().encoders()[0].wear().writes(encoder_studio::devices::hiperface::protocol::Command::StoreData);
     desk.bus().set_faults(&format!("die-in-store:{}", stores + 9).parse().unwrap());
     desk.restore(&wanted).unwrap();
 }

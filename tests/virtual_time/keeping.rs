@@ -2,11 +2,11 @@
 
 use std::fs;
 
-use encoder_studio::profile::hiperface::FieldRange;
-use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber};
+use encoder_studio::devices::hiperface::jobs::{Change, JobError};
+use encoder_studio::devices::hiperface::profile::FieldRange;
+use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber};
 use encoder_studio::store::Store;
 use encoder_studio::worker::NotBegun;
-use encoder_studio::worker::hiperface::{Change, JobError};
 
 use crate::support::{Desk, backup};
 

@@ -4,13 +4,13 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::hiperface::Station;
+use encoder_studio::devices::hiperface::jobs::{HiperfaceJob, HiperfaceOutput};
+use encoder_studio::devices::hiperface::procedures::Station;
+use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::link::{ByteLink, Clock, Direction, LinkError, SimLink, VirtualClock};
-use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
-use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput};
 
 use crate::support::bus;
 

@@ -3,9 +3,9 @@
 
 use std::time::Duration;
 
+use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Remark};
+use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, DeviceAddress, StatusCode};
 use encoder_studio::link::Clock;
-use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DeviceAddress, StatusCode};
-use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, Remark};
 use encoder_studio::worker::{Event, JobId};
 
 use crate::support::Desk;
@@ -135,9 +135,10 @@ fn patience_begins_anew_with_each_job() {
 #[test]
 fn a_silent_encoder_is_given_up_within_ten_seconds() {
     for settings in ["E4", "E0", "E6"] {
-        let format =
-            encoder_studio::protocol::hiperface::LineSettings::from_byte(u8::from_str_radix(settings, 16).unwrap());
-        let mut station = encoder_studio::device::hiperface::Station::new(crate::support::MARGIN);
+        let format = encoder_studio::devices::hiperface::protocol::LineSettings::from_byte(
+            u8::from_str_radix(settings, 16).unwrap(),
+        );
+        let mut station = encoder_studio::devices::hiperface::procedures::Station::new(crate::support::MARGIN);
         station.format = format.format().unwrap();
         for job in [HiperfaceJob::Position(None), HiperfaceJob::Status, HiperfaceJob::Save(Default::default())] {
             let mut desk = Desk::with_station(&format!("settings=0x{settings}&fault=silent-after:0"), station.clone());

@@ -1,9 +1,9 @@
 //! Noise on the line: what is shown is right, or it is an error. A wrong value may only come of a frame in which nothing
 //! shows the damage, and then the trace has it.
 
-use encoder_studio::profile::hiperface::{FieldRange, HiperfaceProfile, Item};
+use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
+use encoder_studio::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item};
 use encoder_studio::sim::Faults;
-use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
 
 use crate::support::{Desk, backup, bytes, exchanges, xor};
 
@@ -14,7 +14,7 @@ fn noisy_desk(seed: u8, noise: &str) -> Desk {
     let mut desk = Desk::new(&format!("seed={seed}&codes=2:66&position={}", u32::from(seed) * 64_123));
     desk.know_code(2, 0x66);
     for (number, status) in [(1, 0xE8), (2, 0xCB), (3, 0xC7)] {
-        let status = encoder_studio::protocol::hiperface::DataFieldStatus::from_byte(status);
+        let status = encoder_studio::devices::hiperface::protocol::DataFieldStatus::from_byte(status);
         desk.change(Change::CreateField { number, status }).unwrap();
         let bytes = bytes(seed.wrapping_add(number), status.size().bytes());
         desk.change(Change::Store(vec![(FieldRange::new(number, 0, bytes.len()), bytes)])).unwrap();

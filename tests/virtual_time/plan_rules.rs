@@ -1,10 +1,10 @@
 //! The one way to write: nothing but what was planned, nothing that did not differ, nothing on another base.
 
-use encoder_studio::device::hiperface::Error;
+use encoder_studio::devices::hiperface::jobs::{Change, Commit, HiperfaceJob, JobError};
+use encoder_studio::devices::hiperface::procedures::Error;
+use encoder_studio::devices::hiperface::profile::{FieldRange, Op, PlanError};
+use encoder_studio::devices::hiperface::protocol::{Command, DataFieldStatus, DeviceAddress, LineSettings};
 use encoder_studio::profile::Consent;
-use encoder_studio::profile::hiperface::{FieldRange, Op, PlanError};
-use encoder_studio::protocol::hiperface::{Command, DataFieldStatus, DeviceAddress, LineSettings};
-use encoder_studio::worker::hiperface::{Change, Commit, HiperfaceJob, JobError};
 
 use crate::support::{Desk, bytes, restore_of};
 
@@ -147,7 +147,7 @@ fn another_encoders_profile_is_refused_before_its_fields_are_read() {
 fn protected_fields_and_other_limits_are_refused_without_a_write() {
     let mut desk = Desk::new("");
     desk.change(Change::LockField { number: 0, lock: true }).unwrap();
-    let size = encoder_studio::protocol::hiperface::FieldSize::from_bytes(16).unwrap();
+    let size = encoder_studio::devices::hiperface::protocol::FieldSize::from_bytes(16).unwrap();
     let refused = [
         store(0, 0, vec![0]),
         store(0, 31, vec![0, 0]),

@@ -3,10 +3,10 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use encoder_studio::device::hiperface::{Error, Sample};
+use encoder_studio::devices::hiperface::jobs::{Hiperface, HiperfaceJob, JobError};
+use encoder_studio::devices::hiperface::procedures::{Error, Sample};
+use encoder_studio::devices::hiperface::protocol::StatusCode;
 use encoder_studio::link::Clock;
-use encoder_studio::protocol::hiperface::StatusCode;
-use encoder_studio::worker::hiperface::{Hiperface, HiperfaceJob, JobError};
 use encoder_studio::worker::{Event, Worker};
 
 use crate::support::Desk;

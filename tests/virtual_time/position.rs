@@ -1,10 +1,10 @@
 //! Setting the position: at rest only, in phase unless wished otherwise, and with a way back.
 
-use encoder_studio::device::hiperface::{Error, Station};
+use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError};
+use encoder_studio::devices::hiperface::procedures::{Error, Station};
+use encoder_studio::devices::hiperface::protocol::{Command, LineSettings};
 use encoder_studio::link::Clock;
-use encoder_studio::protocol::hiperface::{Command, LineSettings};
 use encoder_studio::store::Logbook;
-use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput, JobError};
 
 use crate::support::{Desk, MARGIN, backup};
 

@@ -1,9 +1,9 @@
 //! The shaft at rest: position, sine and cosine read together, and only while it stands still.
 
-use encoder_studio::device::hiperface::{Error, Rest, Signals};
+use encoder_studio::devices::hiperface::jobs::{HiperfaceJob, HiperfaceOutput, JobError};
+use encoder_studio::devices::hiperface::procedures::{Error, Rest, Signals};
+use encoder_studio::devices::hiperface::protocol::{Command, StatusCode};
 use encoder_studio::link::Clock;
-use encoder_studio::protocol::hiperface::{Command, StatusCode};
-use encoder_studio::worker::hiperface::{HiperfaceJob, HiperfaceOutput, JobError};
 
 use crate::support::Desk;
 

@@ -1,9 +1,9 @@
 //! Restarts, interface settings for now and for good, and addresses.
 
-use encoder_studio::device::hiperface::Station;
-use encoder_studio::protocol::hiperface::{Command, DeviceAddress, LineSettings, StatusCode};
+use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
+use encoder_studio::devices::hiperface::procedures::Station;
+use encoder_studio::devices::hiperface::protocol::{Command, DeviceAddress, LineSettings, StatusCode};
 use encoder_studio::units::CharacterFormat;
-use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
 use crate::support::{Desk, MARGIN};
 

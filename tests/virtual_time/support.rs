@@ -5,22 +5,22 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use encoder_studio::device::hiperface::Station;
+use encoder_studio::devices::hiperface::jobs::{
+    Change, Commit, Committed, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Prepared, SavedProfile,
+};
+use encoder_studio::devices::hiperface::procedures::Station;
+use encoder_studio::devices::hiperface::profile::{HiperfaceProfile, RestoreOptions};
+use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
+use encoder_studio::devices::hiperface::sim::{Bus, Config};
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{
     ByteLink, Cancel, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock,
 };
-use encoder_studio::profile::hiperface::{HiperfaceProfile, RestoreOptions};
 use encoder_studio::profile::{Consent, Document};
-use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
 use encoder_studio::sim::ByteDevice;
-use encoder_studio::sim::hiperface::{Bus, Config};
 use encoder_studio::store::{Store, read_text};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
-use encoder_studio::worker::hiperface::{
-    Change, Commit, Committed, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Prepared, SavedProfile,
-};
 
 /// The margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);

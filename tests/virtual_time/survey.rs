@@ -1,11 +1,11 @@
 //! Everything there is to see of an encoder, in one job; and access codes that the user names later.
 
 use encoder_studio::device::check::Verdict;
-use encoder_studio::device::hiperface::check::{Finding, Line, Step};
-use encoder_studio::device::hiperface::{Error, Sample, Survey};
-use encoder_studio::protocol::hiperface::{AccessCode, CodeNumber, Command, DataFieldStatus, StatusCode};
+use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
+use encoder_studio::devices::hiperface::procedures::check::{Finding, Line, Step};
+use encoder_studio::devices::hiperface::procedures::{Error, Sample, Survey};
+use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, DataFieldStatus, StatusCode};
 use encoder_studio::store::{DeviceKey, Logbook, Store};
-use encoder_studio::worker::hiperface::{Change, HiperfaceJob, HiperfaceOutput};
 
 use crate::support::Desk;
 

@@ -4,12 +4,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use encoder_studio::device::hiperface::Station;
-use encoder_studio::device::hiperface::find::FindOptions;
+use encoder_studio::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
+use encoder_studio::devices::hiperface::procedures::Station;
+use encoder_studio::devices::hiperface::procedures::find::FindOptions;
+use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::link::{Clock, RealClock, VirtualClock};
-use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::Store;
-use encoder_studio::worker::hiperface::{Hiperface, HiperfaceJob};
 use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 
 use crate::support::{MARGIN, Tap, TestLink, bus};

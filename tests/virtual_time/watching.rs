@@ -3,10 +3,10 @@
 
 use std::time::{Duration, Instant};
 
-use encoder_studio::device::hiperface::{Error, Sample, Watch, WatchedReading};
-use encoder_studio::protocol::hiperface::{Command, StatusCode};
+use encoder_studio::devices::hiperface::jobs::{Hiperface, JobError};
+use encoder_studio::devices::hiperface::procedures::{Error, Sample, Watch, WatchedReading};
+use encoder_studio::devices::hiperface::protocol::{Command, StatusCode};
 use encoder_studio::units::Moment;
-use encoder_studio::worker::hiperface::{Hiperface, JobError};
 use encoder_studio::worker::{Event, Watched, Worker};
 
 use crate::polling::{BACK_TO_BACK, SELDOM, nothing_comes, samples};

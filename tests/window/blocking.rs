@@ -6,11 +6,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::hiperface::LinkForm;
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Tab, Theme};
-use encoder_studio::device::hiperface::find::FindOptions;
+use encoder_studio::devices::hiperface::procedures::find::FindOptions;
+use encoder_studio::devices::hiperface::state::LinkForm;
+use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 
 use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
 

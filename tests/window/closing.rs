@@ -1,8 +1,8 @@
 //! Escape stops first and closes then; closing with something to lose asks once.
 
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::{Action, JobEnd};
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 
 use crate::support::Desk;

@@ -2,11 +2,13 @@
 //! the way. Numbers are those of section 5 of the sine/cosine reference, or reckoned apart.
 
 use encoder_studio::analysis::quality::Verdict;
-use encoder_studio::app::hiperface::commutation::{Action as Assistant, Form, Kind, Slot, Source, Storage, Vector};
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, commutation};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity};
-use encoder_studio::worker::hiperface::Change;
+use encoder_studio::devices::hiperface::jobs::Change;
+use encoder_studio::devices::hiperface::state::commutation::{
+    Action as Assistant, Form, Kind, Slot, Source, Storage, Vector,
+};
+use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState, commutation};
 
 use crate::support::Desk;
 use crate::texts;

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use encoder_studio::app::biss::{BissForm, BissWay};
 use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, is_missing};
-use encoder_studio::app::hiperface::Action as Hiperface;
-use encoder_studio::app::hiperface::{LinkForm, LinkKind, Search};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, FileQuestion, Language, Tab};
-use encoder_studio::device::hiperface::find::FindOptions;
+use encoder_studio::devices::hiperface::procedures::find::FindOptions;
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::{LinkForm, LinkKind, Search};
 use encoder_studio::units::{Baud, Parity};
 
 use crate::support::{Desk, PORT, SERVERS, asks_for_drive};

@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity};
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::support::Desk;
 

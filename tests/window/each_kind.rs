@@ -6,15 +6,15 @@ use std::path::Path;
 use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as Set};
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
+use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::profile::biss::BissProfile;
 use encoder_studio::profile::hiperdrive::HiperdriveProfile;
-use encoder_studio::profile::hiperface::HiperfaceProfile;
 use encoder_studio::profile::interbus::InterbusProfile;
 use encoder_studio::profile::{self, Body, Comparison, Document, PlanId, Profile};
 use encoder_studio::protocol::hiperdrive::ParameterNumber;
@@ -193,7 +193,7 @@ fn compared(one: Body, other: Body) -> Comparison {
         encoder_studio::profile::hiperdrive::compare(&one, &other)
     } else {
         let (one, other) = pair::<HiperfaceProfile>(&one, &other).unwrap();
-        encoder_studio::profile::hiperface::compare(&one.fields, &other.fields)
+        encoder_studio::devices::hiperface::profile::compare(&one.fields, &other.fields)
     }
 }
 

@@ -3,14 +3,14 @@
 use std::fs;
 use std::time::Duration;
 
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Desk as Of, JobEnd, Language, Severity, Studio, Text, recorder};
-use encoder_studio::protocol::hiperface::CodeNumber;
+use encoder_studio::devices::hiperface::jobs::Change;
+use encoder_studio::devices::hiperface::protocol::CodeNumber;
+use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 use encoder_studio::store::read_text;
 use encoder_studio::units::{Baud, CharacterFormat, Parity};
-use encoder_studio::worker::hiperface::Change;
 
 use crate::support::{Desk, PORT, is_review};
 
@@ -211,7 +211,7 @@ fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
 #[test]
 fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
     let mut desk = Desk::at_port("");
-    let address = encoder_studio::app::hiperface::forms::address("41").unwrap();
+    let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
     desk.until_planned();
     desk.write_as_shown();
@@ -233,7 +233,7 @@ fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
 #[test]
 fn what_an_interrupted_write_did_is_followed() {
     let mut desk = Desk::at_port("");
-    let address = encoder_studio::app::hiperface::forms::address("41").unwrap();
+    let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
     desk.until_planned();
     desk.wire().hold_at(0x52, 2);
@@ -258,7 +258,7 @@ fn other_settings_are_followed_from_the_restart_on() {
     let mut desk = Desk::at_port("");
     let stored = desk.encoder().identity.as_ref().unwrap().label.settings;
     let format = CharacterFormat { baud: Baud::new(19_200).unwrap(), parity: Parity::Odd };
-    let settings = encoder_studio::app::hiperface::forms::settings(stored, format, true, true).unwrap();
+    let settings = encoder_studio::devices::hiperface::state::forms::settings(stored, format, true, true).unwrap();
     let link = |desk: &Desk| desk.encoder().session.source.clone();
     let (old, new) = (format!("serial:{PORT}"), format!("serial:{PORT}?baud=19200&parity=odd"));
     let at = |link: &str| encoder_studio::app::session::Source::Link(link.parse().unwrap());
@@ -332,7 +332,7 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
 #[test]
 fn access_codes_go_to_no_other_encoder_on_the_link() {
     let mut desk = Desk::at_port("codes=0:9D");
-    let code = encoder_studio::app::hiperface::forms::access_code("9D").unwrap();
+    let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
     desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
     desk.until_ready();
     assert!(desk.encoder().field(0).unwrap().bytes.is_some());

@@ -2,8 +2,8 @@
 //! and nothing is written that nobody consented to. The same seeds give the same days.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
-use encoder_studio::app::hiperface::ReviewState;
 use encoder_studio::app::{Action, Language, Theme};
+use encoder_studio::devices::hiperface::state::ReviewState;
 
 use crate::screen::Screen;
 use crate::support::Outside;

@@ -3,13 +3,13 @@
 use std::fs;
 
 use encoder_studio::app::diverged::Resolve;
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
 use encoder_studio::app::review::{Permit, Sheet, Stage};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
+use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
+use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::profile::Document;
-use encoder_studio::profile::hiperface::HiperfaceProfile;
 use encoder_studio::store::read_text;
 
 use crate::support::{Desk, OTHER_PORT, is_review};

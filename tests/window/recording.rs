@@ -4,13 +4,13 @@ use std::fs;
 use std::time::Duration;
 
 use encoder_studio::analysis::history::Flags;
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::recorder::{self, Line, Recorder};
 use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Severity, Studio};
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::losing::lost;
 use crate::support::Desk;
-use encoder_studio::device::hiperface::Watch;
+use encoder_studio::devices::hiperface::procedures::Watch;
 
 const FAST: Hiperface = Hiperface::Poll(Some(Duration::from_millis(2)));
 

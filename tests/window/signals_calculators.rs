@@ -2,8 +2,8 @@
 
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::{Action, Language, Tab};
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};

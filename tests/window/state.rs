@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, JobEnd, Severity, Tab};
+use encoder_studio::devices::hiperface::protocol::FreeMemory;
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::link::{Direction, LinkUrl};
-use encoder_studio::protocol::hiperface::FreeMemory;
 
 use crate::support::{Desk, OTHER_PORT};
 

@@ -6,17 +6,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::hiperface::{Action as Hiperface, Encoder, Review, ReviewState};
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, World, connect};
 use encoder_studio::device::biss::Way;
 use encoder_studio::device::hiperdrive::Found;
-use encoder_studio::device::hiperface::Station;
+use encoder_studio::devices::hiperface::procedures::Station;
+use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
+use encoder_studio::devices::hiperface::protocol::EncoderTypes;
+use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder, Review, ReviewState};
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
-use encoder_studio::profile::hiperface::{Base, HiperfacePlan};
-use encoder_studio::protocol::hiperface::EncoderTypes;
 use encoder_studio::store::{Folders, Store};
 use encoder_studio::worker::{Session, biss, hiperdrive, interbus};
 

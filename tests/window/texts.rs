@@ -4,11 +4,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
-use encoder_studio::app::explain::hiperface as words;
-use encoder_studio::app::hiperface::{Encoder, ReviewState};
 use encoder_studio::app::review::OpWords;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{AnyDevice, JobEnd, Language, Notice, Studio, Text, Texts};
+use encoder_studio::devices::hiperface::state::explain as words;
+use encoder_studio::devices::hiperface::state::{Encoder, ReviewState};
 
 #[derive(serde::Deserialize)]
 struct Row {

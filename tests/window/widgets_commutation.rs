@@ -1,9 +1,9 @@
 //! The commutation page as a person uses it: ticked, typed and clicked.
 
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::hiperface::Action as Hiperface;
-use encoder_studio::app::hiperface::commutation::{Action as Assistant, Slot};
 use encoder_studio::app::{Action, Language};
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::commutation::{Action as Assistant, Slot};
 
 use crate::screen::Screen;
 

@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
 use encoder_studio::app::{Action, FileQuestion};
 use encoder_studio::app::{Desk as Of, Language, Text, recorder};
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::screen::Screen;
 use crate::support::Outside;

@@ -3,8 +3,8 @@
 use std::fs;
 
 use egui::{Key, Modifiers};
-use encoder_studio::app::hiperface::Action as Hiperface;
 use encoder_studio::app::{Action, Language};
+use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::screen::Screen;
 use crate::support::Outside;

@@ -2,9 +2,9 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Language, Text};
+use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 
 use crate::screen::Screen;
 use crate::support::{Outside, PORT, is_review};
@@ -99,10 +99,10 @@ fn what_a_field_does_not_allow_cannot_be_pressed() {
     let mut screen = Screen::begun(SIZE);
     screen.click("page.memory");
     assert!(screen.is_enabled("memory.delete"), "it is the last");
-    let size = encoder_studio::protocol::hiperface::FieldSize::from_bytes(16).unwrap();
-    let code = encoder_studio::protocol::hiperface::CodeNumber::ZERO;
-    let status = encoder_studio::app::hiperface::forms::new_field(size, code, true);
-    let create = encoder_studio::worker::hiperface::Change::CreateField { number: 1, status };
+    let size = encoder_studio::devices::hiperface::protocol::FieldSize::from_bytes(16).unwrap();
+    let code = encoder_studio::devices::hiperface::protocol::CodeNumber::ZERO;
+    let status = encoder_studio::devices::hiperface::state::forms::new_field(size, code, true);
+    let create = encoder_studio::devices::hiperface::jobs::Change::CreateField { number: 1, status };
     screen.ask(Hiperface::Plan(create));
     screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
     screen.click("review.write");

@@ -3,12 +3,13 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
 use encoder_studio::buses::bridge::sim::Adapter;
+use encoder_studio::devices::hiperface::sim as hiperface;
+use encoder_studio::devices::hiperface::sim::Bus;
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
 use encoder_studio::sim::biss::Port;
 use encoder_studio::sim::hiperdrive::Target;
-use encoder_studio::sim::hiperface::Bus;
 use encoder_studio::sim::interbus::Gateway;
-use encoder_studio::sim::{AT_ADAPTER, ByteDevice, biss, hiperdrive, hiperface, interbus};
+use encoder_studio::sim::{AT_ADAPTER, ByteDevice, biss, hiperdrive, interbus};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;

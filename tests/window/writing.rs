@@ -1,15 +1,15 @@
 //! Edit, review, write, see the read-back; and nothing is written without that.
 
-use encoder_studio::app::hiperface::{Action as Hiperface, ReviewState, forms, rules};
 use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, Severity, Text};
+use encoder_studio::devices::hiperface::jobs::Change;
+use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
+use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
+use encoder_studio::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize};
+use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState, forms, rules};
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::profile::Document;
-use encoder_studio::profile::hiperface::HiperfaceProfile;
-use encoder_studio::profile::hiperface::{FieldRange, Op};
-use encoder_studio::protocol::hiperface::{CodeNumber, DataFieldStatus, FieldSize};
 use encoder_studio::store::{DeviceKey, Outcome, read_text};
-use encoder_studio::worker::hiperface::Change;
 
 use crate::support::{Desk, is_review};
 use crate::texts;
@@ -381,7 +381,7 @@ fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_l
     assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
     desk.put(0, 0, b"X");
     assert_eq!(desk.told(Severity::Error), ["encoder.code_unknown"]);
-    let code = encoder_studio::app::hiperface::forms::access_code("9D").unwrap();
+    let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
     desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
     desk.until("the field is readable", |studio| studio.hiperface().unwrap().field(0).unwrap().bytes.is_some());
     desk.until_ready();

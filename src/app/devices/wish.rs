@@ -6,7 +6,8 @@ use std::time::Duration;
 use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
-use crate::app::{biss, hiperdrive, hiperface, interbus, ssi};
+use crate::app::{biss, hiperdrive, interbus, ssi};
+use crate::devices::hiperface::state as hiperface;
 
 /// What can be wished of every device.
 #[derive(Clone, Debug, PartialEq, Eq)]

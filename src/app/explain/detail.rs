@@ -6,9 +6,9 @@ mod tests;
 
 use super::{file, plain, ssi};
 use crate::app::Text;
+use crate::devices::hiperface::protocol::TypeTableError;
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
-use crate::protocol::hiperface::TypeTableError;
 use crate::sim::ConfigError;
 use crate::store::{LogbookError, LogbookProblem};
 

@@ -4,7 +4,6 @@
 pub mod biss;
 mod detail;
 pub mod hiperdrive;
-pub mod hiperface;
 pub mod interbus;
 pub mod signal;
 pub mod ssi;

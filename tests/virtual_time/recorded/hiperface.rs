@@ -1,11 +1,11 @@
 //! Writes to a HIPERFACE encoder.
 
-use encoder_studio::device::hiperface::Error;
-use encoder_studio::profile::hiperface::{FieldImage, FieldRange, HiperfaceProfile};
-use encoder_studio::protocol::hiperface::{
+use encoder_studio::devices::hiperface::jobs::{Change, JobError};
+use encoder_studio::devices::hiperface::procedures::Error;
+use encoder_studio::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
+use encoder_studio::devices::hiperface::protocol::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, LineSettings,
 };
-use encoder_studio::worker::hiperface::{Change, JobError};
 
 use super::{Ready, compare, listen};
 use crate::support::{Desk, bytes, restore_of};

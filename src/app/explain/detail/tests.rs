@@ -4,16 +4,16 @@ use super::*;
 use std::time::Duration;
 
 use crate::app::Language::{English, German};
-use crate::device::hiperface::Station;
 use crate::device::{biss, ssi};
+use crate::devices::hiperface::procedures::Station;
+use crate::devices::hiperface::profile::HiperfaceProfile;
+use crate::devices::hiperface::protocol::EncoderTypes;
+use crate::devices::hiperface::sim::Config;
 use crate::link::{LinkUrl, Query, read_trace};
 use crate::profile::biss::BissProfile;
-use crate::profile::hiperface::HiperfaceProfile;
 use crate::profile::interbus::InterbusProfile;
 use crate::profile::ssi::SsiProfile;
 use crate::profile::{Document, Profile};
-use crate::protocol::hiperface::EncoderTypes;
-use crate::sim::hiperface::Config;
 
 /// English is what the lower floor says, and German is not.
 #[track_caller]

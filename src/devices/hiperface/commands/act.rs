@@ -1,0 +1,158 @@
+//! `do`: actions that are more than writing a value.
+
+use serde_json::json;
+
+use super::inspect::codes_text;
+use super::write::{change_and_show, settings};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option, parse_code};
+use crate::cli::check;
+use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::output::Output;
+use crate::cli::runner::unexpected;
+use crate::cli::{Done, Failure, Result};
+use crate::devices::hiperface::commands::run::Runner;
+use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
+use crate::devices::hiperface::procedures::check::{Finding, Line, Step, Verdict};
+use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, KIND};
+use crate::devices::hiperface::state::explain as words;
+
+const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, \
+                       delete-field, change-code, increment-counter, clear-counter and configure-for-now";
+
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+    let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    if act.timeout.is_some() {
+        return Err(no_option("--timeout", KIND));
+    }
+    let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
+    let change = match (act.action, words.as_slice()) {
+        (Action::Reset, []) => return reset(common, output),
+        (Action::Check, []) => return check_device(common, output, false),
+        (Action::Check, ["restart"]) => return check_device(common, output, true),
+        (Action::ConfigureForNow, [value]) => return configure_for_now(common, output, value),
+        (Action::SetPosition, [wanted]) => set_position(act, wanted, false)?,
+        (Action::Synchronise, [wanted]) => set_position(act, wanted, true)?,
+        (Action::CreateField, [number, rest @ ..]) if !rest.is_empty() => {
+            Change::CreateField { number: field(number)?, status: new_status(rest)? }
+        }
+        (Action::ResizeField, [number, bytes]) => Change::ResizeField { number: field(number)?, size: size(bytes)? },
+        (Action::LockField, [number]) => Change::LockField { number: field(number)?, lock: true },
+        (Action::UnlockField, [number]) => Change::LockField { number: field(number)?, lock: false },
+        (Action::DeleteField, [number]) => Change::DeleteField { number: field(number)? },
+        (Action::ChangeCode, [number, new]) => change_code(number, new)?,
+        (Action::IncrementCounter, []) => Change::IncrementCounter,
+        (Action::ClearCounter, []) => Change::ClearCounter,
+        (Action::Reset | Action::IncrementCounter | Action::ClearCounter, _) => return Err(usage("no argument")),
+        (Action::Check, _) => return Err(usage("nothing or \"restart\"")),
+        (Action::ConfigureForNow, _) => return Err(usage("one settings byte, as in 0xE5")),
+        (Action::SetPosition | Action::Synchronise, _) => return Err(usage("one position")),
+        (Action::CreateField, _) => {
+            return Err(usage("NUMBER SIZE or NUMBER STATUS, then code=N, ce=0 or 1, we=0 or 1"));
+        }
+        (Action::ResizeField, _) => return Err(usage("NUMBER SIZE")),
+        (Action::LockField | Action::UnlockField | Action::DeleteField, _) => return Err(usage("one field number")),
+        (Action::ChangeCode, _) => return Err(usage("NUMBER HEX; the present code is given with --code NUMBER=HEX")),
+        (other, _) => return Err(no_action(other, KIND, ACTIONS)),
+    };
+    change_and_show(common, output, change, &act.consent, &action_name(act.action))
+}
+
+fn set_position(act: &Do, text: &str, synchronise: bool) -> Result<Change> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
+    let wanted = u32::try_from(number).map_err(|_| out_of_range("position", text, 0, u32::MAX.into()))?;
+    Ok(Change::SetPosition { wanted, exact: act.exact, synchronise, kit: act.kit })
+}
+
+fn change_code(number: &str, new: &str) -> Result<Change> {
+    let number =
+        parse_number(number).ok_or_else(|| Failure::Usage(format!("{number:?} is not a number"))).and_then(|n| {
+            u8::try_from(n).ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("access code", number, 0, 3))
+        })?;
+    // The message does not repeat what may be a code.
+    let new = parse_code(new).ok_or_else(|| Failure::Usage("the new code is two hex digits".to_owned()))?;
+    Ok(Change::ChangeCode { number, new })
+}
+
+fn field(text: &str) -> Result<u8> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a field number")))?;
+    u8::try_from(number).ok().filter(|n| *n < 0xFF).ok_or_else(|| out_of_range("data field", text, 0, 254))
+}
+
+fn size(text: &str) -> Result<FieldSize> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a size")))?;
+    usize::try_from(number)
+        .ok()
+        .and_then(FieldSize::from_bytes)
+        .ok_or_else(|| Failure::Failed(vec![format!("size {text}: a data field has 16 to 128 bytes, in steps of 16.")]))
+}
+
+/// `32 code=2 ce=1 we=1`, or a status byte: `0xE9`. A field is writable and needs its code unless told otherwise.
+fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
+    let [first, options @ ..] = words else { return Err(Failure::Usage("a size is missing".to_owned())) };
+    let is_hex = first.starts_with("0x") || first.starts_with("0X");
+    let number =
+        parse_number(first).ok_or_else(|| Failure::Usage(format!("{first:?} is not a size or a status byte")))?;
+    let mut status = match u8::try_from(number) {
+        Ok(byte) if is_hex && DataFieldStatus::from_byte(byte).exists() => DataFieldStatus::from_byte(byte),
+        _ => DataFieldStatus::new(size(first)?, CodeNumber::ZERO, true),
+    };
+    let (mut code, mut required, mut writable) = (status.code(), status.code_required(), status.is_writable());
+    for option in options {
+        match option.split_once('=') {
+            Some(("code", value)) => {
+                code = value.parse().ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("code", value, 0, 3))?;
+            }
+            Some(("ce", value)) => required = flag("ce", value)?,
+            Some(("we", value)) => writable = flag("we", value)?,
+            _ => return Err(Failure::Usage(format!("{option:?} is not code=N, ce=0, ce=1, we=0 or we=1"))),
+        }
+    }
+    status = DataFieldStatus::new(status.size(), code, required).with_write_enable(writable);
+    Ok(status)
+}
+
+fn flag(name: &str, value: &str) -> Result<bool> {
+    match value {
+        "0" => Ok(false),
+        "1" => Ok(true),
+        _ => Err(Failure::Usage(format!("{name}={value}: 0 or 1"))),
+    }
+}
+
+fn reset(common: &Common, output: &Output) -> Result {
+    match Runner::open(common)?.run(HiperfaceJob::Reset)? {
+        HiperfaceOutput::Reset(codes) => {
+            let list: Vec<u8> = codes.iter().map(|code| code.byte()).collect();
+            output.show(&json!({"done": "reset", "codes": list}), &format!("restarted: {}", codes_text(&codes)))?;
+            Ok(Done::Well)
+        }
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn configure_for_now(common: &Common, output: &Output, value: &str) -> Result {
+    let settings = settings(value)?;
+    match Runner::open(common)?.run(HiperfaceJob::ConfigureForNow(settings))? {
+        HiperfaceOutput::Configured => {
+            let text = format!("until the next restart: {settings}\n");
+            output.show(&json!({"done": "configure-for-now", "settings": settings.byte()}), &text)?;
+            Ok(Done::Well)
+        }
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
+    let lines = match Runner::open(common)?.run(HiperfaceJob::Check { restart })? {
+        HiperfaceOutput::Check(lines) => lines,
+        other => return Err(unexpected(&other)),
+    };
+    let quality = lines.iter().flat_map(|line| &line.findings).find_map(|finding| match finding {
+        Finding::Line(quality) => Some(quality),
+        _ => None,
+    });
+    // A line on which nothing had to be repeated is no step: scripts have its figures in `line_quality`.
+    let shown: Vec<Line> =
+        lines.iter().filter(|own| own.step != Step::Line || own.verdict != Verdict::Good).cloned().collect();
+    check::show_with(output, &words::check(&shown), quality)
+}

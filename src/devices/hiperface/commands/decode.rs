@@ -1,0 +1,27 @@
+//! `decode`: captured bytes in words, offline.
+
+use serde_json::Map;
+
+use crate::bits::{hex, hex_compact};
+use crate::cli::Result;
+use crate::cli::decode::{Explained, frames, show};
+use crate::cli::output::Output;
+use crate::devices::hiperface::protocol::{Frame, Request, describe};
+use crate::devices::hiperface::state::explain as words;
+
+pub(super) fn decode(output: &Output, words: &[String]) -> Result {
+    let mut explained = Vec::new();
+    let mut request: Option<Request> = None;
+    for bytes in &frames(words)? {
+        let words = describe(bytes, request.as_ref());
+        let meaning = words.map(|said| said.iter().map(|said| words::frame(said).terminal()).collect());
+        explained.push(Explained {
+            shown: hex(bytes),
+            compact: hex_compact(bytes),
+            meaning: meaning.map_err(|error| error.to_string()),
+            more: Map::new(),
+        });
+        request = Frame::parse(bytes).ok().and_then(|frame| Request::parse(&frame).ok());
+    }
+    show(output, &explained)
+}

@@ -1,0 +1,307 @@
+//! Commands that only look: `find`, `identify`, `status`, `position`, `read`.
+
+use std::time::Duration;
+
+use serde_json::{Value as Json, json};
+
+use crate::bits::{hex, hex_compact};
+use crate::cli::args::{Common, Find, Position};
+use crate::cli::consent::can_ask;
+use crate::cli::output::{Lines, Output};
+use crate::cli::positions::readings;
+use crate::cli::runner::{Ended, unexpected};
+use crate::cli::{Done, Failure, Result};
+use crate::devices::hiperface::commands::run::{Runner, codes_met};
+use crate::devices::hiperface::commands::table::Table;
+use crate::devices::hiperface::jobs::{
+    Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
+};
+use crate::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
+use crate::devices::hiperface::procedures::{Identity, PositionReading};
+use crate::devices::hiperface::profile::Item;
+use crate::devices::hiperface::protocol::{EncoderTypes, KIND, LineSettings, StatusCode};
+use crate::devices::hiperface::state::explain as explained;
+
+pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
+    if let Some(url) = &common.link
+        && may_have_other_master(url)
+        && !common.only_master
+        && !can_ask()
+    {
+        return Err(Failure::Usage(
+            "a search sends to every address: give --only-master when no drive is connected to this line or powered, or \
+             run it on a terminal; nothing was sent"
+                .to_owned(),
+        ));
+    }
+    let mut runner = Runner::open(common)?;
+    let power_cycle = find.power_cycle.map(Duration::from_secs);
+    output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");
+    let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
+    match runner.run(HiperfaceJob::Find(options))? {
+        HiperfaceOutput::Found(Findings::Searched { found, complete }) => {
+            show_found(output, &found)?;
+            if !complete {
+                return Err(Failure::Failed(vec![
+                    "Cancelled: the search was cut short, there may be more encoders than those that answered."
+                        .to_owned(),
+                ]));
+            }
+            if found.is_empty() {
+                return Err(Failure::Failed(vec![
+                    "No encoder answered. Check supply and wiring (A/B); with one encoder connected, try --one-encoder \
+                     and --power-cycle 30."
+                        .to_owned(),
+                ]));
+            }
+            Ok(Done::Well)
+        }
+        HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
+            "Somebody else talks on this line ({bytes} bytes in a second), so nothing was sent. Disconnect the drive or \
+             controller, then try again."
+        )])),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn show_found(output: &Output, found: &[Found]) -> Result<()> {
+    let types = EncoderTypes::built_in();
+    let name =
+        |found: &Found| types.find(found.label.encoder_type).map_or("unknown type".to_owned(), |row| row.name.clone());
+    let list: Vec<Json> = found
+        .iter()
+        .map(|found| {
+            json!({
+                "address": found.address,
+                "baud": found.format.baud.bits_per_second(),
+                "parity": found.format.parity.word(),
+                "encoder_type": found.label.encoder_type,
+                "encoder_name": name(found),
+                "stored_settings": found.label.settings.byte(),
+                "link_parameters": link_parameters(found),
+            })
+        })
+        .collect();
+    let text: String = found
+        .iter()
+        .map(|found| {
+            format!(
+                "address {:02X}h at {}  {}  stored: {}  ?{}\n",
+                found.address,
+                found.format,
+                name(found),
+                found.label.settings,
+                link_parameters(found)
+            )
+        })
+        .collect();
+    output.show(&json!({ "devices": list }), &text)
+}
+
+fn link_parameters(found: &Found) -> String {
+    format!("baud={}&parity={}&address=0x{:02X}", found.format.baud, found.format.parity, found.address)
+}
+
+pub(super) fn identify(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let identity = identity(&mut runner)?;
+    let free = identity.memory.map(|memory| memory.bytes());
+    let fields = identity.memory.map(|memory| memory.fields);
+    let json = json!({
+        "device": KIND,
+        "address": identity.address,
+        "encoder_type": identity.label.encoder_type,
+        "encoder_name": identity.name,
+        "serial_number": identity.serial.serial_number,
+        "firmware_version": identity.serial.firmware_version,
+        "firmware_date": identity.serial.firmware_date,
+        "eeprom_bytes": identity.label.eeprom_bytes(),
+        "free_bytes": free,
+        "data_fields": fields,
+        "baud": runner.kept.baud.bits_per_second(),
+        "parity": runner.kept.parity.word(),
+        "stored_settings": identity.label.settings.byte(),
+        "options": identity.label.options,
+    });
+    output.show(&json, &identity_text(&identity, &runner))?;
+    Ok(Done::Well)
+}
+
+fn identity_text(identity: &Identity, runner: &Runner) -> String {
+    let unknown = || "not told by this encoder".to_owned();
+    let mut lines = Lines::default();
+    lines
+        .add("encoder", format!("{} (type {:02X}h)", identity.name, identity.label.encoder_type))
+        .add(
+            "resolution",
+            identity
+                .geometry
+                .map_or_else(|| "not known: add periods= and turns= to the link".to_owned(), |g| g.to_string()),
+        )
+        .add("serial number", &identity.serial.serial_number)
+        .add("firmware", format!("{} of {}", identity.serial.firmware_version, identity.serial.firmware_date))
+        .add("address", format!("{:02X}h", identity.address))
+        .add("talking at", runner.kept)
+        .add("stored settings", identity.label.settings)
+        .add("EEPROM", format!("{} bytes", identity.label.eeprom_bytes()))
+        .add("free", identity.memory.map_or_else(unknown, |memory| format!("{} bytes", memory.bytes())))
+        .add("data fields", identity.memory.map_or_else(unknown, |memory| memory.fields.to_string()))
+        .add("options", format!("{:02X}h", identity.label.options));
+    if let Some(label) = identity.extended() {
+        for parameter in &label.parameters {
+            let value = parameter.value;
+            lines.add(format!("label parameter {}", parameter.number), format!("{value} ({value:04X}h)"));
+        }
+        if !label.checksum_fits {
+            lines.add("extended label", "its checksum is not the XOR of its bytes");
+        }
+    }
+    lines.text()
+}
+
+fn identity(runner: &mut Runner) -> Result<Identity> {
+    match runner.run(HiperfaceJob::Identify)? {
+        HiperfaceOutput::Identity(identity) => Ok(identity),
+        other => Err(unexpected(&other)),
+    }
+}
+
+pub(super) fn status(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let codes = match runner.run(HiperfaceJob::Status)? {
+        HiperfaceOutput::Status(codes) => codes,
+        other => return Err(unexpected(&other)),
+    };
+    let (warnings, errors): (Vec<StatusCode>, Vec<StatusCode>) = codes.iter().partition(|code| code.is_warning());
+    output.show(
+        &json!({"ok": errors.is_empty(), "errors": code_list(&errors), "warnings": code_list(&warnings)}),
+        &codes_text(&codes),
+    )?;
+    Ok(Done::Well)
+}
+
+fn code_list(codes: &[StatusCode]) -> Vec<Json> {
+    codes.iter().map(|code| json!({"code": code.byte(), "text": code.text()})).collect()
+}
+
+/// Codes one a line, or that there are none.
+pub(super) fn codes_text(codes: &[StatusCode]) -> String {
+    if codes.is_empty() {
+        return "no errors or warnings\n".to_owned();
+    }
+    let kind = |code: &StatusCode| if code.is_warning() { "warning" } else { "error" };
+    codes.iter().map(|code| format!("{:7}  {code}\n", kind(code))).collect()
+}
+
+pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+    let mut runner = Runner::open(common)?;
+    let identity = identity(&mut runner)?;
+    if identity.geometry.is_none() {
+        output.remark(&format!(
+            "The resolution of encoder type {:02X}h is not known: add periods= and turns= to the link.",
+            identity.label.encoder_type
+        ));
+    }
+    let table = position.csv.then(|| Table::of(identity.geometry));
+    if let Some(table) = &table {
+        output.print(table.header())?;
+    }
+    // A code that the encoder announced while it was identified is about this position too.
+    let mut codes_before = codes_met(&runner);
+    let job = || HiperfaceJob::Position(identity.geometry);
+    readings(&mut runner, position, job, |runner, came| {
+        show(runner, output, came, table.as_ref(), &mut codes_before).map(|()| true)
+    })
+}
+
+fn show(
+    runner: &mut Runner,
+    output: &Output,
+    came: std::result::Result<HiperfaceOutput, Box<JobError>>,
+    table: Option<&Table>,
+    codes_before: &mut Vec<StatusCode>,
+) -> Result<()> {
+    match came {
+        Ok(HiperfaceOutput::Position(mut reading)) => {
+            reading.valid &= !codes_before.iter().any(|code| code.spoils_position());
+            reading.codes = codes_before.drain(..).chain(reading.codes).collect();
+            match table {
+                Some(table) => output.print(&table.row(&reading)),
+                None => show_position(output, &reading),
+            }
+        }
+        Ok(other) => Err(unexpected(&other)),
+        Err(error) if error.means_no_position() => match table {
+            Some(table) => {
+                output.remark(&no_position(&error));
+                output.print(&table.row_without_position(&codes_met(runner)))
+            }
+            None => show_no_position(output, &error),
+        },
+        Err(error) => Err(Ended::<Hiperface>::Job(error).into_failure()),
+    }
+}
+
+fn show_position(output: &Output, reading: &PositionReading) -> Result<()> {
+    let t = reading.at.since_start().as_secs_f64();
+    let place = reading.position;
+    let mut json = json!({
+        "t_s": t,
+        "raw": reading.raw,
+        "turns": place.and_then(|place| place.turns()),
+        "steps": place.and_then(|place| place.steps()),
+        "degrees": place.and_then(|place| place.degrees()),
+        "valid": reading.valid,
+    });
+    if let (Some(millimetres), Some(object)) = (place.and_then(|place| place.millimetres()), json.as_object_mut()) {
+        object.insert("millimetres".to_owned(), json!(millimetres));
+    }
+    let words = place.map_or_else(|| format!("{} steps", reading.raw), |place| place.to_string());
+    let flag = if reading.valid { "" } else { "  not valid" };
+    output.show(&json, &format!("{t:10.3} s  {:08X}h  {words}{flag}\n", reading.raw))
+}
+
+fn no_position(error: &JobError) -> String {
+    explained::job(error).iter().map(|text| text.terminal()).collect()
+}
+
+fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
+    output.remark(&no_position(error));
+    let json = json!({"t_s": null, "raw": null, "turns": null, "steps": null, "degrees": null, "valid": false});
+    output.show(&json, "no position\n")
+}
+
+pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
+    let item = &super::item(item)?;
+    let mut runner = Runner::open(common)?;
+    let value = match runner.run(HiperfaceJob::Read(*item))? {
+        HiperfaceOutput::Value(value) => value,
+        other => return Err(unexpected(&other)),
+    };
+    let (json, text) = match &value {
+        Value::Bytes(bytes) => {
+            (json!({"item": item.to_string(), "value": hex_compact(bytes)}), format!("{}\n", hex(bytes)))
+        }
+        Value::Analogue { value, limit } => {
+            if limit.is_some_and(|limit| *value > limit) {
+                output.remark("The value exceeds the limit of the encoder's extended label.");
+            }
+            let words = limit.map(|limit| format!("  (limit {limit})")).unwrap_or_default();
+            (json!({"item": item.to_string(), "value": value, "limit": limit}), format!("{value}{words}\n"))
+        }
+        Value::Number(number) => (json!({"item": item.to_string(), "value": number}), number_text(item, *number)),
+    };
+    output.show(&json, &text)?;
+    Ok(Done::Well)
+}
+
+fn number_text(item: &Item, number: i64) -> String {
+    match (item, u8::try_from(number)) {
+        (Item::Settings, Ok(byte)) => format!("0x{byte:02X}  {}\n", LineSettings::from_byte(byte)),
+        (Item::Status(_), Ok(byte)) => {
+            format!("0x{byte:02X}  {}\n", crate::devices::hiperface::protocol::DataFieldStatus::from_byte(byte))
+        }
+        (Item::Address, Ok(byte)) => format!("0x{byte:02X}\n"),
+        _ => format!("{number}\n"),
+    }
+}

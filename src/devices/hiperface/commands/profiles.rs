@@ -1,0 +1,165 @@
+//! What the commands about profiles do with a HIPERFACE encoder: `save`, `restore`, and reading it for a comparison.
+
+use std::collections::BTreeMap;
+
+use serde_json::json;
+
+use super::write::{commit, operations, plan_text};
+use crate::app::explain;
+use crate::cli::args::{Common, Restore, Save};
+use crate::cli::consent::require_consent;
+use crate::cli::output::{Output, count};
+use crate::cli::plan::Shown;
+use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Done, Failure, Result};
+use crate::devices::hiperface::commands::run::Runner;
+use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
+use crate::devices::hiperface::procedures::SaveOptions;
+use crate::devices::hiperface::profile::HiperfaceProfile;
+use crate::devices::hiperface::profile::{self, FieldRange, Item, RestoreOptions, UnknownField};
+use crate::devices::hiperface::state::explain as words;
+use crate::profile::{Body, Comparison, ProfileError};
+
+pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+    let mut runner = Runner::open(common)?;
+    let saved = saved(&mut runner, SaveOptions { complete: save.complete })?;
+    name_locked(output, &saved, "saved without its bytes");
+    let fields = saved.profile.fields.len();
+    let locked: Vec<u8> = saved.locked.iter().map(|(field, _)| *field).collect();
+    keep(&save.file, Body::new(saved.profile))?;
+    let json = json!({"file": save.file, "fields": fields, "locked": locked});
+    output.show(&json, &format!("{}: {}\n", save.file.display(), count(fields, "data field")))?;
+    Ok(Done::Well)
+}
+
+fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>> {
+    match runner.run(HiperfaceJob::Save(options))? {
+        HiperfaceOutput::Saved(saved) => Ok(saved),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
+    for (field, code) in &saved.locked {
+        output.remark(&format!(
+            "Data field {field} is {what}: access code {code} is another; give it with --code {code}=HEX."
+        ));
+    }
+}
+
+/// The encoder as it is, for a comparison.
+pub(super) fn present(common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
+    name_locked(output, &saved, "compared without its bytes");
+    Ok(Body::new(saved.profile))
+}
+
+/// What differs between two profiles.
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+    let (left, right) =
+        (left.clone().into_profile::<HiperfaceProfile>()?, right.clone().into_profile::<HiperfaceProfile>()?);
+    Ok(profile::compare(&left.fields, &right.fields))
+}
+
+/// That two profiles are not of the same encoder.
+pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
+    let (profile, device) = (&profile.get::<HiperfaceProfile>()?.identity, &device.get::<HiperfaceProfile>()?.identity);
+    let same = (&profile.serial_number, profile.encoder_type) == (&device.serial_number, device.encoder_type);
+    (!same).then(|| {
+        format!(
+            "The profile is of {} (type {:02X}h), the encoder is {} (type {:02X}h).",
+            profile.serial_number, profile.encoder_type, device.serial_number, device.encoder_type
+        )
+    })
+}
+
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    let profile =
+        profile.into_profile::<HiperfaceProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    if !restore.dry_run {
+        require_consent(&restore.consent)?;
+    }
+    let options = RestoreOptions {
+        allow_other_device: restore.allow_other_device,
+        allow_other_type: restore.allow_other_type,
+        with_mounting: restore.with_mounting,
+        recreate: restore.recreate,
+        copy: answers(restore)?,
+    };
+    let mut runner = Runner::open(common)?;
+    let change = Change::Restore { profile: Box::new(profile), options };
+    let prepared = match runner.run(HiperfaceJob::Prepare(change))? {
+        HiperfaceOutput::Prepared(prepared) => *prepared,
+        other => return Err(unexpected(&other)),
+    };
+    if let Some(types) = prepared.other_type {
+        output.remark(&words::other_type(types).terminal());
+    }
+    check_answers(output, &prepared, restore.dry_run)?;
+    if let Some(text) = words::created_left(&prepared.created_left) {
+        output.remark(&text.terminal());
+    }
+    for item in &prepared.missing {
+        output.remark(&format!("{item} is left alone: profile or encoder does not have it, or it cannot be read"));
+    }
+    for range in &prepared.mounting_left {
+        output.remark(&format!(
+            "{range} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
+        ));
+    }
+    let redo = prepared.redo().iter().map(ToString::to_string).collect();
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    left.warn(output);
+    if restore.dry_run {
+        return show_dry_run(output, &shown(&prepared), &left);
+    }
+    let spent = commit(&mut runner, output, prepared, &restore.consent)?;
+    show_restored(output, &spent, &left)
+}
+
+/// What the command line answers about data fields whose bytes have no known meaning.
+fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
+    let mut answers = BTreeMap::new();
+    for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
+        for text in given {
+            let Item::Field(FieldRange { field, start: 0, count: None }) = super::item(text)? else {
+                return Err(Failure::Usage(format!("{text:?} is not a whole data field: give field:N")));
+            };
+            if answers.insert(field, copies).is_some_and(|before| before != copies) {
+                return Err(Failure::Usage(format!("field:{field} cannot be both copied and left")));
+            }
+        }
+    }
+    Ok(answers)
+}
+
+/// Names the data fields whose bytes have no known meaning, and stops where one is not answered for. A dry run leaves such a
+/// field.
+fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
+    let words = |own: &UnknownField| words::unknown_field(own).terminal();
+    let fields = &prepared.unknown_fields;
+    let open: Vec<&UnknownField> = fields.iter().filter(|own| own.answer.is_none()).collect();
+    if !dry_run && !open.is_empty() {
+        let open: Vec<String> = open.into_iter().map(words).collect();
+        return Err(Failure::Failed(vec![format!(
+            "{} Nothing was written. Answer for each with --copy field:N or --leave field:N.",
+            open.join(" ")
+        )]));
+    }
+    for own in fields {
+        let item = own.item();
+        let becomes = match own.answer {
+            Some(true) => "They are copied.".to_owned(),
+            Some(false) => "They are left as they are.".to_owned(),
+            None => format!("They are left as they are; a restore needs --copy {item} or --leave {item}."),
+        };
+        output.remark(&format!("{} {becomes}", words(own)));
+    }
+    Ok(())
+}
+
+fn shown(prepared: &Prepared) -> Shown {
+    let (operations, write_cycles) = (operations(&prepared.plan), prepared.plan.write_cycles());
+    Shown { operations, text: plan_text(prepared), write_cycles }
+}

@@ -1,0 +1,69 @@
+//! Running jobs on a HIPERFACE encoder: the access codes of the command line, and the codes that the encoder announces.
+
+use crate::app::Text;
+use crate::cli::args::Code;
+use crate::cli::output::say;
+use crate::cli::runner::{self, Runs};
+use crate::devices::hiperface::jobs::{Doing, Hiperface, JobError, Remark, may_have_other_master, open};
+use crate::devices::hiperface::protocol::StatusCode;
+use crate::devices::hiperface::state::explain as words;
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::units::CharacterFormat;
+use crate::worker::{OpenError, Session};
+
+/// A session with a HIPERFACE encoder on its thread.
+pub(super) type Runner = runner::Runner<Hiperface>;
+
+impl Runs for Hiperface {
+    /// How the line is set: for `identify`.
+    type Kept = CharacterFormat;
+    const HAS_ONE_MASTER: bool = true;
+    const HAS_CODES: bool = true;
+
+    fn may_have_other_master(url: &LinkUrl) -> bool {
+        may_have_other_master(url)
+    }
+
+    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
+        open(url, store)
+    }
+
+    fn begin(session: &mut Session<Self>, codes: Vec<Code>) -> CharacterFormat {
+        for Code { number, code } in codes {
+            session.codes_mut().set(number, code);
+        }
+        session.station().format
+    }
+
+    /// Every code that the encoder announced, on a line of its own.
+    fn say(remark: &Remark) {
+        if let Remark::CodesUnheard(count) = remark {
+            say(&format!("{}\n", words::codes_unheard(*count).terminal()));
+        }
+        for code in codes(remark) {
+            let kind = if code.is_warning() { "warning" } else { "error" };
+            say(&format!("encoder {kind}: {code}\n"));
+        }
+    }
+
+    fn doing(doing: &Doing) -> String {
+        doing.to_string()
+    }
+
+    fn failure(error: &JobError) -> Vec<Text> {
+        words::job(error)
+    }
+}
+
+/// The codes that the encoder announced on the way of the last job.
+pub(super) fn codes_met(runner: &Runner) -> Vec<StatusCode> {
+    runner.remarks.iter().flat_map(codes).copied().collect()
+}
+
+fn codes(remark: &Remark) -> &[StatusCode] {
+    match remark {
+        Remark::Codes(codes) => codes,
+        Remark::CodesUnheard(_) | Remark::Found(_) | Remark::Line(_) => &[],
+    }
+}

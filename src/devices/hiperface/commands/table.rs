@@ -1,0 +1,54 @@
+//! Positions as a table (CSV): commas and points, whatever the language, so that a script reads what another one wrote.
+//! Prints nothing itself.
+
+use crate::devices::hiperface::procedures::PositionReading;
+use crate::devices::hiperface::protocol::{Geometry, StatusCode};
+
+/// How positions are written: a shaft in degrees, a scale in millimetres.
+pub(super) struct Table {
+    linear: bool,
+}
+
+impl Table {
+    /// The table of an encoder; of one that is not known, that of a shaft.
+    pub(super) fn of(geometry: Option<Geometry>) -> Self {
+        Table { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
+    }
+
+    /// The first line.
+    pub(super) fn header(&self) -> &'static str {
+        match self.linear {
+            true => "t_s,raw,turns,steps,millimetres,valid,codes\n",
+            false => "t_s,raw,turns,steps,degrees,valid,codes\n",
+        }
+    }
+
+    /// A line: what is not known stays empty; codes as two hexadecimal digits, separated by spaces.
+    pub(super) fn row(&self, reading: &PositionReading) -> String {
+        let place = reading.position;
+        let number = |number: Option<u64>| number.map_or_else(String::new, |number| number.to_string());
+        let angle = match self.linear {
+            true => place.and_then(|place| place.millimetres()),
+            false => place.and_then(|place| place.degrees()),
+        };
+        format!(
+            "{:.6},{},{},{},{},{},{}\n",
+            reading.at.since_start().as_secs_f64(),
+            reading.raw,
+            number(place.and_then(|place| place.turns())),
+            number(place.and_then(|place| place.steps())),
+            angle.map_or_else(String::new, |angle| angle.to_string()),
+            reading.valid,
+            words(&reading.codes),
+        )
+    }
+
+    /// The line of a reading that gave no position.
+    pub(super) fn row_without_position(&self, codes: &[StatusCode]) -> String {
+        format!(",,,,,false,{}\n", words(codes))
+    }
+}
+
+fn words(codes: &[StatusCode]) -> String {
+    codes.iter().map(|code| format!("{:02X}", code.byte())).collect::<Vec<_>>().join(" ")
+}

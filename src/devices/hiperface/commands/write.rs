@@ -1,0 +1,171 @@
+//! `write`, and what every writing command shares: the plan in words, consent, carrying it out.
+
+use serde_json::{Value as Json, json};
+
+use crate::bits::{hex_compact, parse_hex};
+use crate::cli::args::{Common, Consenting, Write};
+use crate::cli::consent::{agree, check_wear, require_consent};
+use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::output::{Lines, Output, count as plural};
+use crate::cli::plan::{self, Spent};
+use crate::cli::profiles::show_changed;
+use crate::cli::runner::unexpected;
+use crate::cli::{Failure, Result};
+use crate::devices::hiperface::commands::run::Runner;
+use crate::devices::hiperface::jobs::{Change, Commit, Hiperface, HiperfaceJob, HiperfaceOutput, Prepared, WEAR_LIMIT};
+use crate::devices::hiperface::profile::{HiperfacePlan, Item, Op};
+use crate::devices::hiperface::protocol::{DataFieldStatus, DeviceAddress, LineSettings};
+use crate::devices::hiperface::state::explain as words;
+use crate::profile::Consent;
+
+pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+    let item = super::item(&write.item)?;
+    let change = change_of(item, &write.value)?;
+    change_and_show(common, output, change, &write.consent, &item.to_string())
+}
+
+/// Prepares a change, asks, carries it out and prints what came of it.
+pub(super) fn change_and_show(
+    common: &Common,
+    output: &Output,
+    change: Change,
+    consent: &Consenting,
+    item: &str,
+) -> Result {
+    require_consent(consent)?;
+    let mut runner = Runner::open(common)?;
+    let prepared = match runner.run(HiperfaceJob::Prepare(change))? {
+        HiperfaceOutput::Prepared(prepared) => *prepared,
+        other => return Err(unexpected(&other)),
+    };
+    let operations = operations(&prepared.plan);
+    let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
+    let spent = commit(&mut runner, output, prepared, consent)?;
+    if changes_code {
+        output.remark("An access code cannot be read back; the encoder has acknowledged it.");
+    }
+    show_changed(output, item, &operations, &spent)
+}
+
+fn change_of(item: Item, value: &str) -> Result<Change> {
+    match item {
+        Item::Field(range) => {
+            let bytes = parse_hex(value).map_err(|why| Failure::Usage(format!("{value:?} is not hex bytes: {why}")))?;
+            if bytes.is_empty() {
+                return Err(Failure::Usage("there are no bytes to write".to_owned()));
+            }
+            if let Some(count) = range.count.filter(|count| *count != bytes.len()) {
+                return Err(Failure::Usage(format!("{range} takes {}, given: {}", plural(count, "byte"), bytes.len())));
+            }
+            Ok(Change::Store(vec![(range, bytes)]))
+        }
+        Item::Status(number) => {
+            let status = DataFieldStatus::from_byte(byte_within(item, value, 0x80..=0xFF)?);
+            Ok(Change::Redefine { number, status })
+        }
+        Item::Address => {
+            let byte = byte_within(item, value, 0x40..=0x5F)?;
+            let address = DeviceAddress::new(byte).ok_or_else(|| out_of_range(item, value, 0x40, 0x5F))?;
+            Ok(Change::SetAddress(address))
+        }
+        Item::Settings => Ok(Change::Configure(settings(value)?)),
+        Item::Counter => match number(item, value)? {
+            0 => Ok(Change::ClearCounter),
+            _ => Err(Failure::Usage(
+                "the counter can be set to 0, or counted up with \"do hiperface increment-counter\"".to_owned(),
+            )),
+        },
+        Item::Analogue(_) => Err(Failure::Usage("an analogue value can only be read".to_owned())),
+    }
+}
+
+/// A settings byte without reserved values.
+pub(super) fn settings(value: &str) -> Result<LineSettings> {
+    let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
+    if settings.is_valid() {
+        return Ok(settings);
+    }
+    Err(Failure::Failed(vec![format!(
+        "settings {:02X}h have a reserved value: bit 3 is 0, bits 5 and 4 are 00, 10 or 11, bits 2 to 0 are 0 to 6.",
+        settings.byte()
+    )]))
+}
+
+fn byte_within(item: Item, value: &str, range: std::ops::RangeInclusive<u8>) -> Result<u8> {
+    let number = number(item, value)?;
+    u8::try_from(number)
+        .ok()
+        .filter(|byte| range.contains(byte))
+        .ok_or_else(|| out_of_range(item, value, (*range.start()).into(), (*range.end()).into()))
+}
+
+fn number(item: Item, value: &str) -> Result<i64> {
+    parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
+}
+
+/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+    if prepared.plan.is_empty() {
+        return Ok(Spent::default());
+    }
+    check_wear::<Hiperface>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT)?;
+    agree(output, consent, &plan_text(&prepared))?;
+    let granted = Consent::to(prepared.plan.id());
+    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
+    let committed = match runner.run(HiperfaceJob::Commit(Box::new(commit)))? {
+        HiperfaceOutput::Committed(committed) => committed,
+        other => return Err(unexpected(&other)),
+    };
+    Ok(Spent::of(output, committed))
+}
+
+/// The plan for a person: each operation old → new, and what it costs.
+pub(super) fn plan_text(prepared: &Prepared) -> String {
+    let plan = &prepared.plan;
+    let mut lines = Lines::default();
+    for op in &plan.ops {
+        let (old, new) = change_words(op);
+        lines.add(op.item(), format!("{old}  →  {new}"));
+    }
+    if let Some(wanted) = prepared.wanted_position {
+        lines.add("wanted", format!("{wanted}; the value above keeps the phase to the sine signal (--exact does not)"));
+    }
+    plan::text(plan, lines, prepared.cycles_seen, None)
+}
+
+/// The operations as JSON.
+pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
+    plan.ops
+        .iter()
+        .map(|op| {
+            let (old, new) = match op {
+                Op::Store { old, new, .. } => (old.as_deref().map(hex_compact), Some(hex_compact(new))),
+                Op::Define { from, to, .. } => {
+                    let byte = |status: DataFieldStatus| format!("{:02X}", status.byte());
+                    (from.map(byte), Some(byte(*to)))
+                }
+                // An access code is shown nowhere.
+                Op::ChangeCode { .. } => (None, None),
+                op => {
+                    let (old, new) = change_words(op);
+                    (Some(old), Some(new))
+                }
+            };
+            json!({"item": op.item(), "old": old, "new": new})
+        })
+        .collect()
+}
+
+/// Status and settings with their bytes, which `status:N` and `settings` take; the rest as everybody is told it.
+fn change_words(op: &Op) -> (String, String) {
+    match op {
+        Op::Define { from, to, .. } => {
+            (from.map_or_else(|| "not there".to_owned(), |from| format!("{from:?}")), format!("{to:?}"))
+        }
+        Op::Configure { from, to } => (format!("{from:?}"), format!("{to:?}")),
+        op => {
+            let changes = words::op(op).changes.into_iter();
+            changes.map(|own| (own.old.terminal(), own.new.terminal())).next().unwrap_or_default()
+        }
+    }
+}

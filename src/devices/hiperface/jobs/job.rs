@@ -1,0 +1,325 @@
+//! What can be asked of a HIPERFACE encoder, and what comes of it.
+
+use std::fmt;
+
+use crate::devices::hiperface::procedures::check::Line;
+use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, Findings, Found};
+use crate::devices::hiperface::procedures::write::{Interrupted, Written};
+use crate::devices::hiperface::procedures::{Error, Identity, LineQuality, PositionReading, Rest, SaveOptions, Survey};
+use crate::devices::hiperface::profile::{
+    FieldRange, HiperfacePlan, HiperfaceProfile, Item, Op, PlanError, Redo, RestoreOptions, UnknownField,
+};
+use crate::devices::hiperface::protocol::{
+    AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
+};
+use crate::profile::Consent;
+
+/// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
+/// EEPROM, that it can be incremented about a million times.
+pub const WEAR_LIMIT: u64 = 1_000_000;
+
+/// What a session with a HIPERFACE encoder does.
+#[derive(Debug)]
+pub enum HiperfaceJob {
+    /// Everything there is to see: for a window, after connecting.
+    Survey,
+    /// Who is there.
+    Identify,
+    /// The whole error queue.
+    Status,
+    /// The position, once. With the geometry, where it is known already.
+    Position(Option<Geometry>),
+    /// The shaft at rest: position, and sine and cosine where the encoder gives them.
+    Rest,
+    /// One value.
+    Read(Item),
+    /// Everything that can be restored.
+    Save(SaveOptions),
+    /// The start-up sequence with a verdict a line; with a restart first.
+    Check {
+        /// Send 53h first.
+        restart: bool,
+    },
+    /// 53h and its waits.
+    Reset,
+    /// All speeds, parities and addresses.
+    Find(FindOptions),
+    /// 67h, and our side after it.
+    ConfigureForNow(LineSettings),
+    /// Uses an access code from now on; nothing is sent.
+    UseCode {
+        /// Which.
+        number: CodeNumber,
+        /// Its value; it is shown nowhere.
+        code: AccessCode,
+    },
+    /// Makes a plan; writes nothing.
+    Prepare(Change),
+    /// Carries a plan out.
+    Commit(Box<Commit>),
+}
+
+/// A change that a user wants.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Make the encoder as the profile says.
+    Restore {
+        /// The profile.
+        profile: Box<HiperfaceProfile>,
+        /// What the restore may do.
+        options: RestoreOptions,
+    },
+    /// Write bytes of data fields: where, and which; a count has to be that of the bytes.
+    Store(Vec<(FieldRange, Vec<u8>)>),
+    /// Create a data field.
+    CreateField {
+        /// Its number.
+        number: u8,
+        /// Its status.
+        status: DataFieldStatus,
+    },
+    /// Give a field another status: protection, access code, or, for the last, size.
+    Redefine {
+        /// Its number.
+        number: u8,
+        /// Its status from then on; it exists.
+        status: DataFieldStatus,
+    },
+    /// Write-protect a field, or make it writable.
+    LockField {
+        /// Its number.
+        number: u8,
+        /// Protect it.
+        lock: bool,
+    },
+    /// Give the last field another size.
+    ResizeField {
+        /// Its number.
+        number: u8,
+        /// Its size.
+        size: FieldSize,
+    },
+    /// Delete the last field.
+    DeleteField {
+        /// Its number.
+        number: u8,
+    },
+    /// Change an access code; its present value is the session's.
+    ChangeCode {
+        /// Which.
+        number: CodeNumber,
+        /// Its new value.
+        new: AccessCode,
+    },
+    /// Set the position; at standstill.
+    SetPosition {
+        /// The position wanted.
+        wanted: u32,
+        /// Exactly that, also when it breaks the phase to the sine; else the nearest that keeps it.
+        exact: bool,
+        /// 63h: align the code tracks as well.
+        synchronise: bool,
+        /// The user says that the encoder is a kit, where the type does not tell.
+        kit: bool,
+    },
+    /// Add steps to the position, round the end of the measuring range; at standstill. It undoes a set position wherever
+    /// the shaft is by now.
+    ShiftPosition {
+        /// How many.
+        steps: i64,
+    },
+    /// Give the encoder another address.
+    SetAddress(DeviceAddress),
+    /// Store other interface settings.
+    Configure(LineSettings),
+    /// Counter to 0.
+    ClearCounter,
+    /// Counter + 1.
+    IncrementCounter,
+}
+
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edited bytes are written: those that are not yet stay edited.
+    Bytes,
+    /// One thing, which is done or not.
+    Single,
+}
+
+impl Change {
+    /// Its kind.
+    pub fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Store(_) => ChangeKind::Bytes,
+            _ => ChangeKind::Single,
+        }
+    }
+}
+
+/// A plan, ready to be looked at.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
+    /// What would be written.
+    pub plan: HiperfacePlan,
+    /// The encoder it is for.
+    pub identity: Identity,
+    /// Persistent writes that this computer has seen the encoder take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Things that are as they should be already.
+    pub unchanged: u64,
+    /// Items that are left alone because one side does not have them or cannot read them.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<FieldRange>,
+    /// Values of the mounting of another device that are written: they have to be set up anew.
+    pub mounting_written: Vec<FieldRange>,
+    /// Data fields with bytes of unknown meaning that differ from another encoder's.
+    pub unknown_fields: Vec<UnknownField>,
+    /// Data fields that the write created which this undoes, and that are left: they have changed since, or are not the last.
+    pub created_left: Vec<u8>,
+    /// The profile is of another type of encoder.
+    pub other_type: Option<OtherType>,
+    /// The position asked for, where the plan sets another one that keeps the phase.
+    pub wanted_position: Option<u32>,
+}
+
+/// The types of a profile and of the encoder that it goes onto, which is of another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OtherType {
+    /// In the profile.
+    pub profile: u8,
+    /// In the encoder.
+    pub device: u8,
+}
+
+impl Prepared {
+    /// What has to be set up anew after it. Any value of another mounting, and any byte of unknown meaning, may be an
+    /// offset between encoder and motor.
+    pub fn redo(&self) -> Vec<Redo> {
+        let values = self.mounting_written.iter().copied().map(Redo::Value);
+        let copies = self.unknown_fields.iter().any(UnknownField::is_copied);
+        let commutation = (copies || !self.mounting_written.is_empty()).then_some(Redo::Commutation);
+        commutation.into_iter().chain(values).collect()
+    }
+}
+
+/// A plan that a person consented to.
+#[derive(Clone, Debug)]
+pub struct Commit {
+    /// The plan as it was shown.
+    pub prepared: Prepared,
+    /// The consent to it.
+    pub consent: Consent,
+    /// Write although the encoder counts as worn.
+    pub force_wear: bool,
+}
+
+/// What a commit did.
+pub type Committed = crate::worker::Committed<Written>;
+
+/// A value that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(i64),
+    /// An analogue value, and what it should not exceed, where the encoder's extended label says so.
+    Analogue {
+        /// As read.
+        value: i16,
+        /// The limit.
+        limit: Option<i16>,
+    },
+    /// Bytes.
+    Bytes(Vec<u8>),
+}
+
+/// A profile as it was read.
+#[derive(Clone, Debug)]
+pub struct SavedProfile {
+    /// What was read.
+    pub profile: HiperfaceProfile,
+    /// Fields that could not be read, with the number of the code that guards them.
+    pub locked: Vec<(u8, CodeNumber)>,
+}
+
+/// What a HIPERFACE encoder says on the way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// Status codes that replies announced.
+    Codes(Vec<StatusCode>),
+    /// So many status codes may have been lost: 50h takes them out of the encoder, and its reply was lost or damaged.
+    CodesUnheard(u32),
+    /// An encoder that answered while one searched.
+    Found(Found),
+    /// Something had to be repeated, or came too late.
+    Line(LineQuality),
+}
+
+/// The step that a HIPERFACE job is at. Its text is the command line's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Doing {
+    /// The data field of that number is read.
+    Field(u64),
+    /// An operation of a plan is carried out.
+    Operation(Op),
+    /// An encoder is searched.
+    Attempt(Attempt),
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Doing::Field(field) => write!(f, "field:{field}"),
+            Doing::Operation(op) => f.write_str(&op.item()),
+            Doing::Attempt(attempt) => attempt.fmt(f),
+        }
+    }
+}
+
+/// What a HIPERFACE job gives.
+#[derive(Debug)]
+#[expect(missing_docs, reason = "each is the result of the job of that name")]
+pub enum HiperfaceOutput {
+    Surveyed(Box<Survey>),
+    Identity(Identity),
+    Status(Vec<StatusCode>),
+    Position(PositionReading),
+    Rest(Rest),
+    Value(Value),
+    Saved(Box<SavedProfile>),
+    Check(Vec<Line>),
+    Reset(Vec<StatusCode>),
+    Found(Findings),
+    Configured,
+    CodeNoted,
+    Prepared(Box<Prepared>),
+    Committed(Committed),
+}
+
+/// Why a job ended early.
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
+}
+
+impl JobError {
+    /// The encoder is there and has no position to give at the moment.
+    pub fn means_no_position(&self) -> bool {
+        matches!(self, JobError::Device(error) if error.means_no_position())
+    }
+}

@@ -1,0 +1,308 @@
+//! A HIPERFACE encoder at the end of a session, and its jobs.
+
+mod commit;
+mod job;
+mod open;
+mod prepare;
+mod status;
+
+use std::fmt;
+use std::sync::Arc;
+
+pub use commit::device_key;
+pub use job::{
+    Change, ChangeKind, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, OtherType, Prepared, Remark,
+    SavedProfile, Value, WEAR_LIMIT,
+};
+pub use open::{check, may_have_other_master, open};
+
+use status::StatusKeeper;
+
+use crate::devices::hiperface::procedures::find::News;
+use crate::devices::hiperface::procedures::{
+    self, Codes, Error, Identity, Master, Sample, Station, Watch, check, find, identify, read_analogue, read_counter,
+    read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched,
+};
+use crate::devices::hiperface::profile::{FieldRange, Item, PlanError};
+use crate::devices::hiperface::protocol::{EncoderTypes, Geometry, StatusCode};
+use crate::link::{ByteLink, Clock, LinkError};
+use crate::store::{DeviceKey, Store};
+use crate::worker::{Desk, Device, Progress, Session, Tell, Watched};
+
+/// A HIPERFACE encoder at the end of its wire.
+pub struct Hiperface {
+    wire: Box<dyn ByteLink>,
+    station: Station,
+    types: Arc<EncoderTypes>,
+    /// As the encoder was last identified in this session: samples are seen with it.
+    geometry: Option<Geometry>,
+    /// Who answered last, as the logbook knows it.
+    identified: Option<DeviceKey>,
+    status: StatusKeeper,
+    /// What was told of the line's troubles.
+    told_troubles: [u64; 4],
+}
+
+impl fmt::Debug for Hiperface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Hiperface({})", self.station)
+    }
+}
+
+impl Hiperface {
+    /// The host's side of the line.
+    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    }
+
+    /// Notes who has answered.
+    fn identified(&mut self, desk: &Desk, identity: &Identity) {
+        self.geometry = identity.geometry;
+        self.identified = Some(device_key(identity, desk.is_virtual));
+    }
+
+    /// Keeps the status codes that were read, before they are shown. An encoder that is not known yet is asked who it is:
+    /// its logbook is to have them.
+    fn keep_codes(&mut self, desk: &mut Desk, codes: &[StatusCode]) {
+        if codes.is_empty() {
+            return;
+        }
+        if self.identified.is_none() {
+            let types = self.types.clone();
+            if let Ok(identity) = identify(&mut self.master(desk), &types) {
+                self.identified(desk, &identity);
+            }
+        }
+        let device = self.identified.clone().unwrap_or_else(|| status::unknown_device(desk.is_virtual));
+        status::keep(&desk.store, &device, codes);
+    }
+
+    /// The same for what is sampled, where a code that stays comes with each sample.
+    fn keep_sampled_codes(&mut self, desk: &mut Desk) {
+        let codes = self.station.take_codes_read();
+        if !codes.is_empty() && self.status.is_news(&codes, desk.clock.now()) {
+            self.keep_codes(desk, &codes);
+        }
+    }
+}
+
+impl Session<Hiperface> {
+    /// A session on an open wire. `is_virtual`: the encoder lives in this process, and its wear counts apart.
+    pub fn new(
+        wire: Box<dyn ByteLink>,
+        clock: Arc<dyn Clock>,
+        station: Station,
+        store: Store,
+        types: EncoderTypes,
+        is_virtual: bool,
+    ) -> Self {
+        let geometry = station.geometry;
+        let (types, status) = (Arc::new(types), StatusKeeper::default());
+        let device = Hiperface { wire, station, types, geometry, identified: None, status, told_troubles: [0; 4] };
+        Session::with(device, clock, store, is_virtual)
+    }
+
+    /// The access codes that the user knows.
+    pub fn codes_mut(&mut self) -> &mut Codes {
+        &mut self.device.station.codes
+    }
+
+    /// What is known about the line.
+    pub fn station(&self) -> &Station {
+        &self.device.station
+    }
+}
+
+impl Device for Hiperface {
+    type Job = HiperfaceJob;
+    type Output = HiperfaceOutput;
+    type Error = JobError;
+    type Remark = Remark;
+    type Sample = Sample;
+    type Watch = Watch;
+    type Doing = Doing;
+
+    fn run(
+        &mut self,
+        desk: &mut Desk,
+        job: HiperfaceJob,
+        tell: &mut dyn FnMut(Tell<Remark, Doing>),
+    ) -> Result<HiperfaceOutput, JobError> {
+        let result = self.carry_out(desk, job, tell);
+        let codes = self.station.take_codes_read();
+        self.keep_codes(desk, &codes);
+        result
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+        let geometry = self.geometry;
+        let met_before = self.station.codes_met.len();
+        let sample = read_sample(&mut self.master(desk), geometry);
+        self.keep_sampled_codes(desk);
+        let sample = sample?;
+        // The codes met are in it.
+        self.station.codes_met.truncate(met_before);
+        Ok(sample)
+    }
+
+    fn watch(&mut self, desk: &mut Desk, what: &Watch) -> Result<Watched<Sample>, JobError> {
+        let met_before = self.station.codes_met.len();
+        let reading = read_watched(&mut self.master(desk), *what);
+        self.keep_sampled_codes(desk);
+        let reading = reading?;
+        // The codes met are in it.
+        self.station.codes_met.truncate(met_before);
+        let refused = reading.is_refused();
+        let sample = Sample::Watched(reading);
+        Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        error.device() == Some(&Error::Cancelled)
+    }
+
+    fn take_remark(&mut self) -> Option<Remark> {
+        let codes = Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes);
+        codes.or_else(|| self.unheard())
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+
+    /// What went wrong on the line since it was told last.
+    fn idle(&mut self, _desk: &mut Desk) -> Option<Remark> {
+        if let Some(unheard) = self.unheard() {
+            return Some(unheard);
+        }
+        let line = &self.station.line;
+        // What ends in a failure is told by that.
+        if line.is_troubled() || line.quality.troubles() == self.told_troubles {
+            return None;
+        }
+        self.told_troubles = line.quality.troubles();
+        Some(Remark::Line(line.quality.clone()))
+    }
+}
+
+impl Hiperface {
+    fn unheard(&mut self) -> Option<Remark> {
+        Some(self.station.take_codes_unheard()).filter(|count| *count > 0).map(Remark::CodesUnheard)
+    }
+
+    fn carry_out(
+        &mut self,
+        desk: &mut Desk,
+        job: HiperfaceJob,
+        tell: &mut dyn FnMut(Tell<Remark, Doing>),
+    ) -> Result<HiperfaceOutput, JobError> {
+        let types = self.types.clone();
+        let steps = &mut |progress| tell(Tell::Progress(progress));
+        Ok(match job {
+            HiperfaceJob::Prepare(change) => {
+                let prepared = prepare::prepare(self, desk, change, steps)?;
+                self.identified = Some(device_key(&prepared.identity, desk.is_virtual));
+                HiperfaceOutput::Prepared(Box::new(prepared))
+            }
+            HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, steps)?),
+            HiperfaceJob::Survey => {
+                let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });
+                let survey = procedures::survey(&mut self.master(desk), &types, progress)?;
+                self.identified(desk, &survey.identity);
+                HiperfaceOutput::Surveyed(Box::new(survey))
+            }
+            HiperfaceJob::UseCode { number, code } => {
+                self.station.codes.set(number, code);
+                HiperfaceOutput::CodeNoted
+            }
+            HiperfaceJob::Identify => {
+                let identity = identify(&mut self.master(desk), &types)?;
+                self.identified(desk, &identity);
+                HiperfaceOutput::Identity(identity)
+            }
+            HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.master(desk))?),
+            HiperfaceJob::Position(geometry) => {
+                HiperfaceOutput::Position(read_position(&mut self.master(desk), geometry)?)
+            }
+            HiperfaceJob::Rest => {
+                let geometry = self.geometry;
+                HiperfaceOutput::Rest(procedures::read_at_rest(&mut self.master(desk), geometry)?)
+            }
+            HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(desk), item)?),
+            HiperfaceJob::Save(options) => {
+                let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });
+                let profile = procedures::save(&mut self.master(desk), &types, options, progress)?;
+                let locked = profile.fields.iter().filter(|field| field.bytes.is_none());
+                let locked = locked.map(|field| (field.number, field.status.code())).collect();
+                HiperfaceOutput::Saved(Box::new(SavedProfile { profile, locked }))
+            }
+            HiperfaceJob::Check { restart } => {
+                HiperfaceOutput::Check(check::check(&mut self.master(desk), &types, restart)?)
+            }
+            HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.master(desk))?),
+            HiperfaceJob::Find(options) => {
+                let watch = &mut |news: News<'_>| tell(told(news));
+                HiperfaceOutput::Found(find::find(&mut self.master(desk), &options, watch)?)
+            }
+            HiperfaceJob::ConfigureForNow(settings) => {
+                procedures::change_line_for_now(&mut self.master(desk), settings)?;
+                HiperfaceOutput::Configured
+            }
+        })
+    }
+}
+
+fn told(news: News<'_>) -> Tell<Remark, Doing> {
+    match news {
+        News::Trying { done, total, attempt } => {
+            Tell::Progress(Progress { done, total, what: Doing::Attempt(attempt.clone()) })
+        }
+        News::Found(found) => Tell::Remark(Remark::Found(found.clone())),
+    }
+}
+
+fn read_item(master: &mut Master<'_>, item: Item) -> Result<Value, JobError> {
+    let value = read_value(master, item);
+    if let (Item::Field(FieldRange { field, .. }) | Item::Status(field), Err(error)) = (item, &value)
+        && error.is_rejection(StatusCode::NO_SUCH_FIELD)
+    {
+        // Which ones there are says more than the encoder's refusal.
+        let count = procedures::write::read_memory(master)?.fields;
+        return Err(PlanError::NoSuchField { field, count }.into());
+    }
+    Ok(value?)
+}
+
+fn read_value(master: &mut Master<'_>, item: Item) -> Result<Value, Error> {
+    Ok(match item {
+        Item::Field(range) => Value::Bytes(read_part(master, range)?),
+        Item::Status(field) => Value::Number(read_field_status(master, field)?.byte().into()),
+        Item::Analogue(channel) => {
+            let value = read_analogue(master, channel)?;
+            Value::Analogue { value, limit: procedures::read_analogue_limit(master, channel)? }
+        }
+        Item::Counter => Value::Number(read_counter(master)?.into()),
+        Item::Address => Value::Number(procedures::read_address(master)?.into()),
+        Item::Settings => Value::Number(procedures::read_settings(master)?.byte().into()),
+    })
+}
+
+fn read_part(master: &mut Master<'_>, range: FieldRange) -> Result<Vec<u8>, Error> {
+    let status = read_field_status(master, range.field)?;
+    let size = status.size().bytes();
+    let count = range.count.unwrap_or(size.saturating_sub(range.start));
+    if count == 0 || range.start.saturating_add(count) > size {
+        return Err(Error::OutOfField { field: range.field, address: range.start, count: count.max(1), size });
+    }
+    if range.start == 0 && count == size {
+        let field = read_field(master, range.field)?;
+        return field.bytes.ok_or(Error::CodeUnknown { field: range.field, number: status.code() });
+    }
+    let code = master.station().codes.get(status.code());
+    match read_range(master, range.field, range.start, count, code) {
+        Err(error) if error.is_rejection(StatusCode::WRONG_CODE) => {
+            Err(Error::CodeUnknown { field: range.field, number: status.code() })
+        }
+        result => result,
+    }
+}

@@ -1,0 +1,60 @@
+//! From a link URL to a session with a HIPERFACE encoder.
+
+use std::sync::Arc;
+
+use super::Hiperface;
+use crate::devices::hiperface::procedures::{Echo, PARAMETERS, Station};
+use crate::devices::hiperface::sim::{Bus, Config};
+use crate::link::{Clock, LinkUrl, RealClock, Scheme};
+use crate::store::Store;
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
+use crate::worker::{OpenError, Session};
+
+/// Link parameters that describe the line and nothing of the virtual encoder.
+const LINE_ONLY: [&str; 6] = ["baud", "parity", "timeout", "margin", "periods", "turns"];
+
+/// Everything about a link to a HIPERFACE encoder that can be told without opening it.
+///
+/// # Errors
+/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    read(url).map(|_| ())
+}
+
+/// Behind this link is a line on which a drive may be a second master. It reads the encoder at power-up and then runs on
+/// sine and cosine, so that a silent line proves nothing.
+pub fn may_have_other_master(url: &LinkUrl) -> bool {
+    matches!(url.scheme, Scheme::Serial | Scheme::Tcp)
+}
+
+/// Opens a link to a HIPERFACE encoder.
+///
+/// # Errors
+/// See [`OpenError`]; nothing has been sent.
+pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
+    let (station, config) = read(url)?;
+    let types = store.encoder_types()?;
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let wire = open_bytes(url, station.format, &clock, || {
+        let mut link = inside(Bus::new(&config), &clock);
+        link.set_format(station.format)?;
+        Ok(link)
+    })?;
+    Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
+}
+
+/// The line, and the virtual encoder, which counts for a link to it alone.
+fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
+    if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
+        return Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, replay:"));
+    }
+    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
+    if url.scheme != Scheme::Sim {
+        check_parameters(&url.query, url.scheme, &PARAMETERS)?;
+        return Ok((station, Config::default()));
+    }
+    // The virtual encoder's converter may echo; whether it does is learned as with a real one.
+    station.line.echo = Echo::Unknown;
+    check_parameters(&url.query, url.scheme, &[&LINE_ONLY[..], &Config::KEYS].concat())?;
+    Ok((station, Config::from_pairs(&url.query.without(&LINE_ONLY))?))
+}

@@ -1,0 +1,66 @@
+//! Status codes into the logbook, before anything shows them: 50h takes them out of the encoder, so that a code that was read
+//! and not kept is gone.
+
+use std::time::Duration;
+
+use jiff::Timestamp;
+
+use crate::devices::hiperface::protocol::{KIND, StatusCode};
+use crate::store::{DeviceKey, Logbook, Store};
+use crate::units::Moment;
+
+/// A code that live values give again and again is kept once in this time.
+const AGAIN: Duration = Duration::from_secs(60);
+
+/// Codes that were kept while the position is read all the time.
+#[derive(Debug, Default)]
+pub(super) struct StatusKeeper(Vec<(StatusCode, Moment)>);
+
+impl StatusKeeper {
+    /// Whether one of these codes was not kept within the last minute; from now on they count as kept.
+    pub(super) fn is_news(&mut self, codes: &[StatusCode], now: Moment) -> bool {
+        self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
+        let mut is_news = false;
+        for code in codes {
+            if !self.0.iter().any(|(own, _)| own == code) {
+                self.0.push((*code, now));
+                is_news = true;
+            }
+        }
+        is_news
+    }
+}
+
+/// Writes codes into the log and the logbook. The log has them where the logbook cannot be used.
+pub(super) fn keep(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
+    let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);
+    let noted = Logbook::open(&store.logbook_path())
+        .and_then(|mut logbook| logbook.note_status(Timestamp::now(), device, &words));
+    if let Err(error) = noted {
+        tracing::warn!("{error}");
+    }
+}
+
+/// An encoder that did not tell who it is.
+pub(super) fn unknown_device(is_virtual: bool) -> DeviceKey {
+    let (device_type, serial_number) = (String::new(), String::new());
+    DeviceKey { kind: KIND.to_owned(), device_type, serial_number, is_virtual }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_code_that_comes_again_and_again_is_kept_once_a_minute() {
+        let mut keeper = StatusKeeper::default();
+        let at = |seconds| Moment::default() + Duration::from_secs(seconds);
+        let (hot, fast) = (StatusCode::TEMPERATURE, StatusCode::TOO_FAST);
+        assert!(keeper.is_news(&[hot], at(0)));
+        assert!(!keeper.is_news(&[hot], at(59)));
+        assert!(keeper.is_news(&[hot, fast], at(59)), "another one came");
+        assert!(keeper.is_news(&[hot], at(60)));
+        assert!(!keeper.is_news(&[fast, hot], at(100)));
+    }
+}

@@ -1,0 +1,202 @@
+//! The device check: the start-up sequence of the manual (figures 8 and 9) with a verdict a line.
+
+use super::fields::tolerated;
+use super::{
+    Error, Identity, LineQuality, Master, UnreadableField, identify, read_analogue, read_position, read_status, reset,
+    try_read_field,
+};
+use crate::devices::hiperface::protocol::{DataFieldStatus, EncoderTypes, Position, StatusCode};
+
+pub use crate::device::check::Verdict;
+
+/// One line of the check.
+pub type Line = crate::device::check::Line<Step, Finding>;
+
+/// A step of the check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// 53h and the waits after it.
+    Restart,
+    /// 50h until the queue is empty.
+    Status,
+    /// 52h and 56h.
+    Identity,
+    /// 42h.
+    Position,
+    /// 44h on the channels that the extended label limits.
+    Limits,
+    /// 4Ch and 4Ah on every data field.
+    DataFields,
+    /// What was repeated, damaged or late meanwhile, and before in this session.
+    Line,
+}
+
+/// One fact that the check found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// A status code.
+    Code(StatusCode),
+    /// The position.
+    Position(Position),
+    /// The position word, where periods and turns are not known.
+    RawPosition(u32),
+    /// The encoder's name.
+    Name(String),
+    /// Its serial number.
+    SerialNumber(String),
+    /// An analogue value and what it should not exceed.
+    Limit {
+        /// The channel.
+        channel: u8,
+        /// Its value.
+        value: i16,
+        /// The limit of the extended label.
+        limit: i16,
+    },
+    /// A data field that can be read.
+    Field {
+        /// Its number.
+        number: u8,
+        /// Its status.
+        status: DataFieldStatus,
+    },
+    /// A data field whose access code, which its status names, is not known.
+    FieldLocked {
+        /// Its number.
+        number: u8,
+        /// Its status.
+        status: DataFieldStatus,
+    },
+    /// A data field that the encoder refuses.
+    FieldRefused {
+        /// Its number.
+        number: u8,
+        /// Why.
+        codes: Vec<StatusCode>,
+    },
+    /// A data field that cannot be read.
+    FieldUnreadable {
+        /// Its number.
+        number: u8,
+        /// Why.
+        why: Error,
+    },
+    /// Something else that cannot be read.
+    Unreadable(Error),
+    /// How good the line is.
+    Line(LineQuality),
+}
+
+/// Carries out the check; with `restart` it begins with 53h, as after power-on. It ends early only when the encoder does
+/// not answer any more.
+///
+/// # Errors
+/// The line, or the user's wish.
+pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Result<Vec<Line>, Error> {
+    let mut lines = Vec::new();
+    let codes = if restart {
+        let codes = reset(master)?;
+        lines.push(Line { step: Step::Restart, verdict: Verdict::Good, findings: Vec::new() });
+        codes
+    } else {
+        read_status(master)?
+    };
+    lines.push(Line { step: Step::Status, verdict: verdict(&codes), findings: found(&codes) });
+    let identity = identify(master, types)?;
+    let known = if identity.geometry.is_some() { Verdict::Good } else { Verdict::Attention };
+    let findings =
+        vec![Finding::Name(identity.name.clone()), Finding::SerialNumber(identity.serial.serial_number.clone())];
+    lines.push(Line { step: Step::Identity, verdict: known, findings });
+    lines.push(check_position(master, &identity)?);
+    lines.extend(check_limits(master, &identity)?);
+    lines.push(check_fields(master, &identity)?);
+    lines.push(check_line(master));
+    Ok(lines)
+}
+
+fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Error> {
+    let step = Step::Position;
+    let reading = read_position(master, identity.geometry);
+    match tolerated(master, reading)? {
+        Ok(reading) => {
+            let mut findings = vec![match reading.position {
+                Some(position) => Finding::Position(position),
+                None => Finding::RawPosition(reading.raw),
+            }];
+            findings.extend(found(&reading.codes));
+            let verdict = if reading.valid { verdict(&reading.codes) } else { Verdict::Bad };
+            Ok(Line { step, verdict, findings })
+        }
+        Err(Error::Rejected { codes, .. }) => Ok(Line { step, verdict: Verdict::Bad, findings: found(&codes) }),
+        Err(why) => Ok(Line { step, verdict: Verdict::Bad, findings: vec![Finding::Unreadable(why)] }),
+    }
+}
+
+/// The limits of the extended label, as far as their channels answer.
+fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<Line>, Error> {
+    let Some(label) = identity.extended() else { return Ok(None) };
+    let mut findings = Vec::new();
+    let mut worst = Verdict::Good;
+    for (channel, limit) in label.limits() {
+        let value = read_analogue(master, channel);
+        match tolerated(master, value)? {
+            Ok(value) => {
+                if value > limit {
+                    worst = worst.max(Verdict::Attention);
+                }
+                findings.push(Finding::Limit { channel, value, limit });
+            }
+            // The encoder does not have the channel.
+            Err(Error::Rejected { .. }) => {}
+            Err(why) => {
+                worst = Verdict::Bad;
+                findings.push(Finding::Unreadable(why));
+            }
+        }
+    }
+    Ok((!findings.is_empty()).then_some(Line { step: Step::Limits, verdict: worst, findings }))
+}
+
+fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Error> {
+    let mut findings = Vec::new();
+    let mut verdict = Verdict::Good;
+    for number in 0..identity.memory.map_or(0, |memory| memory.fields) {
+        match try_read_field(master, number)? {
+            Ok(field) if field.bytes.is_some() => findings.push(Finding::Field { number, status: field.status }),
+            Ok(field) => {
+                findings.push(Finding::FieldLocked { number, status: field.status });
+                verdict = verdict.max(Verdict::Attention);
+            }
+            Err(UnreadableField { why: Error::Rejected { codes, .. }, .. }) => {
+                findings.push(Finding::FieldRefused { number, codes });
+                verdict = Verdict::Bad;
+            }
+            Err(UnreadableField { why, .. }) => {
+                findings.push(Finding::FieldUnreadable { number, why });
+                verdict = Verdict::Bad;
+            }
+        }
+    }
+    Ok(Line { step: Step::DataFields, verdict, findings })
+}
+
+/// A line on which something had to be repeated works, and somebody should look at its wiring.
+fn check_line(master: &mut Master<'_>) -> Line {
+    let quality = master.station().line.quality.clone();
+    let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };
+    Line { step: Step::Line, verdict, findings: vec![Finding::Line(quality)] }
+}
+
+fn verdict(codes: &[StatusCode]) -> Verdict {
+    if codes.is_empty() {
+        Verdict::Good
+    } else if codes.iter().all(|code| code.is_warning()) {
+        Verdict::Attention
+    } else {
+        Verdict::Bad
+    }
+}
+
+fn found(codes: &[StatusCode]) -> Vec<Finding> {
+    codes.iter().copied().map(Finding::Code).collect()
+}

@@ -1,0 +1,183 @@
+//! What can go wrong with an encoder, with the facts a person needs.
+
+use crate::device::line::LineError;
+use crate::devices::hiperface::protocol::{CodeNumber, Command, ReplyError, StatusCode};
+use crate::link::LinkError;
+
+/// A procedure that ended early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The wire.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// Nothing came back.
+    #[error("no reply from address {address:02X}h to {} ({tries} tries)", command.row().name)]
+    NoReply {
+        /// Who was asked.
+        address: u8,
+        /// What was asked.
+        command: Command,
+        /// How often.
+        tries: u32,
+        /// Our own bytes came back: the adapter echoes, so the line itself works.
+        echo_heard: bool,
+    },
+    /// Something came back and was broken every time.
+    #[error("damaged reply to {} ({tries} tries): {cause}", command.row().name)]
+    Damaged {
+        /// What was asked.
+        command: Command,
+        /// How often.
+        tries: u32,
+        /// What was wrong with the last one.
+        cause: Damage,
+    },
+    /// Bytes keep arriving where there should be silence.
+    #[error("the line is never silent")]
+    NeverSilent,
+    /// The encoder refused.
+    #[error("{} was refused: {}", command.row().name, list(codes))]
+    Rejected {
+        /// What was asked.
+        command: Command,
+        /// Why.
+        codes: Vec<StatusCode>,
+    },
+    /// Whether a change was carried out is not known: the encoder can no longer be asked.
+    #[error("whether {} was carried out is not known: {cause}", command.row().name)]
+    Unclear {
+        /// What was sent.
+        command: Command,
+        /// Why it cannot be read back.
+        cause: Box<Error>,
+    },
+    /// The user wished an end.
+    #[error("cancelled")]
+    Cancelled,
+    /// The shaft turns where it must stand still.
+    #[error("the shaft moves: {readings:?}")]
+    Moving {
+        /// The positions read one after the other.
+        readings: Vec<u32>,
+    },
+    /// 63h is for encoders without bearing.
+    #[error("{encoder} is not a kit encoder")]
+    NotAKit {
+        /// Its name.
+        encoder: String,
+    },
+    /// Somebody answers at the address that an encoder is to get.
+    #[error("address {address:02X}h belongs to another encoder")]
+    AddressTaken {
+        /// The address.
+        address: u8,
+    },
+    /// The position asked for is beyond the measuring range.
+    #[error("position {wanted} is outside 0…{last}")]
+    PositionRange {
+        /// What was wished.
+        wanted: u64,
+        /// The greatest position.
+        last: u64,
+    },
+    /// Bytes beyond the end of a data field.
+    #[error("data field {field} has bytes 0…{}, not {address}…{}", size.saturating_sub(1), (address + count).saturating_sub(1))]
+    OutOfField {
+        /// The field.
+        field: u8,
+        /// First byte asked for.
+        address: usize,
+        /// Bytes asked for.
+        count: usize,
+        /// Bytes there are.
+        size: usize,
+    },
+    /// A field cannot be read because its access code is another.
+    #[error("the access code {number} is not known")]
+    CodeUnknown {
+        /// The field.
+        field: u8,
+        /// Which code guards it.
+        number: CodeNumber,
+    },
+    /// What was read changed between the plan and its execution.
+    #[error("{item} has changed since the plan was made")]
+    Changed {
+        /// What changed.
+        item: String,
+    },
+    /// What was read back is not what was written.
+    #[error("{item} reads {got} after writing {expected}")]
+    NotVerified {
+        /// What was written.
+        item: String,
+        /// As it should be.
+        expected: String,
+        /// As it is.
+        got: String,
+    },
+    /// The encoder answers, and not as the reference says; with what it did.
+    #[error("{0}")]
+    Unexpected(String),
+}
+
+/// What was wrong with a reply.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Damage {
+    /// The reply itself.
+    #[error(transparent)]
+    Reply(#[from] ReplyError),
+    /// The reply to a request with an access code; which bytes it has is not told, they may be our own.
+    #[error("a broken frame")]
+    Unreadable,
+    /// More bytes than a reply has.
+    #[error("more bytes than the reply has")]
+    Trailing,
+    /// It began after the time it had.
+    #[error("the reply came late")]
+    Late,
+    /// Our own bytes came back changed.
+    #[error("our own bytes came back changed")]
+    Echo,
+    /// The encoder heard a damaged request.
+    #[error("the encoder reports: {0}")]
+    AtEncoder(StatusCode),
+    /// Two readings in a row of the same thing differ.
+    #[error("two readings differ")]
+    Inconsistent,
+}
+
+impl From<LineError> for Error {
+    fn from(error: LineError) -> Self {
+        match error {
+            LineError::Cancelled => Error::Cancelled,
+            LineError::NeverSilent => Error::NeverSilent,
+            LineError::Link(error) => Error::Link(error),
+        }
+    }
+}
+
+impl Error {
+    /// The device can no longer be reached: trying anything else makes no sense.
+    pub fn is_lost(&self) -> bool {
+        match self {
+            Error::Link(_) | Error::NoReply { .. } => true,
+            Error::Unclear { cause, .. } => cause.is_lost(),
+            _ => false,
+        }
+    }
+
+    /// The encoder is there and has no position to give at the moment.
+    pub fn means_no_position(&self) -> bool {
+        matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
+    }
+
+    /// The encoder refused with this code.
+    pub fn is_rejection(&self, code: StatusCode) -> bool {
+        matches!(self, Error::Rejected { codes, .. } if codes.contains(&code))
+    }
+}
+
+fn list(codes: &[StatusCode]) -> String {
+    codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}

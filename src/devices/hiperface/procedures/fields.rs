@@ -1,0 +1,189 @@
+//! Reading data fields (4Ch, 4Ah). Long transfers are halved when the line damages them.
+
+use super::error::Damage;
+use super::identify::read_type_label;
+use super::master::Trouble;
+use super::{Error, Master};
+use crate::devices::hiperface::profile::FieldImage;
+use crate::devices::hiperface::protocol::{AccessCode, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode};
+
+/// Fewest bytes in a transfer: below that the frame is mostly head.
+const LEAST_TRANSFER: usize = 4;
+
+/// Reads the status byte of a field.
+///
+/// # Errors
+/// The line, or a refusal: there is no such field.
+pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
+    match master.ask_confirmed(&Request::FieldStatus { field })? {
+        Reply::FieldStatus(status) => Ok(status),
+        other => Err(Error::Unexpected(format!("field status: {other:?}"))),
+    }
+}
+
+/// Reads a field whole. With a wrong access code the field is given without bytes.
+///
+/// # Errors
+/// The line, or a refusal for another reason.
+pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Error> {
+    let status = read_field_status(master, number)?;
+    let code = master.station().codes.get(status.code());
+    match read_range(master, number, 0, status.size().bytes(), code) {
+        Ok(bytes) => Ok(FieldImage { number, status, bytes: Some(bytes) }),
+        Err(error) if error.is_rejection(StatusCode::WRONG_CODE) => Ok(FieldImage { number, status, bytes: None }),
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads all fields, the extended label excepted; `progress` hears how many of how many are done.
+///
+/// # Errors
+/// As [`read_field`].
+pub fn read_all_fields(
+    master: &mut Master<'_>,
+    count: u8,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<FieldImage>, Error> {
+    let mut fields = Vec::new();
+    for number in 0..count {
+        progress(u64::from(number), u64::from(count));
+        fields.push(read_field(master, number)?);
+    }
+    Ok(fields)
+}
+
+/// A data field that could not be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnreadableField {
+    /// Its number.
+    pub number: u8,
+    /// Its status, where that could be read.
+    pub status: Option<DataFieldStatus>,
+    /// Why.
+    pub why: Error,
+}
+
+/// Reads a field, or says why it cannot be read, as long as the encoder answers to anything else.
+///
+/// # Errors
+/// The encoder does not answer any more, or the user's wish.
+pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<FieldImage, UnreadableField>, Error> {
+    let status = read_field_status(master, number);
+    let status = match tolerated(master, status)? {
+        Ok(status) => status,
+        Err(why) => return Ok(Err(UnreadableField { number, status: None, why })),
+    };
+    let field = read_field(master, number);
+    Ok(tolerated(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
+}
+
+/// What could not be read, as long as the encoder answers to another request.
+///
+/// # Errors
+/// It does not, or the user's wish.
+pub(super) fn tolerated<T>(master: &mut Master<'_>, result: Result<T, Error>) -> Result<Result<T, Error>, Error> {
+    match result {
+        Ok(value) => Ok(Ok(value)),
+        Err(error @ Error::Rejected { .. }) => Ok(Err(error)),
+        Err(error @ (Error::Damaged { .. } | Error::NoReply { .. })) => match read_type_label(master) {
+            Ok(_) => Ok(Err(error)),
+            Err(Error::Cancelled) => Err(Error::Cancelled),
+            Err(_) => Err(error),
+        },
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads `count` bytes of a field from `address`, in transfers of at most 128 bytes.
+///
+/// A transfer that fails is halved for the next try; after five failures in a row without a success in between the
+/// reading fails. On a line that has damaged something before, each transfer has to give the same bytes twice: an XOR
+/// lets some pairs of flipped bits through.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_range(
+    master: &mut Master<'_>,
+    field: u8,
+    address: usize,
+    count: usize,
+    code: AccessCode,
+) -> Result<Vec<u8>, Error> {
+    if count == 1 {
+        return read_byte(master, field, address, code);
+    }
+    let mut bytes = Vec::with_capacity(count);
+    // What came once and has to come again.
+    let mut first: Option<Vec<u8>> = None;
+    let mut failures = 0;
+    let mut in_a_row = 0;
+    while bytes.len() < count {
+        if bytes.len() + 1 == count {
+            bytes.extend(read_byte(master, field, address + bytes.len(), code)?);
+            break;
+        }
+        let chunk = first.as_ref().map_or(master.station().chunk.min(count - bytes.len()), Vec::len);
+        let request = transfer(field, address + bytes.len(), chunk, code)?;
+        let trouble = match (read_once(master, &request)?, first.take()) {
+            (Ok(again), Some(before)) if again != before => {
+                first = Some(again);
+                Trouble::Damage(Damage::Inconsistent)
+            }
+            (Ok(once), None) if master.station().reads_twice() => {
+                first = Some(once);
+                failures = 0;
+                continue;
+            }
+            (Ok(more), _) => {
+                bytes.extend(more);
+                failures = 0;
+                in_a_row += 1;
+                let station = master.station();
+                if in_a_row >= 4 && station.chunk < MAX_TRANSFER {
+                    station.chunk *= 2;
+                    in_a_row = 0;
+                }
+                continue;
+            }
+            (Err(trouble), before) => {
+                first = before;
+                trouble
+            }
+        };
+        failures += 1;
+        in_a_row = 0;
+        master.may_try_again(&request, failures, trouble)?;
+        let station = master.station();
+        station.chunk = (station.chunk.min(chunk) / 2).max(LEAST_TRANSFER);
+        if let Some(first) = &mut first {
+            first.truncate(station.chunk);
+        }
+    }
+    Ok(bytes)
+}
+
+/// One byte, with a neighbour: the reply to a transfer of one byte can equal its request, access code and all, so that an
+/// adapter's echo would pass for it. A field has sixteen bytes at least.
+fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
+    let start = address.saturating_sub(1);
+    let pair = read_range(master, field, start, 2, code)?;
+    Ok(pair.into_iter().skip(address - start).take(1).collect())
+}
+
+fn transfer(field: u8, address: usize, count: usize, code: AccessCode) -> Result<Request, Error> {
+    match (u8::try_from(address), u8::try_from(count)) {
+        (Ok(address), Ok(count)) => Ok(Request::ReadData { field, address, count, code }),
+        _ => Err(Error::OutOfField { field, address, count, size: MAX_TRANSFER }),
+    }
+}
+
+fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, Trouble>, Error> {
+    let answered = match master.attempt(request)? {
+        Ok(answered) => answered,
+        Err(trouble) => return Ok(Err(trouble)),
+    };
+    match master.settle(request, answered)?.reply {
+        Reply::Data(bytes) => Ok(Ok(bytes)),
+        other => Err(Error::Unexpected(format!("data: {other:?}"))),
+    }
+}

@@ -1,0 +1,216 @@
+//! Finding encoders whose settings nobody remembers.
+//!
+//! It listens a second before its first byte: foreign traffic means a running machine, and then it only listens. It
+//! probes with 52h, never with 50h, which would take codes out of an encoder's queue. Broadcast comes last and only when
+//! the user says that one encoder is connected, because several would answer at once.
+
+use std::fmt;
+use std::time::Duration;
+
+use super::master::Trouble;
+use super::{Error, Master};
+use crate::devices::hiperface::protocol::{Answer, BAUDS, BROADCAST, DeviceAddress, Reply, Request, Timing, TypeLabel};
+use crate::units::{Baud, CharacterFormat, Parity};
+
+/// How long to listen for a running machine.
+pub const LISTEN: Duration = Duration::from_secs(1);
+
+/// What to try.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FindOptions {
+    /// The user says that exactly one encoder is connected: broadcast may be used where no address answers.
+    pub one_encoder: bool,
+    /// The user will switch the encoder's supply off and on: wait so long for it and use the default window.
+    pub power_cycle: Option<Duration>,
+}
+
+/// An encoder that answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// Its address.
+    pub address: u8,
+    /// How it was talked to.
+    pub format: CharacterFormat,
+    /// Its type label, with the settings it has stored.
+    pub label: TypeLabel,
+}
+
+/// One try, for whoever watches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Attempt {
+    /// Listening for foreign traffic.
+    Listening,
+    /// Waiting for the supply to come back.
+    DefaultWindow,
+    /// Asking an address, or FFh.
+    Probing {
+        /// Whom.
+        address: u8,
+        /// How.
+        format: CharacterFormat,
+    },
+}
+
+impl fmt::Display for Attempt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Attempt::Listening => f.write_str("listening"),
+            Attempt::DefaultWindow => f.write_str("waiting for power-on"),
+            Attempt::Probing { address, format } => write!(f, "{address:02X}h at {format}"),
+        }
+    }
+}
+
+/// What a search tells while it goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum News<'a> {
+    /// The next try.
+    Trying {
+        /// Tries done.
+        done: u64,
+        /// Tries in all.
+        total: u64,
+        /// This one.
+        attempt: &'a Attempt,
+    },
+    /// An encoder that answered, once for each.
+    Found(&'a Found),
+}
+
+/// How a search ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Findings {
+    /// Somebody else talks on this line: nothing was sent.
+    ForeignTraffic {
+        /// Bytes heard in the time of listening.
+        bytes: usize,
+    },
+    /// The line was searched.
+    Searched {
+        /// All that answered, in the order in which they did; maybe none.
+        found: Vec<Found>,
+        /// Everything was tried; else the user wished an end before.
+        complete: bool,
+    },
+}
+
+/// Searches all speeds, parities and addresses; through a link that has no speed of its own, all addresses. Afterwards our
+/// side is set as it was before. A wish to end ends the search with what answered until then.
+///
+/// # Errors
+/// The wire.
+pub fn find(
+    master: &mut Master<'_>,
+    options: &FindOptions,
+    watch: &mut dyn FnMut(News<'_>),
+) -> Result<Findings, Error> {
+    let before = (master.station().address, master.station().format);
+    let mut search = Search { found: Vec::new(), watch };
+    let result = search.run(master, options);
+    master.shielded(|master| {
+        master.station().address = before.0;
+        master.set_format(before.1)
+    })?;
+    match result {
+        Ok(Some(bytes)) => Ok(Findings::ForeignTraffic { bytes }),
+        Ok(None) => Ok(Findings::Searched { found: search.found, complete: true }),
+        Err(Error::Cancelled) => Ok(Findings::Searched { found: search.found, complete: false }),
+        Err(error) => Err(error),
+    }
+}
+
+struct Search<'a> {
+    found: Vec<Found>,
+    watch: &'a mut dyn FnMut(News<'_>),
+}
+
+impl Search<'_> {
+    /// Gives the number of bytes that somebody else sent, where nothing was searched because of them.
+    fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
+        // Through a device server every format would be the same one, and each would be found.
+        let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
+        let per_format = 32 + u64::from(options.one_encoder);
+        let total = 1 + per_format * formats.len() as u64;
+        self.tell(0, total, &Attempt::Listening);
+        let heard = master.overhear(LISTEN)?;
+        if !heard.is_empty() {
+            return Ok(Some(heard.len()));
+        }
+        if let Some(patience) = options.power_cycle {
+            self.tell(0, total, &Attempt::DefaultWindow);
+            let hit = catch_default_window(master, patience, options.one_encoder)?;
+            self.add(hit);
+        }
+        let mut done = 1;
+        for format in formats {
+            master.set_format(format)?;
+            let found_before = self.found.len();
+            let broadcast = options.one_encoder.then_some(BROADCAST);
+            for address in DeviceAddress::all().map(DeviceAddress::byte).chain(broadcast) {
+                self.tell(done, total, &Attempt::Probing { address, format });
+                done += 1;
+                if address == BROADCAST && self.found.len() > found_before {
+                    continue;
+                }
+                let hit = probe(master, address, format)?;
+                self.add(hit);
+            }
+        }
+        Ok(None)
+    }
+
+    fn tell(&mut self, done: u64, total: u64, attempt: &Attempt) {
+        (self.watch)(News::Trying { done, total, attempt });
+    }
+
+    fn add(&mut self, hit: Option<Found>) {
+        if let Some(hit) = hit.filter(|hit| !self.found.contains(hit)) {
+            (self.watch)(News::Found(&hit));
+            self.found.push(hit);
+        }
+    }
+}
+
+/// The likely first: 9600 with each parity, then the other speeds.
+fn formats() -> Vec<CharacterFormat> {
+    let rest = BAUDS.into_iter().rev().filter(|baud| *baud != Baud::B9600);
+    std::iter::once(Baud::B9600)
+        .chain(rest)
+        .flat_map(|baud| Parity::ALL.map(|parity| CharacterFormat { baud, parity }))
+        .collect()
+}
+
+/// Asks every tenth of a second at factory settings until an encoder that has just been switched on answers.
+fn catch_default_window(master: &mut Master<'_>, patience: Duration, broadcast: bool) -> Result<Option<Found>, Error> {
+    master.set_format(CharacterFormat::FACTORY)?;
+    let address = if broadcast { BROADCAST } else { master.station().address };
+    let end = master.now() + patience;
+    while master.now() < end {
+        if let Some(found) = probe(master, address, CharacterFormat::FACTORY)? {
+            return Ok(Some(found));
+        }
+        master.wait(Timing::INITIALISATION)?;
+    }
+    Ok(None)
+}
+
+/// One question without repetition. A broken reply is asked for once more: something is there.
+fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<Found>, Error> {
+    master.station().address = address;
+    for _ in 0..2 {
+        match master.attempt(&Request::ReadTypeLabel)? {
+            Ok(answered) => {
+                let sender = answered.sender;
+                return Ok(match answered.answer {
+                    Answer::Reply { reply: Reply::TypeLabel(label), .. } => {
+                        Some(Found { address: sender, format, label })
+                    }
+                    _ => None,
+                });
+            }
+            Err(Trouble::Silence { .. }) => return Ok(None),
+            Err(Trouble::Damage(_)) => {}
+        }
+    }
+    Ok(None)
+}

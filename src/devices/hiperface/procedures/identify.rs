@@ -1,0 +1,166 @@
+//! Who is there, and what does it report.
+
+use super::{Error, Master, read_range};
+use crate::devices::hiperface::profile::HiperfaceProfile;
+use crate::devices::hiperface::protocol::{
+    CodeNumber, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, LineSettings, Reply, Request,
+    SerialLabel, StatusCode, TypeLabel,
+};
+
+/// An encoder as it presents itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identity {
+    /// The address it answers with.
+    pub address: u8,
+    /// Reply to 52h.
+    pub label: TypeLabel,
+    /// Reply to 56h; empty texts where the encoder does not have the command.
+    pub serial: SerialLabel,
+    /// Reply to 4Eh; `None` where the encoder does not have the command.
+    pub memory: Option<FreeMemory>,
+    /// Family, or the designation of the extended label.
+    pub name: String,
+    /// Periods and turns: as the user gave them, from the extended label, or from the table of types.
+    pub geometry: Option<Geometry>,
+    /// Without bearing: its tracks are synchronised with 63h. `None` where nobody says.
+    pub kit: Option<bool>,
+    /// The content of data field FFh where the encoder has it.
+    pub extended_label: Option<Vec<u8>>,
+}
+
+impl Identity {
+    /// The extended label, read.
+    pub fn extended(&self) -> Option<ExtendedLabel> {
+        self.extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok())
+    }
+}
+
+/// The encoder as a profile remembers it: memory that is free is not recorded.
+pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
+    let own = &profile.identity;
+    let label = TypeLabel {
+        settings: profile.interface.settings,
+        encoder_type: own.encoder_type,
+        eeprom_units: u8::try_from(own.eeprom_bytes / 16).unwrap_or(u8::MAX),
+        options: own.options,
+    };
+    let serial = SerialLabel {
+        serial_number: own.serial_number.clone(),
+        firmware_version: own.firmware_version.clone(),
+        firmware_date: own.firmware_date.clone(),
+    };
+    let extended = own.extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok());
+    let row = types.find(own.encoder_type);
+    Identity {
+        address: profile.interface.address,
+        label,
+        serial,
+        memory: None,
+        name: own.encoder_name.clone(),
+        geometry: extended.and_then(|label| label.geometry).or_else(|| row.and_then(|row| row.geometry)),
+        kit: row.filter(|_| own.encoder_type != TypeLabel::EXTENDED).map(|row| row.kit),
+        extended_label: own.extended_label.clone(),
+    }
+}
+
+/// Reads type label, serial number, memory and, where the type byte is FFh, the extended label.
+///
+/// # Errors
+/// The line, or a refusal of anything but 56h and 4Eh, which some types do not have.
+pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
+    let label = read_type_label(master)?;
+    let serial = read_serial(master)?;
+    let memory = match have(master.ask_confirmed(&Request::FreeMemory))? {
+        Some(Reply::FreeMemory(memory)) => Some(memory),
+        _ => None,
+    };
+    let extended_label = match label.encoder_type {
+        TypeLabel::EXTENDED => have(read_extended_label(master))?,
+        _ => None,
+    };
+    let extended = extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok());
+    let row = types.find(label.encoder_type);
+    let name = match (&extended, row) {
+        (Some(extended), _) if !extended.designation.is_empty() => extended.designation.clone(),
+        (_, Some(row)) => row.name.clone(),
+        (_, None) => "unknown type".to_owned(),
+    };
+    let geometry = master.station().geometry;
+    let geometry =
+        geometry.or_else(|| extended.and_then(|label| label.geometry)).or_else(|| row.and_then(|row| row.geometry));
+    let kit = row.filter(|_| label.encoder_type != TypeLabel::EXTENDED).map(|row| row.kit);
+    let address = read_address(master)?;
+    Ok(Identity { address, label, serial, memory, name, geometry, kit, extended_label })
+}
+
+/// Reads the type label.
+///
+/// # Errors
+/// The line, or a refusal.
+pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Error> {
+    match master.ask_confirmed(&Request::ReadTypeLabel)? {
+        Reply::TypeLabel(label) => Ok(label),
+        other => Err(Error::Unexpected(format!("type label: {other:?}"))),
+    }
+}
+
+/// Reads serial number and firmware; empty texts where the encoder does not have the command.
+///
+/// # Errors
+/// The line, or a refusal.
+pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error> {
+    Ok(match have(master.ask_confirmed(&Request::ReadSerial))? {
+        Some(Reply::Serial(serial)) => serial,
+        _ => {
+            SerialLabel { serial_number: String::new(), firmware_version: String::new(), firmware_date: String::new() }
+        }
+    })
+}
+
+/// Reads the stored interface settings.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
+    Ok(read_type_label(master)?.settings)
+}
+
+/// Asks who answers at the session's address: after a broadcast that is the encoder's own.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
+    master.ask_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
+}
+
+/// Reads data field FFh whole: 4Ch for its size, then 4Ah with code 0.
+///
+/// # Errors
+/// The line, or a refusal: the encoder has no extended label.
+pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
+    let status = super::read_field_status(master, EXTENDED_LABEL_FIELD)?;
+    let code = master.station().codes.get(CodeNumber::ZERO);
+    read_range(master, EXTENDED_LABEL_FIELD, 0, status.size().bytes(), code)
+}
+
+/// Reads the whole error queue; every code is kept, in the encoder's order.
+///
+/// # Errors
+/// The line.
+pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
+    master.collect_codes()?;
+    Ok(master.station().take_codes())
+}
+
+/// `None` for a command that the encoder does not have.
+fn have<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(error)
+            if error.is_rejection(StatusCode::UNKNOWN_COMMAND) || error.is_rejection(StatusCode::NO_SUCH_FIELD) =>
+        {
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}

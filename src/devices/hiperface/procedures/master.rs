@@ -1,0 +1,232 @@
+//! The host's side of the line: what is asked again, what is read back, and which codes are collected on the way. One
+//! exchange is in [`exchange`].
+//!
+//! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
+
+mod codes;
+mod exchange;
+
+use std::time::Duration;
+
+use super::error::Damage;
+use super::{Error, Station};
+use crate::device::line::{Line, TRIES};
+use crate::devices::hiperface::protocol::{Answer, Command, Reply, Request};
+use crate::link::Ctx;
+use crate::units::Moment;
+pub(super) use exchange::{Answered, Trouble};
+
+/// The host's side of a HIPERFACE line.
+pub struct Master<'a> {
+    line: Line<'a>,
+    station: &'a mut Station,
+}
+
+/// A reply and when it began.
+pub(super) struct Timed {
+    pub(super) reply: Reply,
+    /// The falling edge of the start bit of the reply's address.
+    pub(super) at: Moment,
+    /// The address it came from.
+    pub(super) sender: u8,
+}
+
+impl<'a> Master<'a> {
+    /// A master on this line, for one job: it has its patience before it.
+    pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        station.line.begin_job();
+        Master { line: Line::new(ctx), station }
+    }
+
+    /// What is known about the line.
+    pub fn station(&mut self) -> &mut Station {
+        self.station
+    }
+
+    /// Now.
+    pub fn now(&self) -> Moment {
+        self.line.now()
+    }
+
+    /// Does what leads back to a safe state: in it, a wish to end is not heard.
+    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.shield(true);
+        let result = work(self);
+        self.line.shield(before);
+        result
+    }
+
+    /// Waits; ends early when the user wishes.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        Ok(self.line.wait(duration)?)
+    }
+
+    /// Listens without sending; gives back what it heard.
+    ///
+    /// # Errors
+    /// The wire, or [`Error::Cancelled`].
+    pub fn overhear(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
+        Ok(self.line.overhear(duration)?)
+    }
+
+    /// Sets speed and parity of our side.
+    ///
+    /// # Errors
+    /// The wire.
+    pub fn set_format(&mut self, format: crate::units::CharacterFormat) -> Result<(), Error> {
+        self.line.ctx.wire.set_format(format)?;
+        self.station.format = format;
+        Ok(())
+    }
+
+    /// Whether speed and parity of our side can be set; else they are the business of somebody behind the link.
+    pub fn sets_format(&self) -> bool {
+        self.line.ctx.wire.sets_format()
+    }
+
+    /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
+    ///
+    /// # Errors
+    /// When every try failed, when the encoder refused, or when the user wished an end.
+    pub(super) fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
+        self.ask_timed(request).map(|timed| timed.reply)
+    }
+
+    /// Does what reads something that is to be kept: in it, every answer has to come twice.
+    pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.station.thorough, true);
+        let result = work(self);
+        self.station.thorough = before;
+        result
+    }
+
+    /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
+    ///
+    /// # Errors
+    /// As [`ask`](Self::ask).
+    pub(super) fn ask_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
+        let mut reply = self.ask(request)?;
+        for _ in 0..TRIES {
+            if !self.station.reads_twice() {
+                return Ok(reply);
+            }
+            let again = self.ask(request)?;
+            if again == reply {
+                return Ok(reply);
+            }
+            self.station.line.quality.damaged += 1;
+            reply = again;
+        }
+        Err(Error::Damaged { command: request.command(), tries: TRIES, cause: Damage::Inconsistent })
+    }
+
+    pub(super) fn ask_timed(&mut self, request: &Request) -> Result<Timed, Error> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            match self.attempt(request)? {
+                Ok(answer) => return self.settle(request, answer),
+                Err(trouble) => self.may_try_again(request, tries, trouble)?,
+            }
+        }
+    }
+
+    /// Sends something that changes the encoder. Where it is unclear whether it was carried out, `is_done` reads back;
+    /// only when it was not, it is sent again. Gives back how often it may have been carried out.
+    ///
+    /// # Errors
+    /// The encoder refused, `is_done` could not tell ([`Error::Unclear`]), or it was not done after five tries.
+    pub(super) fn tell(
+        &mut self,
+        request: &Request,
+        mut is_done: impl FnMut(&mut Self) -> Result<bool, Error>,
+    ) -> Result<u32, Error> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            let trouble = match self.attempt(request)? {
+                Ok(answer) => return self.acknowledge(request, answer).map(|()| tries),
+                Err(trouble) => trouble,
+            };
+            let failure = self.may_try_again(request, tries, trouble);
+            let unclear = |cause| Error::Unclear { command: request.command(), cause: Box::new(cause) };
+            // From here on the line has to tell what happened, also when the user wishes an end.
+            match self.shielded(&mut is_done) {
+                Ok(true) => return Ok(tries),
+                Ok(false) => failure?,
+                Err(cause) => return Err(unclear(cause)),
+            }
+        }
+    }
+
+    /// Sends a request that has no reply.
+    ///
+    /// # Errors
+    /// The wire, or [`Error::Cancelled`].
+    pub(super) fn tell_all(&mut self, request: &Request) -> Result<(), Error> {
+        self.begin()?;
+        let frame = request.emit(self.station.address);
+        let sent_at = self.now();
+        self.send(&frame, sent_at)?;
+        let timing = self.station.timing();
+        let end = sent_at + timing.characters(frame.bytes().len()) + timing.timeout;
+        let mut echo = Vec::new();
+        while self.now() < end {
+            self.line.receive(end, &mut echo)?;
+        }
+        self.station.line.quiet_until = self.now();
+        Ok(())
+    }
+
+    /// What is right about a broken line before the next try; an error when there is to be none.
+    pub(super) fn may_try_again(&mut self, request: &Request, tries: u32, trouble: Trouble) -> Result<(), Error> {
+        let quality = &mut self.station.line.quality;
+        match &trouble {
+            Trouble::Silence { .. } => quality.silent += 1,
+            Trouble::Damage(Damage::Late) => quality.late += 1,
+            Trouble::Damage(_) => quality.damaged += 1,
+        }
+        let longest = self.station.timing().worst_case(request) + self.station.line.margin;
+        if self.line.may_ask_again(&mut self.station.line, tries, longest) {
+            if matches!(trouble, Trouble::Silence { .. }) {
+                let quiet = self.quiet();
+                self.line.hear_late(&mut self.station.line, tries, quiet)?;
+            }
+            return Ok(());
+        }
+        let command = request.command();
+        Err(match trouble {
+            Trouble::Silence { echo_heard } => {
+                Error::NoReply { address: self.station.address, command, tries, echo_heard }
+            }
+            Trouble::Damage(cause) => Error::Damaged { command, tries, cause },
+        })
+    }
+
+    /// Reads the codes that an answer announces, and tells a refusal from a reply.
+    pub(super) fn settle(&mut self, request: &Request, answered: Answered) -> Result<Timed, Error> {
+        self.station.line.recovered();
+        let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
+        if *pending && request.command() != Command::ReadStatus {
+            self.collect_codes()?;
+        }
+        match answered.answer {
+            Answer::Reply { reply, .. } => Ok(Timed { reply, at: answered.at, sender: answered.sender }),
+            Answer::Rejected { codes, .. } => Err(Error::Rejected { command: request.command(), codes }),
+        }
+    }
+
+    /// As [`settle`](Self::settle), for what changes the encoder. Codes that a reply announces are left to the next
+    /// exchange, which announces them again: no wish to end comes between a change and its being counted, and after 55h
+    /// and 67h the encoder is no longer to be found where it was asked.
+    pub(super) fn acknowledge(&mut self, request: &Request, answered: Answered) -> Result<(), Error> {
+        if matches!(answered.answer, Answer::Reply { .. }) {
+            self.station.line.recovered();
+            return Ok(());
+        }
+        self.shielded(|master| master.settle(request, answered)).map(drop)
+    }
+}

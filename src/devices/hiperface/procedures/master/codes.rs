@@ -1,0 +1,132 @@
+//! The queue of status codes. 50h takes a code out of the encoder, so that a reply to it that is lost may have been one: a
+//! reply that comes late is taken all the same, and what may have been lost is counted.
+
+use super::Master;
+use crate::devices::hiperface::procedures::Error;
+use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
+
+/// Codes in an encoder's queue at most, and one more to see its end.
+const MOST_CODES: usize = 5;
+/// Replies that bring nothing new, until the queue is left as it is.
+const MOST_REPEATED: u32 = 5;
+/// Bytes of a reply to 50h: address, command, one to four codes, checksum.
+const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
+
+/// A reply to 50h: its codes, and whether more wait behind them.
+type Codes = (Vec<StatusCode>, bool);
+
+impl Master<'_> {
+    /// Reads the whole queue into the station: 50h until the error bit is gone.
+    ///
+    /// # Errors
+    /// When every try failed, or when the user wished an end. Codes that came until then are in the station, and what may
+    /// have been lost is counted there.
+    pub(in super::super) fn collect_codes(&mut self) -> Result<(), Error> {
+        let (mut seen, mut repeated) = (Vec::new(), 0);
+        while seen.len() < MOST_CODES && repeated < MOST_REPEATED {
+            let before = seen.len();
+            if !self.next_codes(&mut seen)? {
+                break;
+            }
+            repeated += u32::from(seen.len() == before);
+        }
+        if repeated == MOST_REPEATED {
+            // No old reply comes so often: the encoder announces the same again as soon as it is read.
+            self.station.codes_unheard = self.station.codes_unheard.saturating_sub(repeated);
+        }
+        Ok(())
+    }
+
+    /// Takes the next codes out of the queue; true where more wait behind them. `seen`: the codes of each reply so far.
+    fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
+        self.learn_echo()?;
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            self.line.keep_passed();
+            let sent = self.station.line.quality.requests;
+            let attempt = self.attempt(&Request::ReadStatus);
+            // A wish to end is heard before it is sent, and so is a line that is never silent.
+            if self.station.line.quality.requests > sent {
+                self.station.codes_unheard += 1;
+            }
+            let (answered, ended) = match attempt? {
+                Ok(answered) => {
+                    // Behind a repetition, the replies to the tries before it may still come.
+                    let ended = if tries > 1 { self.hear_late(tries) } else { Ok(()) };
+                    (Some(codes(answered.answer)), ended)
+                }
+                Err(trouble) => (None, self.may_try_again(&Request::ReadStatus, tries, trouble)),
+            };
+            let passed = self.line.take_passed();
+            let late = self.replies_in(&passed);
+            self.station.line.quality.late += late.len() as u64;
+            let mut pending = None;
+            for (codes, more) in answered.into_iter().chain(late) {
+                pending = Some(more);
+                self.meet_reply(codes, seen);
+            }
+            match pending {
+                Some(pending) => {
+                    self.station.line.recovered();
+                    return Ok(pending);
+                }
+                None => ended?,
+            }
+        }
+    }
+
+    /// Takes in a reply to 50h. One that came before in the same queue may be an old one that came again: what it says is
+    /// known, and the reply to the request that it came for may be missing.
+    fn meet_reply(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
+        if seen.contains(&codes) {
+            return;
+        }
+        self.station.codes_unheard = self.station.codes_unheard.saturating_sub(1);
+        self.station.meet_codes(codes.iter().copied());
+        seen.push(codes);
+    }
+
+    fn hear_late(&mut self, tries: u32) -> Result<(), Error> {
+        let quiet = self.quiet();
+        Ok(self.line.hear_late(&mut self.station.line, tries, quiet)?)
+    }
+
+    /// The replies to 50h among bytes that were let pass.
+    fn replies_in(&self, bytes: &[u8]) -> Vec<Codes> {
+        let (mut rest, mut found) = (bytes, Vec::new());
+        while let [_, behind @ ..] = rest {
+            rest = match self.reply_at(rest) {
+                Some((codes, behind)) => {
+                    found.push(codes);
+                    behind
+                }
+                None => behind,
+            };
+        }
+        found
+    }
+
+    /// The reply to 50h that bytes begin with, and what is behind it. The checksum fits the first bytes of some replies as well
+    /// (01h and 11h from address 40h): one that ends with the bytes, or before the next reply, goes first.
+    fn reply_at<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
+        let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
+            let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;
+            Some((codes(answer), behind))
+        });
+        let ends = |behind: &[u8]| behind.first().is_none_or(|byte| bytes.first() == Some(byte));
+        let (mut whole, mut other): (Vec<_>, Vec<_>) = replies.partition(|(_, behind)| ends(behind));
+        whole.append(&mut other);
+        whole.into_iter().next()
+    }
+}
+
+/// What an answer to 50h says.
+fn codes(answer: Answer) -> Codes {
+    match answer {
+        Answer::Reply { reply: Reply::Status(codes), pending } | Answer::Rejected { codes, pending } => {
+            (codes, pending)
+        }
+        Answer::Reply { pending, .. } => (Vec::new(), pending),
+    }
+}

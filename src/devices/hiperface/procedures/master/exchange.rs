@@ -1,0 +1,205 @@
+//! One exchange, in the protocol's rhythm (manual, "Dialog Timing"): dead time, request, reply, dead time.
+//!
+//! A reply ends with its last byte where its length is known, else with silence. The dead time after it is spent
+//! listening: a byte there means that the frame was longer than it should be, and nothing of it is shown.
+
+use std::time::Duration;
+
+use super::Master;
+use crate::bits::MaskedBytes;
+use crate::devices::hiperface::procedures::error::Damage;
+use crate::devices::hiperface::procedures::{Echo, Error};
+use crate::devices::hiperface::protocol::{Answer, Command, Request, SecretFrame, StatusCode};
+use crate::link::LinkError;
+use crate::units::Moment;
+
+/// What an encoder says to a request that the line has damaged. A byte 00h that got lost leaves the checksum right.
+const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
+
+/// An exchange that gave no answer.
+pub(in super::super) enum Trouble {
+    /// Nothing came back but, maybe, our own bytes.
+    Silence {
+        /// Our own bytes came back.
+        echo_heard: bool,
+    },
+    /// Something came back and is broken.
+    Damage(Damage),
+}
+
+/// An answer and when it began.
+pub(in super::super) struct Answered {
+    pub(in super::super) answer: Answer,
+    /// The address it came from.
+    pub(in super::super) sender: u8,
+    pub(super) at: Moment,
+}
+
+/// What came back, without the echo.
+struct Heard {
+    reply: Vec<u8>,
+    /// When the first byte of the reply was complete.
+    first_at: Moment,
+    echo_heard: bool,
+    damage: Option<Damage>,
+}
+
+impl Master<'_> {
+    /// One exchange. The outer error ends everything; the inner one may be tried again.
+    pub(in super::super) fn attempt(&mut self, request: &Request) -> Result<Result<Answered, Trouble>, Error> {
+        if request.command() != Command::ReadTypeLabel {
+            self.learn_echo()?;
+        }
+        self.begin()?;
+        let frame = request.emit(self.station.address);
+        let sent_at = self.now();
+        self.station.line.sent(sent_at);
+        self.send(&frame, sent_at)?;
+        let heard = self.listen(request, &frame, sent_at)?;
+        let (first_at, reply) = (heard.first_at, heard.reply.clone());
+        let judgement = self.judge(request, heard);
+        // What is broken after a frame with an access code may be our own bytes come back: nothing of it is shown.
+        let secret = judgement.is_err() && frame.is_secret();
+        let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
+        self.line.show(first_at, shown);
+        // In what is broken there may be a whole reply. What came too late or too long was let pass; an echo is none.
+        if let Err(Trouble::Damage(Damage::Reply(_))) = judgement {
+            self.line.pass(&reply);
+        }
+        Ok(judgement.map_err(|trouble| match trouble {
+            Trouble::Damage(Damage::Reply(_)) if secret => Trouble::Damage(Damage::Unreadable),
+            trouble => trouble,
+        }))
+    }
+
+    /// Makes sure that it is known whether the line gives our own bytes back.
+    pub(super) fn learn_echo(&mut self) -> Result<(), Error> {
+        if self.station.line.echo == Echo::Unknown {
+            self.ask(&Request::ReadTypeLabel)?;
+        }
+        Ok(())
+    }
+
+    /// Before each exchange: the user's wish, the dead time, and silence on the line.
+    pub(super) fn begin(&mut self) -> Result<(), Error> {
+        let quiet = self.quiet();
+        Ok(self.line.begin(&mut self.station.line, quiet)?)
+    }
+
+    /// Sends a frame, and shows of it what may be shown.
+    pub(super) fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
+        self.line.send(frame.bytes(), frame.masked(), sent_at)
+    }
+
+    /// tT has to be greater than the time-out: one bit more.
+    fn dead_time(&self) -> Duration {
+        self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
+    }
+
+    /// After so long without a byte nobody talks.
+    pub(super) fn quiet(&self) -> Duration {
+        self.dead_time() + self.station.line.margin
+    }
+
+    fn listen(&mut self, request: &Request, frame: &SecretFrame, sent_at: Moment) -> Result<Heard, Error> {
+        let timing = self.station.timing();
+        let deadline = sent_at + timing.worst_case(request) + self.station.line.margin;
+        let gap = timing.timeout + self.station.line.margin;
+        let mut line = Vec::new();
+        let mut first_at = sent_at;
+        loop {
+            let reply = self.without_echo(&line, frame);
+            if reply.is_some_and(|reply| request.reply_length(reply).is_none_or(|length| reply.len() >= length.max)) {
+                break;
+            }
+            let begun = reply.is_some_and(|reply| !reply.is_empty());
+            let until = if begun { self.now() + gap } else { deadline };
+            let before = line.len();
+            self.line.receive(until, &mut line)?;
+            if line.len() == before {
+                break;
+            }
+            let first = self.without_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
+            if let Some(reply) = first {
+                // An adapter delivers several characters at once: the first of them was complete earlier.
+                first_at = self.now() - timing.characters(reply.len() - 1);
+            }
+        }
+        let begun = self.without_echo(&line, frame).is_some_and(|reply| !reply.is_empty());
+        let more = self.hear_the_dead_time(&mut line, frame)?;
+        let intrusion = match (begun, more) {
+            (_, false) => None,
+            (true, true) => Some(Damage::Trailing),
+            (false, true) => {
+                let quiet = self.quiet();
+                self.line.let_late_ones_pass(&mut self.station.line, quiet)?;
+                Some(Damage::Late)
+            }
+        };
+        Ok(self.take_apart(&line, request, frame, first_at, intrusion))
+    }
+
+    /// The dead time, listening. True when something came that belongs to no reply.
+    fn hear_the_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
+        let before = line.len();
+        let quiet_until = self.now() + self.dead_time();
+        self.line.receive(quiet_until, line)?;
+        self.station.line.quiet_until = quiet_until;
+        let trailing = line.len() > before;
+        if trailing {
+            let (quiet, echo) = (self.quiet(), self.station.line.echo);
+            self.line.pass(echo.strip(line, frame.bytes()).unwrap_or_default());
+            self.line.wait_for_silence(&mut self.station.line, quiet)?;
+        }
+        Ok(trailing)
+    }
+
+    /// The reply as far as it has come; `None` while it may still be the echo.
+    fn without_echo<'l>(&self, line: &'l [u8], frame: &SecretFrame) -> Option<&'l [u8]> {
+        self.station.line.echo.strip(line, frame.bytes())
+    }
+
+    fn take_apart(
+        &self,
+        line: &[u8],
+        request: &Request,
+        frame: &SecretFrame,
+        first_at: Moment,
+        intrusion: Option<Damage>,
+    ) -> Heard {
+        let sent = frame.bytes();
+        let echo_heard = line.starts_with(sent);
+        let reply = self.without_echo(line, frame).unwrap_or_default().to_vec();
+        let is_reply = |rest: &[u8]| request.parse_reply(self.station.address, rest).is_ok();
+        let wrong_echo = match self.station.line.echo {
+            Echo::On => !echo_heard && !line.is_empty(),
+            // An echo and a reply have a right checksum together as well: to 50h that is a reply with four codes.
+            Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
+            Echo::Unknown => false,
+        };
+        let damage = if wrong_echo { Some(Damage::Echo) } else { intrusion };
+        Heard { reply, first_at, echo_heard, damage }
+    }
+
+    fn judge(&mut self, request: &Request, heard: Heard) -> Result<Answered, Trouble> {
+        if let Some(damage) = heard.damage {
+            return Err(Trouble::Damage(damage));
+        }
+        if heard.reply.is_empty() {
+            return Err(Trouble::Silence { echo_heard: heard.echo_heard });
+        }
+        let answer =
+            request.parse_reply(self.station.address, &heard.reply).map_err(|e| Trouble::Damage(Damage::Reply(e)))?;
+        if let Answer::Rejected { codes, .. } = &answer
+            && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
+        {
+            // The request was right when it left: the line damaged it.
+            return Err(Trouble::Damage(Damage::AtEncoder(*code)));
+        }
+        self.station.line.answered();
+        self.station.line.answer_began(heard.first_at);
+        self.station.line.echo.learn(heard.echo_heard);
+        let sender = heard.reply.first().copied().unwrap_or(self.station.address);
+        Ok(Answered { answer, sender, at: heard.first_at - self.station.timing().character })
+    }
+}

@@ -1,0 +1,35 @@
+//! What one does with a HIPERFACE encoder. Each procedure takes a [`Master`], which asks, repeats what may be repeated
+//! and keeps the protocol's times; the manual is SICK 8010701.
+//!
+//! Whatever changes an encoder's memory goes through [`mod@write`] with a plan and a consent to it.
+
+pub mod check;
+mod error;
+mod fields;
+pub mod find;
+mod identify;
+mod master;
+mod position;
+mod reset;
+mod rest;
+mod save;
+mod station;
+mod survey;
+pub mod write;
+
+pub use crate::device::line::{Echo, LineQuality};
+pub use error::{Damage, Error};
+pub use fields::{UnreadableField, read_all_fields, read_field, read_field_status, read_range, try_read_field};
+pub use identify::{Identity, identify, identity_of, read_address, read_extended_label, read_settings, read_status};
+pub use master::Master;
+pub use position::{
+    PositionReading, Sample, Watch, WatchedReading, ensure_standstill, read_analogue, read_analogue_limit,
+    read_counter, read_position, read_sample, read_watched,
+};
+pub use reset::{change_line_for_now, reset};
+pub use rest::{Rest, Signals, read_at_rest};
+pub use save::{SaveOptions, profile_of, save};
+pub use station::{Codes, PARAMETERS, Station};
+
+use survey::{Reading, look_around};
+pub use survey::{Survey, survey};

@@ -1,0 +1,233 @@
+//! Position, analogue values and the counter, also as what polling gives; and whether the shaft stands still.
+
+use std::time::Duration;
+
+use super::identify::read_type_label;
+use super::{Error, Master, read_extended_label};
+use crate::devices::hiperface::protocol::{ExtendedLabel, Geometry, Position, Reply, Request, StatusCode, TypeLabel};
+use crate::units::Moment;
+
+/// A position as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionReading {
+    /// When the encoder sampled it: the falling edge of the start bit of the reply's address.
+    pub at: Moment,
+    /// The word as received.
+    pub raw: u32,
+    /// What it means; `None` while periods and turns are not known.
+    pub position: Option<Position>,
+    /// It lies in the measuring range and no code spoils it.
+    pub valid: bool,
+    /// Codes that came with it.
+    pub codes: Vec<StatusCode>,
+}
+
+/// Reads the position (42h) and, where the reply announces them, all codes.
+///
+/// # Errors
+/// The line, or a refusal: the encoder has no position to give.
+pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
+    let met_before = master.station().codes_met.len();
+    let timed = master.ask_timed(&Request::ReadPosition)?;
+    let Reply::Position(raw) = timed.reply else {
+        return Err(Error::Unexpected(format!("position: {:?}", timed.reply)));
+    };
+    let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
+    let position = geometry.map(|geometry| geometry.position(raw));
+    let in_range = position.is_none_or(|position| position.in_range);
+    let valid = in_range && !codes.iter().any(|code| code.spoils_position());
+    Ok(PositionReading { at: timed.at, raw, position, valid, codes })
+}
+
+/// What polling gives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sample {
+    /// The position.
+    Position(PositionReading),
+    /// The encoder is there and has no position to give at the moment.
+    NoPosition {
+        /// When it said so.
+        at: Moment,
+        /// Why, and what else it reported.
+        codes: Vec<StatusCode>,
+    },
+    /// A value that is watched beside the position.
+    Watched(WatchedReading),
+}
+
+/// A value that can be watched while the position is polled. All else that can be read of an encoder changes only when it
+/// is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Watch {
+    /// An analogue channel (44h): 48h is the temperature in °C, others are as the data sheet says, most often 00h and 01h
+    /// the sine and cosine signals in counts of 10 bits for 5 V.
+    Analogue(u8),
+    /// The counter (46h), 0…FFFFFFh.
+    Counter,
+}
+
+impl Watch {
+    /// The temperature in °C of every encoder that tells it.
+    pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
+}
+
+/// A watched value as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WatchedReading {
+    /// When the encoder sampled an analogue value: the falling edge of the start bit of the reply's address. Of a counter
+    /// and of a refusal, when it was understood.
+    pub at: Moment,
+    /// What it is of.
+    pub what: Watch,
+    /// The value, or the encoder's refusal.
+    pub value: Result<i64, Error>,
+    /// Codes that came with it.
+    pub codes: Vec<StatusCode>,
+}
+
+impl WatchedReading {
+    /// The encoder does not have this: it does not know the command or the channel. Another refusal is for the moment.
+    pub fn is_refused(&self) -> bool {
+        match &self.value {
+            Err(Error::Rejected { codes, .. }) => {
+                codes.iter().any(|code| matches!(*code, StatusCode::UNKNOWN_COMMAND | StatusCode::ARGUMENT))
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Reads a watched value once; that the encoder refuses it is an answer too.
+///
+/// # Errors
+/// The line.
+pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReading, Error> {
+    let met_before = master.station().codes_met.len();
+    let answer = match what {
+        Watch::Analogue(channel) => ask_analogue(master, channel).map(|(at, value)| (at, value.into())),
+        Watch::Counter => read_counter(master).map(|value| (master.now(), value.into())),
+    };
+    let (at, value) = match answer {
+        Ok((at, value)) => (at, Ok(value)),
+        Err(error @ Error::Rejected { .. }) => (master.now(), Err(error)),
+        Err(error) => return Err(error),
+    };
+    let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
+    Ok(WatchedReading { at, what, value, codes })
+}
+
+/// Reads the position once, as [`read_position`]; that the encoder has none at the moment is an answer too.
+///
+/// # Errors
+/// The line, or a refusal for another reason.
+pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<Sample, Error> {
+    let met_before = master.station().codes_met.len();
+    match read_position(master, geometry) {
+        Ok(reading) => Ok(Sample::Position(reading)),
+        Err(error) if error.means_no_position() => {
+            let at = master.now();
+            let mut codes = match error {
+                Error::Rejected { codes, .. } => codes,
+                _ => Vec::new(),
+            };
+            let met = master.station().codes_met.get(met_before..).unwrap_or_default();
+            let more: Vec<StatusCode> = met.iter().copied().filter(|code| !codes.contains(code)).collect();
+            codes.extend(more);
+            Ok(Sample::NoPosition { at, codes })
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads an analogue channel (44h): usually signed 10 bits for 5 V, else as the data sheet says.
+///
+/// # Errors
+/// The line, or a refusal: the encoder has no such channel.
+pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
+    ask_analogue(master, channel).map(|(_, value)| value)
+}
+
+/// An analogue channel, and when the encoder sampled it.
+fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
+    let timed = master.ask_timed(&Request::ReadAnalogue { channel })?;
+    match timed.reply {
+        Reply::Analogue(value) => Ok((timed.at, value)),
+        other => Err(Error::Unexpected(format!("analogue value: {other:?}"))),
+    }
+}
+
+/// The value that an analogue channel should not exceed, where the encoder has an extended label that says so.
+///
+/// # Errors
+/// The line.
+pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Option<i16>, Error> {
+    if read_type_label(master)?.encoder_type != TypeLabel::EXTENDED {
+        return Ok(None);
+    }
+    match read_extended_label(master) {
+        Ok(bytes) => {
+            let limits = ExtendedLabel::parse(&bytes).map(|label| label.limits()).unwrap_or_default();
+            Ok(limits.into_iter().find(|(of, _)| *of == channel).map(|(_, limit)| limit))
+        }
+        Err(Error::Rejected { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads the counter (46h), 0…FFFFFFh.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
+    match master.ask_confirmed(&Request::ReadCounter)? {
+        Reply::Counter(value) => Ok(value),
+        other => Err(Error::Unexpected(format!("counter: {other:?}"))),
+    }
+}
+
+/// Reads the position three times, a tenth of a second apart, and gives the last when the shaft stands still: the
+/// readings differ by one step at most.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<u32, Error> {
+    let mut readings = Vec::new();
+    for reading in 0..3 {
+        if reading > 0 {
+            master.wait(Duration::from_millis(100))?;
+        }
+        readings.push(read_position(master, geometry)?.raw);
+    }
+    let range = range_of(geometry);
+    let (Some(first), Some(last)) = (readings.first().copied(), readings.last().copied()) else {
+        return Err(Error::Unexpected("no position".to_owned()));
+    };
+    if readings.iter().all(|reading| distance(first, *reading, range) <= 1) {
+        Ok(last)
+    } else {
+        Err(Error::Moving { readings })
+    }
+}
+
+/// Number of different positions; those of the whole word where nobody knows.
+pub(super) fn range_of(geometry: Option<Geometry>) -> u64 {
+    geometry.and_then(Geometry::range).unwrap_or(1 << 32)
+}
+
+/// Steps between two positions, the short way round: a shaft at rest may dither across zero.
+pub(super) fn distance(a: u32, b: u32, range: u64) -> u64 {
+    let straight = u64::from(a.abs_diff(b));
+    straight.min(range.saturating_sub(straight))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_go_the_short_way_round() {
+        assert_eq!(distance(0, 4095, 4096), 1);
+        assert_eq!(distance(5, 3, 4096), 2);
+        assert_eq!(distance(0, u32::MAX, 1 << 32), 1);
+    }
+}

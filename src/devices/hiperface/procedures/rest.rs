@@ -1,0 +1,91 @@
+//! The shaft at rest as both channels of an encoder tell it: the absolute position, and sine and cosine where analogue
+//! channels give them. For what has to be as fine as it can be: commutation, synchronising.
+
+use super::{Error, Master, ensure_standstill, read_analogue, read_position};
+use crate::devices::hiperface::protocol::Geometry;
+
+/// A shaft that stands still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// The position word.
+    pub raw: u32,
+    /// It lies in the measuring range and no code spoils it.
+    pub valid: bool,
+    /// Sine and cosine, where the encoder gives them.
+    pub signals: Option<Signals>,
+}
+
+/// Sine and cosine, each against its reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Signals {
+    /// Sine in volts.
+    pub sine_v: f64,
+    /// Cosine in volts.
+    pub cosine_v: f64,
+}
+
+impl Signals {
+    /// Analogue channels of sine and cosine, of the types that have them.
+    pub const CHANNELS: (u8, u8) = (0x00, 0x01);
+    /// Ten bits for 5 V.
+    const VOLTS_PER_COUNT: f64 = 5.0 / 1023.0;
+    /// The reference of both, 2.5 V.
+    const MEAN: f64 = 511.5;
+
+    /// From mean counts of ten bits for 5 V.
+    fn from_counts(sine: f64, cosine: f64) -> Self {
+        let volts = |counts: f64| (counts - Self::MEAN) * Self::VOLTS_PER_COUNT;
+        Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
+    }
+
+    /// One count, as a part of a period, at this amplitude.
+    pub fn resolution_periods(&self) -> f64 {
+        let amplitude = self.sine_v.hypot(self.cosine_v).max(Self::VOLTS_PER_COUNT);
+        Self::VOLTS_PER_COUNT / amplitude / std::f64::consts::TAU
+    }
+}
+
+/// Reads the shaft at rest: position, sine and cosine as means of four readings, and the position again.
+///
+/// # Errors
+/// [`Error::Moving`], the line, or that there is no position.
+pub fn read_at_rest(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<Rest, Error> {
+    let before = ensure_standstill(master, geometry)?;
+    let signals = read_signals(master)?;
+    let after = read_position(master, geometry)?;
+    if super::position::distance(before, after.raw, super::position::range_of(geometry)) > 1 {
+        return Err(Error::Moving { readings: vec![before, after.raw] });
+    }
+    Ok(Rest { raw: after.raw, valid: after.valid, signals })
+}
+
+fn read_signals(master: &mut Master<'_>) -> Result<Option<Signals>, Error> {
+    const READINGS: u8 = 4;
+    let (mut sine, mut cosine) = (0.0, 0.0);
+    for _ in 0..READINGS {
+        for (channel, sum) in [(Signals::CHANNELS.0, &mut sine), (Signals::CHANNELS.1, &mut cosine)] {
+            match read_analogue(master, channel) {
+                Ok(value) => *sum += f64::from(value),
+                // Many types have no such channels.
+                Err(Error::Rejected { .. }) => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    let count = f64::from(READINGS);
+    Ok(Some(Signals::from_counts(sine / count, cosine / count)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2.5 V are 511.5 counts, half a volt more is 613.8 of them; 1/1023 of 5 V is 4.888 mV, of 0.5 V 0.00978 rad.
+    #[test]
+    fn counts_are_volts_against_the_mean() {
+        let signals = Signals::from_counts(613.8, 511.5);
+        assert!((signals.sine_v - 0.5).abs() < 1e-12 && signals.cosine_v == 0.0, "{signals:?}");
+        assert!((signals.resolution_periods() - 0.001_555_8).abs() < 1e-6, "{}", signals.resolution_periods());
+        assert!(Signals { sine_v: 0.0, cosine_v: 0.0 }.resolution_periods() < 0.2, "no signal at all");
+    }
+}

@@ -1,0 +1,70 @@
+//! Reading everything that can be restored, and what identifies the encoder.
+
+use super::{Error, Identity, Master, Reading, Sample, Survey, look_around};
+use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
+use crate::devices::hiperface::protocol::EncoderTypes;
+use crate::profile::Unknown;
+
+/// What saving insists upon.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SaveOptions {
+    /// A field whose access code is not known is an error.
+    pub complete: bool,
+}
+
+/// Reads the whole encoder, everything but the position twice: what is kept for years is not to hang on one XOR.
+///
+/// # Errors
+/// The line; with [`complete`](SaveOptions::complete) also a field that cannot be read.
+pub fn save(
+    master: &mut Master<'_>,
+    types: &EncoderTypes,
+    options: SaveOptions,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<HiperfaceProfile, Error> {
+    master.thoroughly(|master| save_once(master, types, options, progress))
+}
+
+fn save_once(
+    master: &mut Master<'_>,
+    types: &EncoderTypes,
+    options: SaveOptions,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<HiperfaceProfile, Error> {
+    let Survey { identity, fields, counter, position, .. } = look_around(master, types, progress, Reading::Whole)?;
+    if let Some(locked) = fields.iter().find(|field| field.bytes.is_none())
+        && options.complete
+    {
+        return Err(Error::CodeUnknown { field: locked.number, number: locked.status.code() });
+    }
+    let position = match position {
+        Some(Sample::Position(reading)) => Some(reading.raw),
+        Some(Sample::NoPosition { .. } | Sample::Watched(_)) | None => None,
+    };
+    Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
+}
+
+/// A profile of an encoder with these fields.
+pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
+    let mut profile = HiperfaceProfile {
+        identity: ProfileIdentity {
+            serial_number: identity.serial.serial_number.clone(),
+            encoder_type: identity.label.encoder_type,
+            encoder_name: identity.name.clone(),
+            firmware_version: identity.serial.firmware_version.clone(),
+            firmware_date: identity.serial.firmware_date.clone(),
+            eeprom_bytes: u32::try_from(identity.label.eeprom_bytes()).unwrap_or(u32::MAX),
+            options: identity.label.options,
+            extended_label: identity.extended_label.clone(),
+            unknown: Unknown::new(),
+        },
+        interface: Interface { address: identity.address, settings: identity.label.settings, unknown: Unknown::new() },
+        recorded,
+        mounting: Vec::new(),
+        fields,
+        created: Vec::new(),
+        unknown_in_fields: Vec::new(),
+    };
+    profile.mark_mounting();
+    profile
+}

@@ -1,0 +1,238 @@
+//! What a session knows about its line and the encoder at its end, from one job to the next.
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
+use crate::devices::hiperface::protocol::{
+    AccessCode, BAUDS, BROADCAST, CodeNumber, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
+};
+use crate::link::{Query, UrlError};
+use crate::units::{Baud, CharacterFormat, Parity};
+
+/// Link parameters that describe the line and the encoder.
+pub const PARAMETERS: [&str; 8] = ["baud", "parity", "address", "echo", "timeout", "margin", "periods", "turns"];
+
+/// The four access codes as far as the user told them; 55h where not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Codes([AccessCode; 4]);
+
+impl Default for Codes {
+    fn default() -> Self {
+        Codes([AccessCode::FACTORY; 4])
+    }
+}
+
+impl Codes {
+    /// The code of a number.
+    pub fn get(self, number: CodeNumber) -> AccessCode {
+        self.0.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
+    }
+
+    /// Learns a code.
+    pub fn set(&mut self, number: CodeNumber, code: AccessCode) {
+        if let Some(own) = self.0.get_mut(usize::from(number.get())) {
+            *own = code;
+        }
+    }
+}
+
+/// What a session knows about its line and the encoder at its end.
+#[derive(Clone, Debug)]
+pub struct Station {
+    /// Whom requests go to: 40h…5Fh or broadcast.
+    pub address: u8,
+    /// Speed and parity we talk with.
+    pub format: CharacterFormat,
+    /// The encoder's time-out is 44 bits, else 11.
+    pub long_timeout: bool,
+    /// Silences, echo and damage: what every line has.
+    pub line: LineState,
+    /// Access codes.
+    pub codes: Codes,
+    /// Periods and turns as the user gives them, for an encoder type that is not in the table.
+    pub geometry: Option<Geometry>,
+    /// Status codes that replies announced, in the order in which they were read; taken out by whoever shows them.
+    pub codes_met: Vec<StatusCode>,
+    /// The same codes, for the logbook: 50h takes them out of the encoder, so that they are nowhere else.
+    codes_read: Vec<StatusCode>,
+    /// Replies to 50h that did not come or were damaged: each may have been a status code.
+    pub(super) codes_unheard: u32,
+    /// What is read is to be kept: it has to come twice, on a line that seems good as well.
+    pub(super) thorough: bool,
+    /// Most bytes to read at once: halved when the line damages long replies, doubled when it does not.
+    pub(super) chunk: usize,
+}
+
+impl Station {
+    /// A line with factory settings.
+    pub fn new(margin: Duration) -> Self {
+        Station {
+            address: DeviceAddress::FACTORY.byte(),
+            format: CharacterFormat::FACTORY,
+            long_timeout: true,
+            line: LineState::new(margin),
+            codes: Codes::default(),
+            geometry: None,
+            codes_met: Vec::new(),
+            codes_read: Vec::new(),
+            codes_unheard: 0,
+            thorough: false,
+            chunk: MAX_TRANSFER,
+        }
+    }
+
+    /// A line as the parameters of its link say; what they leave out is the factory setting, or `margin`.
+    ///
+    /// # Errors
+    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
+        let mut station = Station::new(margin);
+        let bauds = BAUDS.map(|baud| baud.to_string()).join(", ");
+        if let Some(baud) = query.read("baud", &format!("one of {bauds}"), read_baud)? {
+            station.format.baud = baud;
+        }
+        if let Some(parity) = query.read("parity", "none, even or odd", Parity::from_word)? {
+            station.format.parity = parity;
+        }
+        if let Some(address) =
+            query.read("address", "0x40 to 0x5F, or 0xFF with one encoder connected", read_address)?
+        {
+            station.address = address;
+        }
+        if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
+            station.line.echo = echo;
+        }
+        if let Some(long) = query.read("timeout", "44 or 11 bits, as the encoder is set", read_timeout)? {
+            station.long_timeout = long;
+        }
+        if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
+            station.line.margin = margin;
+        }
+        station.geometry = read_geometry(query)?;
+        Ok(station)
+    }
+
+    /// The times of the line as it is set.
+    pub fn timing(&self) -> Timing {
+        Timing::new(self.format, self.long_timeout)
+    }
+
+    /// Once is not enough: an XOR lets some pairs of flipped bits through.
+    pub(super) fn reads_twice(&self) -> bool {
+        self.thorough || self.line.damaged > 0
+    }
+
+    /// Takes in status codes that the encoder has given away.
+    pub(super) fn meet_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
+        let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
+        self.codes_read.extend(&codes);
+        self.codes_met.extend(codes);
+    }
+
+    /// Takes what is to be written into the logbook, before any of it is shown.
+    pub fn take_codes_read(&mut self) -> Vec<StatusCode> {
+        std::mem::take(&mut self.codes_read)
+    }
+
+    /// Takes how many status codes may have been lost since the last time: replies to 50h that did not come, or were damaged.
+    pub fn take_codes_unheard(&mut self) -> u32 {
+        std::mem::take(&mut self.codes_unheard)
+    }
+
+    /// Takes the status codes met since the last time.
+    pub fn take_codes(&mut self) -> Vec<StatusCode> {
+        std::mem::take(&mut self.codes_met)
+    }
+}
+
+impl fmt::Display for Station {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "address {:02X}h at {}", self.address, self.format)
+    }
+}
+
+fn read_baud(text: &str) -> Option<Baud> {
+    let baud = text.parse().ok().and_then(Baud::new)?;
+    BAUDS.contains(&baud).then_some(baud)
+}
+
+fn read_address(text: &str) -> Option<u8> {
+    let byte = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(hex) => u8::from_str_radix(hex, 16).ok()?,
+        None => match text.strip_suffix(['h', 'H']) {
+            Some(hex) => u8::from_str_radix(hex, 16).ok()?,
+            None => text.parse().ok()?,
+        },
+    };
+    (byte == BROADCAST || DeviceAddress::new(byte).is_some()).then_some(byte)
+}
+
+fn read_timeout(text: &str) -> Option<bool> {
+    match text {
+        "44" => Some(true),
+        "11" => Some(false),
+        _ => None,
+    }
+}
+
+/// `periods=` and `turns=`; one turn where only the periods are given.
+fn read_geometry(query: &Query) -> Result<Option<Geometry>, UrlError> {
+    const MOST: u32 = 1 << 27; // 32 steps a period in a word of 32 bits
+    let within = |most: u32| move |text: &str| text.parse().ok().filter(|n| (1..=most).contains(n));
+    let periods = query.read("periods", "1 to 134217728 periods in a revolution", within(MOST))?;
+    let most_turns = MOST / periods.unwrap_or(1);
+    let turns = query.read("turns", &format!("1 to {most_turns} turns"), within(most_turns))?;
+    match (periods, turns) {
+        (Some(periods), turns) => Ok(Some(Geometry::Rotary { periods, turns: turns.unwrap_or(1) })),
+        (None, None) => Ok(None),
+        (None, Some(turns)) => Err(UrlError::Value {
+            name: "turns".to_owned(),
+            value: turns.to_string(),
+            allowed: "only together with periods=".to_owned(),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn station(query: &str) -> Result<Station, UrlError> {
+        Station::from_query(&query.parse().unwrap(), Duration::from_millis(50))
+    }
+
+    #[test]
+    fn what_is_left_out_is_the_factory_setting() {
+        let station = station("").unwrap();
+        assert_eq!(station.to_string(), "address 40h at 9600 8E1");
+        assert_eq!(station.line.echo, Echo::Unknown);
+        assert_eq!(station.line.margin, Duration::from_millis(50));
+        assert_eq!(station.codes.get(CodeNumber::ZERO), AccessCode::FACTORY);
+    }
+
+    #[test]
+    fn a_line_is_read_from_its_parameters() {
+        let station = station("baud=38400&parity=odd&address=0x41&echo=off&timeout=11&margin=5&periods=64").unwrap();
+        assert_eq!(station.to_string(), "address 41h at 38400 8O1");
+        assert_eq!(station.line.echo, Echo::Off);
+        assert_eq!(station.timing().timeout, Duration::from_nanos(286_458));
+        assert_eq!(station.geometry, Some(Geometry::Rotary { periods: 64, turns: 1 }));
+    }
+
+    #[test]
+    fn a_value_that_cannot_be_used_names_what_can() {
+        let cases = [
+            ("baud=115200", "baud=115200: one of 600, 1200, 2400, 4800, 9600, 19200, 38400"),
+            ("parity=mark", "parity=mark: none, even or odd"),
+            ("address=0x60", "address=0x60: 0x40 to 0x5F, or 0xFF with one encoder connected"),
+            ("echo=yes", "echo=yes: auto, on or off"),
+            ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
+            ("turns=4096", "turns=4096: only together with periods="),
+            ("periods=134217728&turns=2", "turns=2: 1 to 1 turns"),
+        ];
+        for (query, message) in cases {
+            assert_eq!(station(query).unwrap_err().to_string(), message);
+        }
+    }
+}

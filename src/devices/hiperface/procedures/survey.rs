@@ -1,0 +1,103 @@
+//! Everything that there is to see of an encoder, in one go.
+
+use super::fields::tolerated;
+use super::{
+    Error, Identity, LineQuality, Master, Sample, UnreadableField, identify, read_all_fields, read_counter,
+    read_sample, try_read_field,
+};
+use crate::devices::hiperface::profile::FieldImage;
+use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
+
+/// An encoder as it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// Who is there.
+    pub identity: Identity,
+    /// The error queue, in the encoder's order, and what came to it meanwhile.
+    pub codes: Vec<StatusCode>,
+    /// All data fields, without bytes where they cannot be read: the access code is not known, or it says why in
+    /// `unreadable`.
+    pub fields: Vec<FieldImage>,
+    /// Data fields that could not be read, for another reason than their access code.
+    pub unreadable: Vec<UnreadableField>,
+    /// How good the line was until then.
+    pub line: LineQuality,
+    /// The counter, where the type has one.
+    pub counter: Option<u32>,
+    /// The position, where the encoder does not refuse it for another reason than that it has none at the moment.
+    pub position: Option<Sample>,
+}
+
+/// Reads the error queue first, then all the rest. What a type does not have is no error.
+///
+/// # Errors
+/// The line, or a refusal of what every type has.
+pub fn survey(
+    master: &mut Master<'_>,
+    types: &EncoderTypes,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Survey, Error> {
+    // They stay among the codes met until the survey is there: where it fails, they are told all the same.
+    master.collect_codes()?;
+    let mut survey = look_around(master, types, progress, Reading::AsFarAsPossible)?;
+    survey.codes = master.station().take_codes();
+    // A code that the encoder announced before is about this position too.
+    let spoilt = survey.codes.iter().any(|code| code.spoils_position());
+    if let Some(Sample::Position(reading)) = &mut survey.position {
+        reading.valid &= !spoilt;
+    }
+    Ok(survey)
+}
+
+/// What becomes of a data field that cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// The others are read all the same.
+    AsFarAsPossible,
+    /// It ends the reading: what is kept for years has to be whole.
+    Whole,
+}
+
+/// All but the error queue.
+pub(super) fn look_around(
+    master: &mut Master<'_>,
+    types: &EncoderTypes,
+    progress: &mut dyn FnMut(u64, u64),
+    reading: Reading,
+) -> Result<Survey, Error> {
+    let identity = identify(master, types)?;
+    let count = identity.memory.map_or(0, |memory| memory.fields);
+    let mut unreadable = Vec::new();
+    let fields = match reading {
+        Reading::Whole => read_all_fields(master, count, progress)?,
+        Reading::AsFarAsPossible => read_readable_fields(master, count, &mut unreadable, progress)?,
+    };
+    // Neither is needed for a restore: an encoder that refuses them is looked at all the same.
+    let position = read_sample(master, identity.geometry);
+    let position = tolerated(master, position)?.ok();
+    let counter = read_counter(master);
+    let counter = tolerated(master, counter)?.ok();
+    let line = master.station().line.quality.clone();
+    Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
+}
+
+/// All fields as far as they can be read; of one that cannot, its status stands among them, where that is known.
+fn read_readable_fields(
+    master: &mut Master<'_>,
+    count: u8,
+    unreadable: &mut Vec<UnreadableField>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<FieldImage>, Error> {
+    let mut fields = Vec::new();
+    for number in 0..count {
+        progress(u64::from(number), u64::from(count));
+        match try_read_field(master, number)? {
+            Ok(field) => fields.push(field),
+            Err(field) => {
+                fields.extend(field.status.map(|status| FieldImage { number, status, bytes: None }));
+                unreadable.push(field);
+            }
+        }
+    }
+    Ok(fields)
+}

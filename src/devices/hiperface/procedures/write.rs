@@ -1,0 +1,373 @@
+//! The one way to write to an encoder: a plan, a consent to it, what was read is read again, then exactly the operations
+//! that were shown, each read back.
+//!
+//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+
+pub use crate::device::written::Written;
+
+use super::{
+    Error, Identity, Master, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status,
+    read_range,
+};
+use crate::bits::hex_compact;
+use crate::devices::hiperface::procedures::identify::{read_serial, read_type_label};
+use crate::devices::hiperface::procedures::master::Trouble;
+use crate::devices::hiperface::procedures::position::{distance, range_of};
+use crate::devices::hiperface::profile::{Base, FieldImage, HiperfacePlan, Item, Op, Scalar};
+use crate::devices::hiperface::protocol::{
+    BROADCAST, CodeNumber, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request, StatusCode,
+};
+use crate::profile::Consent;
+
+/// A plan that a person consented to and whose base still holds.
+pub struct Confirmed<'p> {
+    plan: &'p HiperfacePlan,
+    /// Number of different positions.
+    range: u64,
+}
+
+/// A write that ended early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("after {} of the operations: {cause}", done.ops)]
+pub struct Interrupted {
+    /// What was written until then.
+    pub done: Written,
+    /// Why it ended.
+    pub cause: Error,
+    /// Fields that should be write protected and are not, because the encoder could no longer be reached.
+    pub left_unlocked: Vec<u8>,
+}
+
+/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the encoder for which it
+/// was made, because two new ones have the same memory.
+///
+/// # Errors
+/// [`Error::Changed`] when anything is no longer as it was; the consent is for another plan; the line.
+pub fn confirm<'p>(
+    master: &mut Master<'_>,
+    plan: &'p HiperfacePlan,
+    consent: Consent,
+    identity: &Identity,
+) -> Result<Confirmed<'p>, Error> {
+    let geometry = identity.geometry;
+    if !consent.covers(plan.id()) {
+        return Err(Error::Unexpected("the consent is for another plan".to_owned()));
+    }
+    if read_type_label(master)?.encoder_type != identity.label.encoder_type || read_serial(master)? != identity.serial {
+        return Err(Error::Changed { item: "the encoder itself".to_owned() });
+    }
+    if read_memory(master)?.fields != plan.base.field_count {
+        return Err(Error::Changed { item: "number of data fields".to_owned() });
+    }
+    for field in &plan.base.fields {
+        if read_field(master, field.number)? != *field {
+            return Err(Error::Changed { item: format!("field:{}", field.number) });
+        }
+    }
+    for scalar in &plan.base.scalars {
+        confirm_scalar(master, *scalar, geometry)?;
+    }
+    Ok(Confirmed { plan, range: range_of(geometry) })
+}
+
+fn confirm_scalar(master: &mut Master<'_>, scalar: Scalar, geometry: Option<Geometry>) -> Result<(), Error> {
+    let (same, item) = match scalar {
+        Scalar::Position(then) => {
+            let now = ensure_standstill(master, geometry)?;
+            if distance(now, then, range_of(geometry)) > 1 {
+                return Err(Error::Moving { readings: vec![then, now] });
+            }
+            (true, "position".to_owned())
+        }
+        Scalar::Counter(then) => (read_counter(master)? == then, Item::Counter.to_string()),
+        Scalar::Settings(then) => (read_type_label(master)?.settings == then, Item::Settings.to_string()),
+        Scalar::Address(then) => (master.station().address == then, Item::Address.to_string()),
+    };
+    if same { Ok(()) } else { Err(Error::Changed { item }) }
+}
+
+/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
+/// operations; a field that was unlocked on the way is locked again all the same.
+///
+/// # Errors
+/// [`Interrupted`], with what was written until then.
+pub fn carry_out(
+    master: &mut Master<'_>,
+    confirmed: &Confirmed<'_>,
+    progress: &mut dyn FnMut(usize, &Op),
+) -> Result<Written, Box<Interrupted>> {
+    let plan = confirmed.plan;
+    let mut done = Written::default();
+    for (at, op) in plan.ops.iter().enumerate() {
+        progress(at, op);
+        match perform(master, op, confirmed) {
+            Ok(sent) => {
+                done.ops += 1;
+                done.written += op.weight();
+                done.write_cycles += u64::from(sent);
+            }
+            Err(cause) => return Err(Box::new(interrupt(master, confirmed, at, done, cause))),
+        }
+    }
+    match master.shielded(|master| verify(master, confirmed)) {
+        Ok(verified) => Ok(Written { verified, ..done }),
+        Err(cause) => Err(Box::new(Interrupted { done, cause, left_unlocked: Vec::new() })),
+    }
+}
+
+/// Locks again what was unlocked on the way, as far as the encoder can be reached.
+fn interrupt(
+    master: &mut Master<'_>,
+    confirmed: &Confirmed<'_>,
+    at: usize,
+    mut done: Written,
+    cause: Error,
+) -> Interrupted {
+    if !matches!(cause, Error::Cancelled | Error::Rejected { .. }) {
+        // The operation that failed may have been carried out.
+        done.write_cycles += 1;
+    }
+    let ops = &confirmed.plan.ops;
+    let (before, after) = ops.split_at(at.min(ops.len()));
+    // What was not sent, or refused, was not carried out; anything else may have been.
+    let in_flight = after.first().filter(|_| !matches!(cause, Error::Cancelled | Error::Rejected { .. }));
+    let begun = before.iter().chain(in_flight);
+    let unlocked: Vec<u8> = begun.filter(|op| op.unlocks()).filter_map(Op::field).collect();
+    let mut left_unlocked = Vec::new();
+    for field in unlocked {
+        let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
+        let locked =
+            !cause.is_lost() && master.shielded(|master| lock_again(master, lock, confirmed, &mut done)).is_ok();
+        if !locked {
+            left_unlocked.push(field);
+        }
+    }
+    Interrupted { done, cause, left_unlocked }
+}
+
+fn lock_again(master: &mut Master<'_>, lock: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
+    let Op::Define { field, to, .. } = lock else { return Ok(()) };
+    let now = match read_field_status(master, *field) {
+        Ok(now) if now.is_writable() => now,
+        Ok(_) => return Ok(()),
+        // It was yet to be created.
+        Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => return Ok(()),
+        Err(error) => return Err(error),
+    };
+    // Whatever else the plan would have changed stays as it is: only the protection comes back.
+    let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
+    let sent = perform(master, &lock, confirmed)?;
+    done.write_cycles += u64::from(sent);
+    Ok(())
+}
+
+/// One operation. Gives how often it was sent.
+fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>) -> Result<u32, Error> {
+    let code0 = master.station().codes.get(CodeNumber::ZERO);
+    match op {
+        Op::Define { field, from, to } => {
+            let guarded_by = from.unwrap_or(*to).code();
+            let code = master.station().codes.get(guarded_by);
+            let request = Request::DefineField { field: *field, status: *to, code };
+            master.tell(&request, |master| has_status(master, *field, *to))
+        }
+        Op::Store { field, address, status, new, .. } => {
+            let code = master.station().codes.get(status.code());
+            let request = Request::StoreData { field: *field, address: *address, code, data: new.clone() };
+            let start = usize::from(*address);
+            master.tell(&request, |master| Ok(read_range(master, *field, start, new.len(), code)? == *new))
+        }
+        Op::ChangeCode { number, old, new } => {
+            let request = Request::ChangeCode { number: *number, old: *old, new: *new };
+            let sent = master.tell(&request, |master| opens(master, &confirmed.plan.base, *number, *new))?;
+            master.station().codes.set(*number, *new);
+            Ok(sent)
+        }
+        Op::SetPosition { from, to, synchronise } => {
+            let request = if *synchronise {
+                Request::Synchronise { position: *to, code0 }
+            } else {
+                Request::SetPosition { position: *to, code0 }
+            };
+            let telling = distance(*from, *to, confirmed.range) > 1;
+            master.tell(&request, |master| {
+                if !telling {
+                    return Err(Error::Unexpected("the position was there before: it does not tell".to_owned()));
+                }
+                Ok(distance(super::read_position(master, None)?.raw, *to, confirmed.range) <= 1)
+            })
+        }
+        Op::SetAddress { to, .. } => set_address(master, *to),
+        Op::Configure { to, .. } => {
+            let request = Request::ConfigureLine { settings: *to, code0 };
+            master.tell(&request, |master| Ok(read_type_label(master)?.settings == *to))
+        }
+        Op::ClearCounter { .. } => {
+            master.tell(&Request::ClearCounter { code0 }, |master| Ok(read_counter(master)? == 0))
+        }
+        Op::IncrementCounter { from } => {
+            let next = next_count(*from);
+            match master.tell(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
+                // Some types tell the overflow in this way (manual, "Zähler erhöhen"): it was carried out.
+                Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
+                    master.station().meet_codes(codes);
+                    Ok(1)
+                }
+                result => result,
+            }
+        }
+    }
+}
+
+/// The counter has 24 bits.
+fn next_count(counter: u32) -> u32 {
+    counter.wrapping_add(1) & 0x00FF_FFFF
+}
+
+fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error> {
+    let code0 = master.station().codes.get(CodeNumber::ZERO);
+    let before = master.station().address;
+    let request = Request::SetAddress { new: to, code0 };
+    let sent = master.tell(&request, |master| {
+        master.station().address = to.byte();
+        let moved = read_type_label(master).is_ok();
+        master.station().address = before;
+        // Whoever is not there any more has to be where it was, or it is lost.
+        if moved { Ok(true) } else { read_type_label(master).map(|_| false) }
+    })?;
+    if before != BROADCAST {
+        master.station().address = to.byte();
+    }
+    Ok(sent)
+}
+
+fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Result<bool, Error> {
+    match read_field_status(master, field) {
+        Ok(status) => Ok(status == wanted),
+        Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => Ok(!wanted.exists()),
+        Err(error) => Err(error),
+    }
+}
+
+/// Whether an access code opens a field that it guards. Without such a field nobody can tell.
+fn opens(
+    master: &mut Master<'_>,
+    base: &Base,
+    number: CodeNumber,
+    code: crate::devices::hiperface::protocol::AccessCode,
+) -> Result<bool, Error> {
+    let guarded = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
+    let Some(field) = base.fields.iter().find(guarded) else {
+        return Err(Error::Unexpected(format!("no data field is guarded by code {number}: it cannot be tried")));
+    };
+    match read_range(master, field.number, 0, 1, code) {
+        Ok(_) => Ok(true),
+        Err(error) if error.is_rejection(StatusCode::WRONG_CODE) => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads back what the plan has changed: the last word on every field and every byte.
+fn verify(master: &mut Master<'_>, confirmed: &Confirmed<'_>) -> Result<u64, Error> {
+    let plan = confirmed.plan;
+    let mut verified = 0;
+    for (at, op) in plan.ops.iter().enumerate() {
+        let later = plan.ops.get(at + 1..).unwrap_or_default();
+        match op {
+            Op::Define { field, to, .. } => {
+                let redefined = |op: &Op| matches!(op, Op::Define { field: other, .. } if other == field);
+                if !later.iter().any(redefined) && !has_status(master, *field, *to)? {
+                    return Err(mismatch(op, format!("{:02X}", to.byte()), "another status".to_owned()));
+                }
+                verified += 1;
+            }
+            Op::Store { field, address, new, .. } => {
+                let status = read_field_status(master, *field)?;
+                let code = master.station().codes.get(status.code());
+                // A field that shrank afterwards no longer has all of what was written.
+                let size = status.size().bytes().saturating_sub(usize::from(*address)).min(new.len());
+                let expected = new.get(..size).unwrap_or_default();
+                let got = read_range(master, *field, usize::from(*address), size, code)?;
+                if got != expected {
+                    return Err(mismatch(op, hex_compact(expected), hex_compact(&got)));
+                }
+                verified += op.weight();
+            }
+            Op::SetPosition { to, .. } => {
+                let raw = super::read_position(master, None)?.raw;
+                if distance(raw, *to, confirmed.range) > 1 {
+                    return Err(mismatch(op, to.to_string(), raw.to_string()));
+                }
+                verified += 1;
+            }
+            Op::SetAddress { .. } => {
+                read_type_label(master)?;
+                verified += 1;
+            }
+            Op::Configure { to, .. } => {
+                let settings = read_type_label(master)?.settings;
+                if settings != *to {
+                    return Err(mismatch(op, format!("{to:?}"), format!("{settings:?}")));
+                }
+                verified += 1;
+            }
+            Op::ClearCounter { .. } | Op::IncrementCounter { .. } => {
+                let expected = match op {
+                    Op::IncrementCounter { from } => next_count(*from),
+                    _ => 0,
+                };
+                let counter = read_counter(master)?;
+                if counter != expected {
+                    return Err(mismatch(op, expected.to_string(), counter.to_string()));
+                }
+                verified += 1;
+            }
+            // A code cannot be read; that the encoder acknowledged it is all there is.
+            Op::ChangeCode { .. } => {}
+        }
+    }
+    Ok(verified)
+}
+
+fn mismatch(op: &Op, expected: String, got: String) -> Error {
+    Error::NotVerified { item: op.item(), expected, got }
+}
+
+/// Checks that nobody answers at an address: two encoders at one address can never be told apart again.
+///
+/// # Errors
+/// [`Error::AddressTaken`], where anything comes back; the wire, or the user's wish.
+pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
+    let before = std::mem::replace(&mut master.station().address, address.byte());
+    let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
+    master.station().address = before;
+    match answers?.iter().all(|answer| matches!(answer, Err(Trouble::Silence { .. }))) {
+        true => Ok(()),
+        false => Err(Error::AddressTaken { address: address.byte() }),
+    }
+}
+
+/// Free memory and number of fields.
+///
+/// # Errors
+/// The line, or a refusal.
+pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
+    match master.ask_confirmed(&Request::FreeMemory)? {
+        Reply::FreeMemory(memory) => Ok(memory),
+        other => Err(Error::Unexpected(format!("available memory: {other:?}"))),
+    }
+}
+
+/// All fields that an access code guards: what is needed to tell whether it was changed.
+///
+/// # Errors
+/// The line.
+pub fn read_guarded_fields(
+    master: &mut Master<'_>,
+    number: CodeNumber,
+) -> Result<(FreeMemory, Vec<FieldImage>), Error> {
+    let memory = read_memory(master)?;
+    let mut fields = read_all_fields(master, memory.fields, &mut |_, _| {})?;
+    fields.retain(|field| field.status.code() == number && field.status.code_required());
+    Ok((memory, fields))
+}

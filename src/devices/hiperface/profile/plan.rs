@@ -1,0 +1,152 @@
+//! The operations that change an encoder's memory, and what they rest upon.
+
+use super::{FieldImage, FieldRange, Item};
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
+use crate::profile::{Operation, Plan};
+
+/// What a write to a HIPERFACE encoder would do.
+pub type HiperfacePlan = Plan<Base, Op>;
+
+/// What was read before a plan was made.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Base {
+    /// Number of data fields.
+    pub field_count: u8,
+    /// The fields that the plan touches.
+    pub fields: Vec<FieldImage>,
+    /// The single values that the plan touches.
+    pub scalars: Vec<Scalar>,
+}
+
+/// A single value of an encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Scalar {
+    /// Position in steps, with the shaft at rest.
+    Position(u32),
+    /// The counter.
+    Counter(u32),
+    /// The address.
+    Address(u8),
+    /// Stored interface settings.
+    Settings(LineSettings),
+}
+
+/// One persistent write.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// 4Dh: create (no status before), change, or delete (E = 0 after) a field.
+    Define {
+        /// The field.
+        field: u8,
+        /// Its status now; `None` where it does not exist yet.
+        from: Option<DataFieldStatus>,
+        /// Its status from then on.
+        to: DataFieldStatus,
+    },
+    /// 4Bh: write bytes.
+    Store {
+        /// The field.
+        field: u8,
+        /// First byte.
+        address: u8,
+        /// The field's status at that time: it names the access code.
+        status: DataFieldStatus,
+        /// What stands there; `None` where it is not known, in a field that is yet to be created.
+        old: Option<Vec<u8>>,
+        /// What will stand there, 1…128 bytes.
+        new: Vec<u8>,
+    },
+    /// 4Fh: another access code.
+    ChangeCode {
+        /// Which.
+        number: CodeNumber,
+        /// Its value now.
+        old: AccessCode,
+        /// Its value from then on.
+        new: AccessCode,
+    },
+    /// 43h, or 63h with `synchronise`.
+    SetPosition {
+        /// The position at the shaft's present place.
+        from: u32,
+        /// What it will be.
+        to: u32,
+        /// Align the code tracks as well.
+        synchronise: bool,
+    },
+    /// 55h.
+    SetAddress {
+        /// Now.
+        from: u8,
+        /// From then on.
+        to: DeviceAddress,
+    },
+    /// 57h.
+    Configure {
+        /// Stored now.
+        from: LineSettings,
+        /// Stored from then on; in force after the next restart.
+        to: LineSettings,
+    },
+    /// 49h.
+    ClearCounter {
+        /// The counter now.
+        from: u32,
+    },
+    /// 47h.
+    IncrementCounter {
+        /// The counter now.
+        from: u32,
+    },
+}
+
+impl Operation for Op {
+    fn write_cycles(&self) -> u64 {
+        1
+    }
+}
+
+impl Op {
+    /// The name of what it changes, as `read` takes it where it can be read.
+    pub fn item(&self) -> String {
+        match self {
+            Op::Define { field, .. } => Item::Status(*field).to_string(),
+            Op::Store { field, address, new, .. } => {
+                FieldRange::new(*field, usize::from(*address), new.len()).to_string()
+            }
+            Op::ChangeCode { number, .. } => format!("code {number}"),
+            Op::SetPosition { .. } => "position".to_owned(),
+            Op::SetAddress { .. } => Item::Address.to_string(),
+            Op::Configure { .. } => Item::Settings.to_string(),
+            Op::ClearCounter { .. } | Op::IncrementCounter { .. } => Item::Counter.to_string(),
+        }
+    }
+
+    /// Things it changes, counted as a comparison counts them: bytes of a field, or one.
+    pub fn weight(&self) -> u64 {
+        match self {
+            Op::Store { new, .. } => new.len() as u64,
+            _ => 1,
+        }
+    }
+
+    /// It leaves a field writable that was not: where another operation protects it again, that has to follow, whatever
+    /// happens in between.
+    pub fn unlocks(&self) -> bool {
+        matches!(self, Op::Define { from, to, .. }
+            if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
+    }
+
+    /// It protects this field.
+    pub fn locks(&self, number: u8) -> bool {
+        matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
+    }
+
+    /// The field it touches.
+    pub fn field(&self) -> Option<u8> {
+        match self {
+            Op::Define { field, .. } | Op::Store { field, .. } => Some(*field),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! What is saved of a HIPERFACE encoder. An access code is never part of it.
+
+use super::{FieldRange, Item};
+use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
+use crate::profile::mounting::NEVER_BY_ITSELF;
+use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer};
+use crate::profile::{Profile, ProfileError};
+
+/// A HIPERFACE encoder as it is saved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HiperfaceProfile {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// Address and interface settings: recorded, neither compared nor restored.
+    pub interface: Interface,
+    /// Values that change by themselves: recorded, neither compared nor restored.
+    pub recorded: Recorded,
+    /// What belongs to the mounting and never goes onto another encoder by itself.
+    pub mounting: Vec<MountingMark>,
+    /// Data fields in ascending order.
+    pub fields: Vec<FieldImage>,
+    /// Of a before-image: fields that the write created, as it wrote them. Restoring the before-image deletes them again.
+    pub created: Vec<FieldImage>,
+    /// Unknown entries of the fields, by field number.
+    pub unknown_in_fields: Vec<(u8, Unknown)>,
+}
+
+/// Who an encoder is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileIdentity {
+    /// Serial number; empty where the encoder does not tell.
+    pub serial_number: String,
+    /// Type byte.
+    pub encoder_type: u8,
+    /// Family or designation.
+    pub encoder_name: String,
+    /// Firmware version.
+    pub firmware_version: String,
+    /// Firmware date, `DD.MM.YY`.
+    pub firmware_date: String,
+    /// EEPROM size.
+    pub eeprom_bytes: u32,
+    /// Options byte of the type label.
+    pub options: u8,
+    /// Content of data field FFh.
+    pub extended_label: Option<Vec<u8>>,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Address and interface settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interface {
+    /// 40h…5Fh.
+    pub address: u8,
+    /// Stored settings.
+    pub settings: LineSettings,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Values that change by themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recorded {
+    /// Position in steps.
+    pub position: Option<u32>,
+    /// Counter.
+    pub counter: Option<u32>,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Part of a data field that holds a value of the mounting.
+pub type MountingMark = crate::profile::MountingMark<FieldRange>;
+
+/// A data field.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct FieldImage {
+    /// Its number.
+    pub number: u8,
+    /// Its status byte.
+    pub status: DataFieldStatus,
+    /// Its bytes, as many as the status says; `None` where the access code is not known.
+    pub bytes: Option<Vec<u8>>,
+}
+
+impl HiperfaceProfile {
+    /// The first bytes of a commutation offset as this program stores it.
+    pub const COMMUTATION_MAGIC: &'static [u8] = b"CO1";
+    /// Bytes of a commutation offset as this program stores it.
+    pub const COMMUTATION_BYTES: usize = 16;
+
+    /// Marks what is recognised as a value of the mounting, and is not marked yet.
+    pub fn mark_mounting(&mut self) {
+        for field in &self.fields {
+            let Some(bytes) = &field.bytes else { continue };
+            let blocks = bytes.chunks_exact(Self::COMMUTATION_BYTES).zip(0..);
+            for (_, block) in blocks.filter(|(block, _)| block.starts_with(Self::COMMUTATION_MAGIC)) {
+                let start = block * Self::COMMUTATION_BYTES;
+                let marked = |mark: &MountingMark| mark.item.contains(field.number, start);
+                if self.mounting.iter().any(marked) {
+                    continue;
+                }
+                self.mounting.push(MountingMark {
+                    item: FieldRange::new(field.number, start, Self::COMMUTATION_BYTES),
+                    meaning: "commutation offset".to_owned(),
+                    unknown: Unknown::new(),
+                });
+            }
+        }
+    }
+
+    /// A byte of a data field belongs to the mounting.
+    pub fn is_mounting(&self, field: u8, address: usize) -> bool {
+        self.mounting.iter().any(|mark| mark.item.contains(field, address))
+    }
+
+    fn write_identity(&self, writer: &mut Writer) {
+        let identity = &self.identity;
+        writer.open("identity", '(');
+        writer.text("serial_number", &identity.serial_number);
+        writer.entry("encoder_type", &format!("0x{:02X}", identity.encoder_type), "");
+        writer.text("encoder_name", &identity.encoder_name);
+        writer.text("firmware_version", &identity.firmware_version);
+        writer.text("firmware_date", &identity.firmware_date);
+        writer.entry("eeprom_bytes", &identity.eeprom_bytes.to_string(), "");
+        writer.entry("options", &format!("0x{:02X}", identity.options), "");
+        if let Some(label) = &identity.extended_label {
+            writer.bytes("extended_label", label);
+        }
+        writer.unknown(&identity.unknown);
+        writer.close(')');
+    }
+}
+
+impl Profile for HiperfaceProfile {
+    const KIND: &'static str = protocol::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let identity = read_identity(entries.structure("identity")?)?;
+        let interface = read_interface(entries.structure("interface")?)?;
+        let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
+        let mounting = MountingMark::read_all(entries, "a text such as \"field:0@0+16\"", read_marked)?;
+        let mut fields: Vec<FieldImage> = Vec::new();
+        let mut unknown_in_fields = Vec::new();
+        for entries in entries.required_structures("fields")? {
+            let path = entries.path_of("number");
+            let (field, unknown) = read_field(entries)?;
+            if fields.iter().any(|other| other.number == field.number) {
+                return Err(ProfileError::Value { path, what: format!("field {} stands twice", field.number) });
+            }
+            if !unknown.is_empty() {
+                unknown_in_fields.push((field.number, unknown));
+            }
+            fields.push(field);
+        }
+        fields.sort_by_key(|field| field.number);
+        let mut created = Vec::new();
+        for entries in entries.structures("created")? {
+            created.push(read_field(entries)?.0);
+        }
+        Ok(HiperfaceProfile { identity, interface, recorded, mounting, fields, created, unknown_in_fields })
+    }
+
+    fn write(&self, writer: &mut Writer) {
+        self.write_identity(writer);
+        writer.open("interface", '(');
+        writer.entry("address", &format!("0x{:02X}", self.interface.address), "");
+        let settings = self.interface.settings;
+        writer.entry("settings", &format!("0x{:02X}", settings.byte()), &settings.to_string());
+        writer.unknown(&self.interface.unknown);
+        writer.close(')');
+        writer.comment("recorded, neither compared nor restored; the position belongs to the mounting");
+        writer.open("recorded", '(');
+        if let Some(position) = self.recorded.position {
+            writer.entry("position", &position.to_string(), "steps");
+        }
+        if let Some(counter) = self.recorded.counter {
+            writer.entry("counter", &counter.to_string(), "");
+        }
+        writer.unknown(&self.recorded.unknown);
+        writer.close(')');
+        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
+        writer.open("fields", '[');
+        for field in &self.fields {
+            let unknown = self.unknown_in_fields.iter().find(|(number, _)| *number == field.number);
+            write_field(writer, field, unknown.map(|(_, unknown)| unknown));
+        }
+        writer.close(']');
+        if self.created.is_empty() {
+            return;
+        }
+        writer.comment("created by the write: restoring this deletes them again where they are unchanged and the last");
+        writer.open("created", '[');
+        for field in &self.created {
+            write_field(writer, field, None);
+        }
+        writer.close(']');
+    }
+}
+
+fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown>) {
+    writer.open("", '(');
+    writer.entry("number", &field.number.to_string(), "");
+    writer.entry("status", &format!("0x{:02X}", field.status.byte()), &field.status.to_string());
+    match &field.bytes {
+        Some(bytes) => writer.bytes("bytes", bytes),
+        None => writer.entry("locked", "true", "the access code is not known, so there are no bytes"),
+    }
+    if let Some(unknown) = unknown {
+        writer.unknown(unknown);
+    }
+    writer.close(')');
+}
+
+fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
+    Ok(ProfileIdentity {
+        serial_number: entries.required("serial_number", "a text")?,
+        encoder_type: entries.required("encoder_type", BYTE)?,
+        encoder_name: entries.optional("encoder_name", "a text")?.unwrap_or_default(),
+        firmware_version: entries.optional("firmware_version", "a text")?.unwrap_or_default(),
+        firmware_date: entries.optional("firmware_date", "a text")?.unwrap_or_default(),
+        eeprom_bytes: entries.optional("eeprom_bytes", "a whole number")?.unwrap_or_default(),
+        options: entries.optional("options", BYTE)?.unwrap_or_default(),
+        extended_label: entries.bytes("extended_label")?,
+        unknown: entries.rest()?,
+    })
+}
+
+fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
+    Ok(Interface {
+        address: entries.required("address", BYTE)?,
+        settings: LineSettings::from_byte(entries.required("settings", BYTE)?),
+        unknown: entries.rest()?,
+    })
+}
+
+fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
+    Ok(Recorded {
+        position: entries.optional("position", "a number from 0 to 4294967295")?,
+        counter: entries.optional("counter", "a number from 0 to 16777215")?,
+        unknown: entries.rest()?,
+    })
+}
+
+fn read_marked(text: &str) -> Result<FieldRange, String> {
+    match text.parse::<Item>() {
+        Ok(Item::Field(range)) => Ok(range),
+        _ => Err(format!("{text:?} is not of the form field:N@ADDR+COUNT")),
+    }
+}
+
+fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {
+    let number: u8 = entries.required("number", "a number from 0 to 254")?;
+    let status = DataFieldStatus::from_byte(entries.required("status", BYTE)?);
+    let wrong = |entries: &Entries, name: &str, what: String| ProfileError::Value { path: entries.path_of(name), what };
+    if !status.exists() {
+        return Err(wrong(
+            &entries,
+            "status",
+            format!("{:02X}h is not the status of an existing field", status.byte()),
+        ));
+    }
+    let bytes = entries.bytes("bytes")?;
+    let locked = entries.optional("locked", "true or false")?.unwrap_or(false);
+    if bytes.is_some() == locked {
+        let what = if locked { "a locked field has none" } else { "missing; a field without them is locked: true" };
+        return Err(wrong(&entries, "bytes", what.to_owned()));
+    }
+    if let Some(bytes) = &bytes
+        && bytes.len() != status.size().bytes()
+    {
+        let what = format!("{} bytes where the status says {}", bytes.len(), status.size().bytes());
+        return Err(wrong(&entries, "bytes", what));
+    }
+    Ok((FieldImage { number, status, bytes }, entries.rest()?))
+}
+
+#[cfg(test)]
+mod tests;

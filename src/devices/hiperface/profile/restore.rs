@@ -1,0 +1,134 @@
+//! What restoring a profile would do: only what differs, in the fewest writes, and nothing that belongs to another
+//! encoder's mounting.
+
+mod device;
+mod error;
+mod planner;
+mod undo;
+mod unknown;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+pub use device::{check_allowed, check_device};
+pub use error::PlanError;
+pub use undo::created_by;
+pub use unknown::UnknownField;
+
+use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
+use crate::devices::hiperface::protocol::FreeMemory;
+use planner::Planner;
+use undo::{delete, undo_created, without};
+use unknown::unknown_fields;
+
+/// What a restore may do.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RestoreOptions {
+    /// The profile may go onto an encoder with another serial number.
+    pub allow_other_device: bool,
+    /// The profile may go onto an encoder of another type.
+    pub allow_other_type: bool,
+    /// Values of the mounting may go onto another encoder.
+    pub with_mounting: bool,
+    /// A field that has another size and is not the last may be deleted and created again, with all that come after it.
+    pub recreate: bool,
+    /// Answers about data fields whose bytes have no known meaning and would go onto another encoder: copied, or left.
+    /// A field without an answer is left.
+    pub copy: BTreeMap<u8, bool>,
+}
+
+/// An encoder's memory as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeviceState {
+    /// Serial number; empty where the encoder does not tell.
+    pub serial_number: String,
+    /// Type byte.
+    pub encoder_type: u8,
+    /// Free memory and number of fields.
+    pub memory: FreeMemory,
+    /// All fields in ascending order.
+    pub fields: Vec<FieldImage>,
+}
+
+/// What a restore would do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Restore {
+    /// What every kind of device says of a restore.
+    pub common: crate::profile::Restore<HiperfacePlan, FieldRange>,
+    /// Data fields with bytes of unknown meaning that differ from another encoder's.
+    pub unknown_fields: Vec<UnknownField>,
+    /// Data fields that the write created which this undoes, and that are left: they have changed since, or are not the last.
+    pub created_left: Vec<u8>,
+}
+
+/// What has to be set up anew after a restore from another encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Redo {
+    /// The offset between encoder and motor.
+    Commutation,
+    /// A value of the mounting.
+    Value(FieldRange),
+}
+
+impl fmt::Display for Redo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Redo::Commutation => f.write_str("commutation"),
+            Redo::Value(range) => range.fmt(f),
+        }
+    }
+}
+
+/// Plans a restore.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_restore(
+    profile: &HiperfaceProfile,
+    device: &DeviceState,
+    options: RestoreOptions,
+) -> Result<Restore, PlanError> {
+    check_allowed(profile, &device.serial_number, device.encoder_type, &options)?;
+    let is_other = check_device(profile, &device.serial_number, device.encoder_type).is_err();
+    let unknown_fields = if is_other { unknown_fields(profile, device, &options) } else { Vec::new() };
+    let left: Vec<u8> = unknown_fields.iter().filter(|own| !own.is_copied()).map(|own| own.field).collect();
+    let (undone, created_left) = if is_other { (Vec::new(), Vec::new()) } else { undo_created(profile, device) };
+    let now = without(device, &undone);
+    let mut planner = Planner {
+        profile,
+        device: &now,
+        wanted: profile.fields.clone(),
+        left,
+        is_other,
+        with_mounting: options.with_mounting,
+        ops: Vec::new(),
+        unchanged: 0,
+        missing: Vec::new(),
+        mounting_left: Vec::new(),
+        mounting_written: Vec::new(),
+        touched: Vec::new(),
+    };
+    planner.leave_unknown();
+    planner.check_order()?;
+    let recreated = planner.first_to_recreate(options.recreate)?;
+    planner.check_memory(recreated)?;
+    let mut kept = now.fields.clone();
+    if let Some(first) = recreated {
+        planner.delete_from(first)?;
+        kept.truncate(usize::from(first));
+    }
+    for target in planner.targets(recreated) {
+        match kept.iter().find(|field| field.number == target.number) {
+            Some(now) => planner.change(now, &target),
+            None => planner.create(&target),
+        }
+    }
+    let mut common = planner.finish();
+    common.plan.ops.splice(0..0, undone.iter().map(delete));
+    common.plan.base.field_count = device.memory.fields;
+    common.plan.base.fields.extend(undone.into_iter().rev());
+    Ok(Restore { common, unknown_fields, created_left })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,46 @@
+//! Whether an encoder is the one that a profile was read from.
+
+use super::{PlanError, RestoreOptions};
+use crate::devices::hiperface::profile::HiperfaceProfile;
+
+/// Refuses an encoder that the profile was not read from. Encoders that do not tell their serial number are never the
+/// same one.
+///
+/// # Errors
+/// [`PlanError::OtherDevice`], [`PlanError::OtherType`].
+pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_type: u8) -> Result<(), PlanError> {
+    if !is_same_device(profile, serial_number) {
+        return Err(PlanError::OtherDevice {
+            profile: profile.identity.serial_number.clone(),
+            device: serial_number.to_owned(),
+        });
+    }
+    // Two types may count their serial numbers apart.
+    if profile.identity.encoder_type != encoder_type {
+        return Err(PlanError::OtherType { profile: profile.identity.encoder_type, device: encoder_type });
+    }
+    Ok(())
+}
+
+/// Refuses an encoder that the profile was not read from, as far as that is not allowed.
+///
+/// # Errors
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+pub fn check_allowed(
+    profile: &HiperfaceProfile,
+    serial_number: &str,
+    encoder_type: u8,
+    options: &RestoreOptions,
+) -> Result<(), PlanError> {
+    if !options.allow_other_type && profile.identity.encoder_type != encoder_type {
+        return Err(PlanError::OtherType { profile: profile.identity.encoder_type, device: encoder_type });
+    }
+    match check_device(profile, serial_number, encoder_type) {
+        Err(error @ PlanError::OtherDevice { .. }) if !options.allow_other_device => Err(error),
+        _ => Ok(()),
+    }
+}
+
+fn is_same_device(profile: &HiperfaceProfile, serial_number: &str) -> bool {
+    !serial_number.is_empty() && profile.identity.serial_number == serial_number
+}

@@ -1,0 +1,280 @@
+//! The operations of a restore, field by field.
+
+use std::ops::Range;
+
+use super::undo::delete;
+use super::{DeviceState, PlanError};
+use crate::devices::hiperface::profile::{Base, FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile, Op};
+use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize};
+use crate::profile::difference::runs;
+
+pub(super) struct Planner<'a> {
+    pub(super) profile: &'a HiperfaceProfile,
+    pub(super) device: &'a DeviceState,
+    /// The fields as they are to be.
+    pub(super) wanted: Vec<FieldImage>,
+    /// Fields whose bytes of unknown meaning are left alone.
+    pub(super) left: Vec<u8>,
+    pub(super) is_other: bool,
+    pub(super) with_mounting: bool,
+    pub(super) ops: Vec<Op>,
+    pub(super) unchanged: u64,
+    pub(super) missing: Vec<String>,
+    pub(super) mounting_left: Vec<FieldRange>,
+    pub(super) mounting_written: Vec<FieldRange>,
+    pub(super) touched: Vec<u8>,
+}
+
+impl Planner<'_> {
+    /// A field whose bytes are left alone is not wanted, unless values of the mounting go into it. One that the encoder
+    /// does not have is created without content where another one has to be created after it.
+    pub(super) fn leave_unknown(&mut self) {
+        let (profile, device, with_mounting) = (self.profile, self.device, self.with_mounting);
+        let left = std::mem::take(&mut self.left);
+        let stays = |own: &FieldImage| {
+            let bytes = own.bytes.as_ref().map_or(0, Vec::len);
+            let has_mounting = (0..bytes).any(|at| profile.is_mounting(own.number, at));
+            !left.contains(&own.number) || (with_mounting && has_mounting)
+        };
+        let last = self.wanted.iter().filter(|own| stays(own)).map(|own| own.number).max();
+        for target in std::mem::take(&mut self.wanted) {
+            let now = device.fields.iter().find(|field| field.number == target.number);
+            match now {
+                _ if !left.contains(&target.number) => self.wanted.push(target),
+                Some(now) if stays(&target) => {
+                    let fits = now.status.size() == target.status.size();
+                    let status = if fits { now.status } else { target.status };
+                    self.wanted.push(FieldImage { status, ..target });
+                }
+                None if stays(&target) => self.wanted.push(target),
+                None if last.is_some_and(|last| target.number < last) => {
+                    self.wanted.push(FieldImage { bytes: None, ..target });
+                }
+                _ => {}
+            }
+        }
+        self.left = left;
+        if !with_mounting {
+            self.name_mounting_left();
+        }
+    }
+
+    /// Names the values of the mounting in fields that are left alone.
+    fn name_mounting_left(&mut self) {
+        let profile = self.profile;
+        for target in &profile.fields {
+            let is_wanted = self.target_of(target.number).is_some_and(|own| own.bytes.is_some());
+            if is_wanted || !self.left.contains(&target.number) {
+                continue;
+            }
+            let now = self.device.fields.iter().find(|field| field.number == target.number);
+            let old = now.and_then(|now| now.bytes.as_deref()).unwrap_or_default();
+            let new = target.bytes.as_deref().unwrap_or_default();
+            for range in runs(old, new).into_iter().chain(std::iter::once(old.len()..new.len())) {
+                self.allowed(target.number, range);
+            }
+        }
+    }
+
+    /// Fields that are to be created have to follow each other.
+    pub(super) fn check_order(&self) -> Result<(), PlanError> {
+        let mut next = self.device.memory.fields;
+        for field in self.wanted.iter().filter(|field| field.number >= self.device.memory.fields) {
+            if field.number != next {
+                return Err(PlanError::Gap { field: field.number, missing: next });
+            }
+            next = next.saturating_add(1);
+        }
+        Ok(())
+    }
+
+    /// The first field whose size has to change although fields follow it.
+    pub(super) fn first_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
+        let last = self.device.fields.last().map(|field| field.number);
+        for target in &self.wanted {
+            let Some(now) = self.device.fields.iter().find(|field| field.number == target.number) else { continue };
+            if now.status.size() != target.status.size() && Some(now.number) != last {
+                if allowed {
+                    return Ok(Some(now.number));
+                }
+                return Err(PlanError::SizeFixed {
+                    field: now.number,
+                    profile: target.status.size().bytes(),
+                    device: now.status.size().bytes(),
+                });
+            }
+        }
+        Ok(None)
+    }
+
+    pub(super) fn check_memory(&self, recreated: Option<u8>) -> Result<(), PlanError> {
+        let blocks =
+            |fields: &[FieldImage]| fields.iter().map(|f| usize::from(f.status.size().blocks())).sum::<usize>();
+        let mut after: Vec<FieldImage> =
+            self.device.fields.iter().filter(|now| self.target_of(now.number).is_none()).cloned().collect();
+        after.extend(self.targets(recreated));
+        after.sort_by_key(|field| field.number);
+        after.dedup_by_key(|field| field.number);
+        let have = blocks(&self.device.fields) + usize::from(self.device.memory.blocks);
+        let needed = blocks(&after);
+        if needed > have {
+            let now = blocks(&self.device.fields);
+            return Err(PlanError::NoMemory {
+                needed: needed.saturating_sub(now) * FieldSize::BLOCK,
+                free: self.device.memory.bytes(),
+            });
+        }
+        Ok(())
+    }
+
+    fn target_of(&self, number: u8) -> Option<&FieldImage> {
+        self.wanted.iter().find(|field| field.number == number)
+    }
+
+    /// The fields as they are to be: those of the profile, and, where fields are created again, the encoder's own that
+    /// the profile does not have.
+    pub(super) fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
+        let mut targets = self.wanted.clone();
+        if let Some(first) = recreated {
+            let own = self.device.fields.iter().filter(|f| f.number >= first && self.target_of(f.number).is_none());
+            targets.extend(own.cloned());
+            targets.sort_by_key(|field| field.number);
+            // What the profile has no bytes for keeps its own.
+            for target in targets.iter_mut().filter(|target| target.bytes.is_none() && target.number >= first) {
+                let own = self.device.fields.iter().find(|field| field.number == target.number);
+                target.bytes =
+                    own.filter(|own| own.status.size() == target.status.size()).and_then(|own| own.bytes.clone());
+            }
+        }
+        targets
+    }
+
+    pub(super) fn delete_from(&mut self, first: u8) -> Result<(), PlanError> {
+        for now in self.device.fields.iter().rev().filter(|field| field.number >= first) {
+            if now.bytes.is_none() {
+                return Err(PlanError::WouldLose { field: now.number, code: now.status.code() });
+            }
+            self.touched.push(now.number);
+            self.ops.push(delete(now));
+        }
+        Ok(())
+    }
+
+    /// What a new field holds is not known, so all of it is written; then it is protected if it has to be.
+    pub(super) fn create(&mut self, target: &FieldImage) {
+        let writable = target.status.with_write_enable(true);
+        let first = if target.bytes.is_some() { writable } else { target.status };
+        if target.bytes.is_none() && !self.left.contains(&target.number) {
+            // It is created because others may follow it; what was in it nobody knows.
+            self.missing.push(FieldRange { field: target.number, start: 0, count: None }.to_string());
+        }
+        self.ops.push(Op::Define { field: target.number, from: None, to: first });
+        if let Some(bytes) = &target.bytes {
+            for range in self.allowed(target.number, 0..bytes.len()) {
+                self.store(target.number, writable, range, None, bytes);
+            }
+        }
+        if first != target.status {
+            self.ops.push(Op::Define { field: target.number, from: Some(first), to: target.status });
+        }
+    }
+
+    pub(super) fn change(&mut self, now: &FieldImage, target: &FieldImage) {
+        // A field that one side cannot read is left alone.
+        let (Some(old), Some(new)) = (&now.bytes, &target.bytes) else {
+            if now != target {
+                self.missing.push(FieldRange { field: now.number, start: 0, count: None }.to_string());
+            }
+            return;
+        };
+        let mut stores: Vec<(Range<usize>, bool)> = Vec::new();
+        for run in runs(old, new) {
+            stores.extend(self.allowed(now.number, run).into_iter().map(|range| (range, true)));
+        }
+        if new.len() > old.len() {
+            // The part that the last field grows by: its content is not known.
+            stores.extend(self.allowed(now.number, old.len()..new.len()).into_iter().map(|range| (range, false)));
+        }
+        self.unchanged += u64::from(now.status == target.status);
+        let changed: usize = runs(old, new).iter().map(ExactSizeIterator::len).sum();
+        self.unchanged += (old.len().min(new.len()) - changed) as u64;
+
+        let can_write_first = now.status.is_writable() && now.status.size() >= target.status.size();
+        let working =
+            if stores.is_empty() || can_write_first { now.status } else { target.status.with_write_enable(true) };
+        if working != now.status {
+            self.define(now.number, now.status, working);
+        }
+        for (range, known) in stores {
+            self.store(now.number, working, range, known.then_some(old.as_slice()), new);
+        }
+        if working != target.status {
+            self.define(now.number, working, target.status);
+        }
+    }
+
+    /// The parts of a range that may be written: all, or all but the values of the mounting.
+    fn allowed(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
+        if !self.is_other {
+            return vec![range];
+        }
+        let (mut allowed, mut of_mounting) = (Vec::new(), Vec::new());
+        for at in range {
+            let is_mounting = self.profile.is_mounting(field, at);
+            if is_mounting {
+                extend(&mut of_mounting, at);
+            }
+            if if is_mounting { self.with_mounting } else { !self.left.contains(&field) } {
+                extend(&mut allowed, at);
+            }
+        }
+        let of_mounting = of_mounting.into_iter().map(|run| FieldRange::new(field, run.start, run.len()));
+        if self.with_mounting {
+            self.mounting_written.extend(of_mounting);
+        } else {
+            self.mounting_left.extend(of_mounting);
+        }
+        allowed
+    }
+
+    fn define(&mut self, field: u8, from: DataFieldStatus, to: DataFieldStatus) {
+        self.touched.push(field);
+        self.ops.push(Op::Define { field, from: Some(from), to });
+    }
+
+    fn store(&mut self, field: u8, status: DataFieldStatus, range: Range<usize>, old: Option<&[u8]>, new: &[u8]) {
+        let (Ok(address), Some(new)) = (u8::try_from(range.start), new.get(range.clone())) else { return };
+        if old.is_some() {
+            self.touched.push(field);
+        }
+        let old = old.and_then(|old| old.get(range)).map(<[u8]>::to_vec);
+        self.ops.push(Op::Store { field, address, status, old, new: new.to_vec() });
+    }
+
+    pub(super) fn finish(mut self) -> crate::profile::Restore<HiperfacePlan, FieldRange> {
+        for now in &self.device.fields {
+            if self.target_of(now.number).is_none() && !self.left.contains(&now.number) {
+                self.missing.push(FieldRange { field: now.number, start: 0, count: None }.to_string());
+            }
+        }
+        let fields = self.device.fields.iter().filter(|field| self.touched.contains(&field.number)).cloned().collect();
+        crate::profile::Restore {
+            plan: HiperfacePlan {
+                base: Base { field_count: self.device.memory.fields, fields, scalars: Vec::new() },
+                ops: self.ops,
+            },
+            unchanged: self.unchanged,
+            missing: self.missing,
+            mounting_left: self.mounting_left,
+            mounting_written: self.mounting_written,
+        }
+    }
+}
+
+/// Adds a place to the last run, or begins a new one.
+fn extend(runs: &mut Vec<Range<usize>>, at: usize) {
+    match runs.last_mut() {
+        Some(run) if run.end == at => run.end += 1,
+        _ => runs.push(at..at + 1),
+    }
+}

@@ -1,0 +1,52 @@
+//! Data fields of another encoder whose bytes have no known meaning: they may hold an offset between encoder and motor.
+
+use super::{DeviceState, RestoreOptions};
+use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
+use crate::profile::difference::runs;
+
+/// A data field of which bytes differ that have no known meaning, where profile and encoder are not of one device. They may
+/// hold an offset between encoder and motor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnknownField {
+    /// Its number.
+    pub field: u8,
+    /// Such bytes.
+    pub bytes: usize,
+    /// Copied or left, as a person has answered; without an answer they are left.
+    pub answer: Option<bool>,
+}
+
+impl UnknownField {
+    /// Its bytes go onto the other encoder.
+    pub fn is_copied(&self) -> bool {
+        self.answer == Some(true)
+    }
+
+    /// Its name, as `--copy` and `--leave` take it.
+    pub fn item(&self) -> FieldRange {
+        FieldRange { field: self.field, start: 0, count: None }
+    }
+}
+
+/// Data fields of another encoder's profile with bytes that differ and do not belong to the mounting.
+pub(super) fn unknown_fields(
+    profile: &HiperfaceProfile,
+    device: &DeviceState,
+    options: &RestoreOptions,
+) -> Vec<UnknownField> {
+    let of = |target: &FieldImage| {
+        let new = target.bytes.as_ref()?;
+        let now = device.fields.iter().find(|field| field.number == target.number);
+        let old = match now {
+            // What cannot be read is left alone anyway.
+            Some(now) => now.bytes.as_deref()?,
+            None => &[],
+        };
+        let grown = old.len()..new.len();
+        let differing = runs(old, new).into_iter().flatten().chain(grown);
+        let bytes = differing.filter(|at| !profile.is_mounting(target.number, *at)).count();
+        let answer = options.copy.get(&target.number).copied();
+        (bytes > 0).then_some(UnknownField { field: target.number, bytes, answer })
+    };
+    profile.fields.iter().filter_map(of).collect()
+}

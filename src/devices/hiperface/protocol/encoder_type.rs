@@ -1,0 +1,188 @@
+//! Encoder types: what the type byte of 52h says about periods and turns. The table is data
+//! (`assets/devices/hiperface.ron`), so that a user can add an encoder.
+
+use std::ops::RangeInclusive;
+
+use serde::Deserialize;
+
+use super::Geometry;
+
+/// One row of the table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EncoderType {
+    /// The type byte.
+    pub code: u8,
+    /// Family name, as on the data sheet.
+    pub name: String,
+    /// Periods and turns; `None` where the extended label or the user has to tell.
+    pub geometry: Option<Geometry>,
+    /// Without bearing of its own: its code tracks are aligned with 63h after mounting.
+    pub kit: bool,
+}
+
+/// All encoder types known.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EncoderTypes(Vec<EncoderType>);
+
+/// Why a table cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TypeTableError {
+    /// The text is not the RON expected.
+    #[error("line {line}, column {column}: {what}")]
+    Syntax {
+        /// Line, counted from 1.
+        line: usize,
+        /// Column, counted from 1.
+        column: usize,
+        /// What the parser says.
+        what: String,
+    },
+    /// A number is zero or too large.
+    #[error("type {code:02X}h: {quantity} must lie within {} and {}", range.start(), range.end())]
+    Range {
+        /// The row's type byte.
+        code: u8,
+        /// Which number.
+        quantity: &'static str,
+        /// What is possible.
+        range: RangeInclusive<u32>,
+    },
+}
+
+/// The table as it stands in the file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    types: Vec<Row>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Row {
+    code: u8,
+    name: String,
+    #[serde(default)]
+    shape: Option<Shape>,
+    #[serde(default)]
+    kit: bool,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Shape {
+    Rotary { periods: u32, turns: u32 },
+    Linear { period_nm: u32 },
+}
+
+impl EncoderTypes {
+    /// The table that ships with the program.
+    pub const BUILT_IN: &'static str = include_str!("../../../../assets/devices/hiperface.ron");
+
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// With line and column where the text is not RON or has unknown keys; with both limits where a number is out of
+    /// its range.
+    pub fn parse(text: &str) -> Result<Self, TypeTableError> {
+        let file: File = ron::from_str(text).map_err(|error| TypeTableError::Syntax {
+            line: error.span.start.line,
+            column: error.span.start.col,
+            what: error.code.to_string(),
+        })?;
+        file.types.into_iter().map(Row::check).collect::<Result<_, _>>().map(EncoderTypes)
+    }
+
+    /// The built-in table.
+    pub fn built_in() -> Self {
+        // Parsing it is tested; an empty table would only make every type unknown.
+        Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
+    }
+
+    /// This table, with the rows of `other` going before its own.
+    #[must_use]
+    pub fn overlaid_with(self, other: EncoderTypes) -> Self {
+        let mut rows = other.0;
+        rows.extend(self.0);
+        EncoderTypes(rows)
+    }
+
+    /// The row of a type byte.
+    pub fn find(&self, code: u8) -> Option<&EncoderType> {
+        self.0.iter().find(|row| row.code == code)
+    }
+}
+
+impl Row {
+    /// 2²⁷: the position word has 32 bits, five of them within a period.
+    const MOST: u32 = 1 << 27;
+
+    fn check(self) -> Result<EncoderType, TypeTableError> {
+        let geometry = match self.shape {
+            None => None,
+            Some(Shape::Rotary { periods, turns }) => {
+                self.within("periods", periods, 1..=Self::MOST)?;
+                self.within("turns", turns, 1..=Self::MOST / periods)?;
+                Some(Geometry::Rotary { periods, turns })
+            }
+            Some(Shape::Linear { period_nm }) => {
+                self.within("period_nm", period_nm, 1..=u32::MAX)?;
+                Some(Geometry::Linear { period_nm, periods: 0 })
+            }
+        };
+        Ok(EncoderType { code: self.code, name: self.name, geometry, kit: self.kit })
+    }
+
+    fn within(&self, quantity: &'static str, value: u32, range: RangeInclusive<u32>) -> Result<(), TypeTableError> {
+        if range.contains(&value) { Ok(()) } else { Err(TypeTableError::Range { code: self.code, quantity, range }) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_built_in_table_is_the_reference() {
+        let types = EncoderTypes::parse(EncoderTypes::BUILT_IN).unwrap();
+        // code, periods, turns, total bits
+        let cases = [
+            (0x02, 512, 1, 14),
+            (0x07, 512, 4096, 26),
+            (0x22, 1024, 1, 15),
+            (0x27, 1024, 4096, 27),
+            (0x32, 128, 1, 12),
+            (0x37, 128, 4096, 24),
+            (0x42, 16, 1, 9),
+            (0x47, 16, 4096, 21),
+        ];
+        for (code, periods, turns, bits) in cases {
+            let geometry = types.find(code).unwrap().geometry.unwrap();
+            assert_eq!(geometry, Geometry::Rotary { periods, turns }, "{code:02X}");
+            assert_eq!(geometry.range(), Some(1 << bits), "{code:02X}");
+        }
+        for (code, mm) in [(0x90, 1), (0x91, 2), (0x92, 4), (0x93, 8), (0x94, 16)] {
+            let geometry = types.find(code).unwrap().geometry;
+            assert_eq!(geometry, Some(Geometry::Linear { period_nm: mm * 1_000_000, periods: 0 }), "{code:02X}");
+        }
+        assert_eq!(types.find(0xFF).unwrap().geometry, None);
+        assert_eq!(types.find(0x82).unwrap().geometry, None);
+        assert_eq!(types.find(0x11), None);
+    }
+
+    #[test]
+    fn a_users_row_goes_before_the_built_in_one() {
+        let own = r#"(types: [(code: 0x37, name: "XYZ", shape: Some(rotary(periods: 64, turns: 1)))])"#;
+        let types = EncoderTypes::built_in().overlaid_with(EncoderTypes::parse(own).unwrap());
+        assert_eq!(types.find(0x37).unwrap().name, "XYZ");
+        assert_eq!(types.find(0x22).unwrap().geometry, Some(Geometry::Rotary { periods: 1024, turns: 1 }));
+    }
+
+    #[test]
+    fn a_bad_table_is_refused_with_its_place() {
+        let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
+        assert!(matches!(EncoderTypes::parse(zero), Err(TypeTableError::Range { code: 1, quantity: "periods", .. })));
+        let misspelt = "(types: [\n(code: 1, nam: \"x\")])";
+        assert!(matches!(EncoderTypes::parse(misspelt), Err(TypeTableError::Syntax { line: 2, .. })));
+        assert!(EncoderTypes::parse("").is_err());
+    }
+}

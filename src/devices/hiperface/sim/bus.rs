@@ -1,0 +1,213 @@
+//! The line between the host's UART and the encoders: every character with its start and end, in time order. It adds
+//! the converter's echo, noise, and what happens when two talk at a time or with different settings. It has no meaning
+//! of its own for a single byte; half duplex and pull-ups: manual, "Parameterkanal".
+
+use std::time::Duration;
+
+use fastrand::Rng;
+
+use super::config::Config;
+use super::encoder::{Encoder, Heard};
+use crate::devices::hiperface::protocol::LineSettings;
+use crate::sim::Faults;
+use crate::sim::line::{Character, Line, Queue, Wires};
+use crate::units::{CharacterFormat, Moment, Parity};
+
+/// A line with one or several encoders, seen from the host. Made of a [`Config`].
+#[derive(Clone)]
+pub struct Bus {
+    encoders: Vec<Encoder>,
+    echo: bool,
+    wires: Wires,
+    /// Characters that encoders are going to hear, by their start.
+    to_encoders: Queue<Travelling>,
+    /// Characters that the host is going to receive, by their end.
+    to_host: Queue<Travelling>,
+    talks: Vec<Talk>,
+}
+
+/// Who drives the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Talker {
+    Host,
+    Encoder(usize),
+}
+
+#[derive(Clone, Copy)]
+struct Travelling {
+    talker: Talker,
+    character: Character,
+    format: CharacterFormat,
+}
+
+/// Somebody drives the line from `start` to `end`.
+#[derive(Clone, Copy, Debug)]
+struct Talk {
+    talker: Talker,
+    start: Moment,
+    end: Moment,
+}
+
+/// What happens next; of events at the same moment the first of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Event {
+    EncoderActs(usize),
+    EncodersHear,
+    HostReceives,
+}
+
+impl Bus {
+    /// More than the slowest character takes: a talk that ended before touches no character still under way.
+    const LONGEST_CHARACTER: Duration = Duration::from_millis(20);
+
+    /// The virtual line as `config` wants it. Its encoders got their power long ago.
+    pub fn new(config: &Config) -> Self {
+        Bus {
+            encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
+            echo: config.echo,
+            wires: Wires::new(&config.faults, config.seed, CharacterFormat::FACTORY),
+            to_encoders: Queue::default(),
+            to_host: Queue::default(),
+            talks: Vec::new(),
+        }
+    }
+
+    /// The encoders, in the order of their first addresses.
+    pub fn encoders(&self) -> &[Encoder] {
+        &self.encoders
+    }
+
+    /// One encoder, 0 first.
+    pub fn encoder(&self, index: usize) -> Option<&Encoder> {
+        self.encoders.get(index)
+    }
+
+    /// One encoder, to turn its shaft or to warm it.
+    pub fn encoder_mut(&mut self, index: usize) -> Option<&mut Encoder> {
+        self.encoders.get_mut(index)
+    }
+
+    /// Other faults from now on: a cable that was mended, or one that breaks only now.
+    pub fn set_faults(&mut self, faults: &Faults) {
+        self.wires.faults = faults.clone();
+        for encoder in &mut self.encoders {
+            encoder.set_faults(faults.clone());
+        }
+    }
+
+    /// Power of all encoders goes and comes back at `now`.
+    pub fn power_cycle(&mut self, now: Moment) {
+        self.advance(now);
+        for encoder in &mut self.encoders {
+            encoder.power_cycle(self.wires.now);
+        }
+        // Who is without power says nothing more.
+        let now = self.wires.now;
+        let is_sent = |own: &Travelling| own.talker == Talker::Host || own.character.start < now;
+        self.to_encoders.retain(is_sent);
+        self.to_host.retain(is_sent);
+    }
+
+    fn let_encoder_act(&mut self, index: usize, at: Moment) {
+        let Some(transmission) = self.encoders.get_mut(index).and_then(|encoder| encoder.act(at)) else { return };
+        if let Some(format) = transmission.settings.format() {
+            self.drive(Talker::Encoder(index), transmission.start, format, &transmission.bytes);
+        }
+    }
+
+    fn let_encoders_hear(&mut self) {
+        let Some((_, travelling)) = self.to_encoders.pop() else { return };
+        let collides = self.collides(&travelling);
+        let Character { start, end, byte, flipped } = travelling.character;
+        for (index, encoder) in self.encoders.iter_mut().enumerate() {
+            // A driver that is on hears only itself.
+            if travelling.talker == Talker::Encoder(index) {
+                continue;
+            }
+            let Some(format) = encoder.settings_at(start).and_then(LineSettings::format) else { continue };
+            let clean = !collides && format == travelling.format;
+            let byte = if clean { byte } else { garbage(&mut self.wires.rng) };
+            // Without a parity bit nobody notices a flipped bit.
+            let intact = clean && (!flipped || format.parity == Parity::None);
+            encoder.hear(Heard { start, end, byte, intact });
+        }
+    }
+
+    fn let_host_receive(&mut self) {
+        let Some((_, travelling)) = self.to_host.pop() else { return };
+        // The usual driver setting passes bytes with a wrong parity bit on as they are.
+        let clean = !self.collides(&travelling) && travelling.format == self.wires.host;
+        let byte = if clean { travelling.character.byte } else { garbage(&mut self.wires.rng) };
+        self.wires.inbox.push(byte);
+    }
+
+    /// Puts bytes on the line, one character after the other, and gives the moment when the last one is through.
+    fn drive(&mut self, talker: Talker, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
+        let sent = self.wires.send(start, format.character_time(), bytes);
+        let on_the_way = |character: Character| Travelling { talker, character, format };
+        for heard in sent.heard.into_iter().map(on_the_way) {
+            if talker != Talker::Host {
+                self.to_host.insert(heard.character.end, heard);
+            }
+            if talker == Talker::Host || self.encoders.len() > 1 {
+                self.to_encoders.insert(heard.character.start, heard);
+            }
+        }
+        if self.echo && talker == Talker::Host {
+            let echo = sent.own.into_iter().map(on_the_way);
+            echo.for_each(|own| self.to_host.insert(own.character.end, own));
+        }
+        let now = self.wires.now;
+        self.talks.retain(|talk| talk.end + Self::LONGEST_CHARACTER > now);
+        self.talks.push(Talk { talker, start, end: sent.end });
+        sent.end
+    }
+
+    /// Somebody else drives the line while this character is on it.
+    fn collides(&self, Travelling { talker, character, .. }: &Travelling) -> bool {
+        let other = |talk: &&Talk| talk.talker != *talker;
+        self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
+    }
+}
+
+/// What a receiver makes of a character that it cannot read. Never an address byte, so that no frame begins with it.
+fn garbage(rng: &mut Rng) -> u8 {
+    rng.u8(0x80..0xFF)
+}
+
+impl Line for Bus {
+    type Event = Event;
+
+    fn wires(&self) -> &Wires {
+        &self.wires
+    }
+
+    fn wires_mut(&mut self) -> &mut Wires {
+        &mut self.wires
+    }
+
+    fn next_event(&self) -> Option<(Moment, Event)> {
+        let acting = |(index, encoder): (usize, &Encoder)| Some((encoder.acts_at()?, Event::EncoderActs(index)));
+        let hearing = self.to_encoders.due().map(|at| (at, Event::EncodersHear));
+        let receiving = self.to_host.due().map(|at| (at, Event::HostReceives));
+        self.encoders.iter().enumerate().filter_map(acting).chain(hearing).chain(receiving).min()
+    }
+
+    fn happen(&mut self, at: Moment, event: Event) {
+        match event {
+            Event::EncoderActs(index) => self.let_encoder_act(index, at),
+            Event::EncodersHear => self.let_encoders_hear(),
+            Event::HostReceives => self.let_host_receive(),
+        }
+    }
+
+    fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment {
+        self.drive(Talker::Host, start, self.wires.host, bytes)
+    }
+
+    fn give_power(&mut self, now: Moment) {
+        for encoder in &mut self.encoders {
+            encoder.connect(now);
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! The settings of a virtual encoder, as the query of a `sim:` link gives them: `seed=7&fault=drop:0.01&encoders=2`. It
+//! opens nothing; [`Bus::new`](super::Bus::new) makes the virtual line.
+
+use super::encoder::Pace;
+use super::models::{MODELS, Model};
+use crate::devices::hiperface::protocol::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
+use crate::sim::setting::Setting;
+use crate::sim::{ConfigError, Faults};
+
+/// What a virtual line with encoders shall be like. The default is one SKM36 as delivered, at rest, without faults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    pub(super) seed: u64,
+    pub(super) faults: Faults,
+    pub(super) model: Model,
+    pub(super) encoder_type: Option<u8>,
+    pub(super) serial_number: Option<String>,
+    pub(super) address: DeviceAddress,
+    pub(super) settings: LineSettings,
+    pub(super) rpm: f64,
+    pub(super) position: Option<u32>,
+    pub(super) temperature: i16,
+    pub(super) echo: bool,
+    pub(super) encoders: u8,
+    pub(super) pace: Pace,
+    pub(super) codes: [AccessCode; 4],
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        let [skm36, ..] = MODELS;
+        Config {
+            seed: 0,
+            faults: Faults::default(),
+            model: skm36,
+            encoder_type: None,
+            serial_number: None,
+            address: DeviceAddress::FACTORY,
+            settings: LineSettings::FACTORY,
+            rpm: 0.0,
+            position: None,
+            temperature: 42,
+            echo: false,
+            encoders: 1,
+            pace: Pace::Typical,
+            codes: [AccessCode::FACTORY; 4],
+        }
+    }
+}
+
+impl Config {
+    /// The keys that [`from_pairs`](Self::from_pairs) takes.
+    pub const KEYS: [&str; 14] = [
+        "seed",
+        "fault",
+        "model",
+        "type",
+        "serial",
+        "address",
+        "settings",
+        "rpm",
+        "position",
+        "temperature",
+        "echo",
+        "encoders",
+        "pace",
+        "codes",
+    ];
+
+    const MAX_ENCODERS: u8 = 8;
+
+    /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
+    /// `0x…`; several encoders have addresses and serial numbers counting up from the first's.
+    ///
+    /// # Errors
+    /// With a sentence that names the key and what is allowed.
+    pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+        let mut config = Config::default();
+        for (key, value) in pairs {
+            config.set(key, value)?;
+        }
+        config.check_together()?;
+        Ok(config)
+    }
+
+    pub(super) fn address_of(&self, index: u8) -> DeviceAddress {
+        DeviceAddress::new(self.address.byte().saturating_add(index)).unwrap_or(self.address)
+    }
+
+    /// The number at the end of the serial number counts up, so that no two encoders are taken for the same one.
+    pub(super) fn serial_number_of(&self, index: u8) -> String {
+        let first = self.serial_number.as_deref().unwrap_or(self.model.serial_number);
+        let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
+        let digits = first.strip_prefix(stem).unwrap_or_default();
+        let width = digits.len();
+        let own = match digits.parse::<u64>() {
+            Ok(number) if index > 0 => {
+                let wrapped = (number + u64::from(index)) % 10u64.saturating_pow(u32::try_from(width).unwrap_or(0));
+                format!("{stem}{wrapped:0width$}")
+            }
+            _ => first.to_owned(),
+        };
+        format!("{own:<9}")
+    }
+
+    /// Periods and turns: of the type given, where it is a known one, else of the model.
+    pub(super) fn geometry(&self, types: &EncoderTypes) -> Geometry {
+        self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
+    }
+
+    /// Without bearing of its own: as the type given has it, where it is a known one, else the model.
+    pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
+        self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
+        let setting = Setting { key, value };
+        let refuse = |allowed: &str| setting.refused(allowed);
+        match key {
+            "seed" => self.seed = setting.number("a whole number")?,
+            "fault" => self.faults = value.parse()?,
+            "model" => {
+                let names = || MODELS.map(|model| model.name).join(", ");
+                self.model = *Model::find(value).ok_or_else(|| refuse(&format!("one of {}", names())))?;
+            }
+            "type" => self.encoder_type = Some(setting.number("a type byte from 0x00 to 0xFF")?),
+            "serial" => {
+                let fits = (1..=9).contains(&value.len()) && value.bytes().all(|c| matches!(c, b' '..=b'~'));
+                self.serial_number =
+                    Some(fits.then(|| value.to_owned()).ok_or_else(|| refuse("one to nine ASCII characters"))?);
+            }
+            "address" => {
+                let allowed = "an address from 0x40 to 0x5F";
+                self.address = DeviceAddress::new(setting.number(allowed)?).ok_or_else(|| refuse(allowed))?;
+            }
+            "settings" => {
+                let allowed = "a settings byte without reserved values, as 0xE4";
+                let settings = LineSettings::from_byte(setting.number(allowed)?);
+                self.settings = Some(settings).filter(|settings| settings.is_valid()).ok_or_else(|| refuse(allowed))?;
+            }
+            "rpm" => self.rpm = setting.rpm()?,
+            "position" => self.position = Some(setting.number("a position in steps")?),
+            "temperature" => {
+                self.temperature = setting.signed(-100..=300, "whole degrees Celsius from -100 to 300")?;
+            }
+            "echo" => self.echo = setting.switch()?,
+            "encoders" => self.encoders = setting.within(1..=Self::MAX_ENCODERS, "a number from 1 to 8")?,
+            "pace" => {
+                let paces = [("typical", Pace::Typical), ("worst", Pace::Worst)];
+                self.pace = setting.one_of(&paces, "typical or worst")?;
+            }
+            "codes" => {
+                // The text itself is not repeated in the error: it holds access codes.
+                let allowed = "NUMBER:HEX for the codes 0 to 3, separated by commas, as 0:55,2:66";
+                self.codes = codes(value).ok_or_else(|| Setting { key, value: "**" }.refused(allowed))?;
+            }
+            _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
+        }
+        Ok(())
+    }
+
+    /// What can only be judged when all keys are read.
+    fn check_together(&self) -> Result<(), ConfigError> {
+        let range = self.geometry(&EncoderTypes::built_in()).range();
+        if let (Some(position), Some(range)) = (self.position, range)
+            && u64::from(position) >= range
+        {
+            let allowed = format!("a position from 0 to {}", range - 1);
+            return Err(Setting { key: "position", value: &position.to_string() }.refused(&allowed));
+        }
+        let last_first = 0x5F - (self.encoders - 1);
+        if self.address.byte() > last_first {
+            let allowed = format!("an address from 0x40 to {last_first:#04X}, so that all encoders have one");
+            let address = format!("{:#04X}", self.address.byte());
+            return Err(Setting { key: "address", value: &address }.refused(&allowed));
+        }
+        Ok(())
+    }
+}
+
+fn codes(text: &str) -> Option<[AccessCode; 4]> {
+    let mut codes = [AccessCode::FACTORY; 4];
+    for item in text.split(',') {
+        let (number, code) = item.split_once(':')?;
+        let entry = codes.get_mut(number.parse::<usize>().ok()?)?;
+        *entry = AccessCode::new(u8::from_str_radix(code, 16).ok()?);
+    }
+    Some(codes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::setting::pairs;
+    use proptest::prelude::*;
+
+    fn read(query: &str) -> Result<Config, ConfigError> {
+        Config::from_pairs(&pairs(query))
+    }
+
+    #[test]
+    fn every_key_is_read() {
+        let config = read(
+            "seed=7&fault=drop:0.5&model=sel37&type=0x47&serial=AB123&address=0x58&settings=0xE5&rpm=-12.5&\
+             position=0x1234&temperature=-10&echo=on&encoders=8&pace=worst&codes=0:12,3:AB",
+        )
+        .unwrap();
+        let expected = Config {
+            seed: 7,
+            faults: "drop:0.5".parse().unwrap(),
+            model: MODELS[2],
+            encoder_type: Some(0x47),
+            serial_number: Some("AB123".to_owned()),
+            address: DeviceAddress::new(0x58).unwrap(),
+            settings: LineSettings::from_byte(0xE5),
+            rpm: -12.5,
+            position: Some(0x1234),
+            temperature: -10,
+            echo: true,
+            encoders: 8,
+            pace: Pace::Worst,
+            codes: [0x12, 0x55, 0x55, 0xAB].map(AccessCode::new),
+        };
+        assert!(config == expected);
+        assert!(Config::from_pairs(&[]) == Ok(Config::default()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_in_a_sentence() {
+        let cases = [
+            (
+                "sed=1",
+                "a virtual encoder has no setting `sed`; allowed are seed, fault, model, type, serial, address, \
+                 settings, rpm, position, temperature, echo, encoders, pace, codes",
+            ),
+            ("model=skm", "`model=skm` cannot be used: allowed is one of skm36, sks36, sel37"),
+            ("address=0x60", "`address=0x60` cannot be used: allowed is an address from 0x40 to 0x5F"),
+            ("echo=yes", "`echo=yes` cannot be used: allowed is on or off"),
+            ("encoders=9", "`encoders=9` cannot be used: allowed is a number from 1 to 8"),
+            ("model=sks36&position=4096", "`position=4096` cannot be used: allowed is a position from 0 to 4095"),
+            (
+                "encoders=2&address=95",
+                "`address=0x5F` cannot be used: allowed is an address from 0x40 to 0x5E, so that all encoders have one",
+            ),
+            (
+                "codes=4:66",
+                "`codes=**` cannot be used: allowed is NUMBER:HEX for the codes 0 to 3, separated by commas, as \
+                 0:55,2:66",
+            ),
+            ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1"),
+        ];
+        for (query, sentence) in cases {
+            assert_eq!(read(query).unwrap_err().to_string(), sentence, "{query}");
+        }
+        for query in ["seed=-1", "type=256", "serial=", "serial=1234567890", "settings=0xE7", "rpm=NaN", "rpm=inf"] {
+            assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");
+        }
+        for query in ["position=-1", "temperature=4.5", "pace=fast", "codes=", "codes=1:155", "encoders=0"] {
+            assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");
+        }
+    }
+
+    #[test]
+    fn serial_numbers_count_up() {
+        let config = Config { serial_number: Some("AB999".to_owned()), ..Config::default() };
+        assert_eq!(config.serial_number_of(0), "AB999    ");
+        assert_eq!(config.serial_number_of(2), "AB001    ");
+        assert_eq!(Config::default().serial_number_of(1), "GB0450180");
+    }
+
+    proptest! {
+        #[test]
+        fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*") {
+            let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| super::super::Bus::new(&config));
+        }
+    }
+}

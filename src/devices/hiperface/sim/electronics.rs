@@ -1,0 +1,276 @@
+//! What an encoder knows and what its twenty commands do to it (manual, "Die Befehle"), without any notion of how long
+//! it takes or how a frame travels: that is the business of [`encoder`](super::encoder).
+
+use std::collections::{BTreeMap, VecDeque};
+
+use super::config::Config;
+use super::memory::Memory;
+use super::models::Model;
+use super::shaft::Shaft;
+use crate::devices::hiperface::protocol::{
+    AccessCode, CodeNumber, Command, DataFieldStatus, DeviceAddress, EncoderTypes, FieldSize, LineSettings, Request,
+    StatusCode,
+};
+use crate::units::Moment;
+
+/// How often the EEPROM was written, by command.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wear(BTreeMap<u8, u32>);
+
+impl Wear {
+    /// Writes that this command has caused.
+    pub fn writes(&self, command: Command) -> u32 {
+        self.0.get(&command.byte()).copied().unwrap_or(0)
+    }
+
+    /// Writes altogether.
+    pub fn total(&self) -> u32 {
+        self.0.values().sum()
+    }
+
+    fn count(&mut self, command: Command) {
+        *self.0.entry(command.byte()).or_default() += 1;
+    }
+}
+
+/// Codes to be fetched with 50h, oldest first. It holds four; what comes when it is full is lost.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StatusQueue(VecDeque<StatusCode>);
+
+impl StatusQueue {
+    const CAPACITY: usize = 4;
+
+    pub(super) fn push(&mut self, code: StatusCode) {
+        if self.0.len() < Self::CAPACITY {
+            self.0.push_back(code);
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn pop(&mut self) -> StatusCode {
+        self.0.pop_front().unwrap_or(StatusCode::OK)
+    }
+}
+
+/// An encoder without its line.
+#[derive(Clone, Debug)]
+pub(super) struct Electronics {
+    model: Model,
+    kit: bool,
+    encoder_type: u8,
+    serial_number: String,
+    pub(super) address: DeviceAddress,
+    /// In force after the next start.
+    pub(super) stored_settings: LineSettings,
+    pub(super) memory: Memory,
+    pub(super) shaft: Shaft,
+    pub(super) queue: StatusQueue,
+    pub(super) wear: Wear,
+    pub(super) counter: u32,
+    temperature: i16,
+}
+
+impl Electronics {
+    /// 24 bits.
+    const COUNTER_END: u32 = 0x00FF_FFFF;
+    /// Analogue channels of the data sheets.
+    const SINE: u8 = 0x00;
+    const COSINE: u8 = 0x01;
+    const TEMPERATURE: u8 = 0x48;
+
+    /// The encoder number `index` of a line, 0 first.
+    pub(super) fn new(config: &Config, index: u8) -> Self {
+        let model = config.model;
+        let types = EncoderTypes::built_in();
+        let position = config.position.unwrap_or(model.position);
+        let mut electronics = Electronics {
+            model,
+            kit: config.is_kit(&types),
+            encoder_type: config.encoder_type.unwrap_or(model.encoder_type),
+            serial_number: config.serial_number_of(index),
+            address: config.address_of(index),
+            stored_settings: config.settings,
+            memory: delivered_memory(&model, config.codes),
+            shaft: Shaft::new(config.geometry(&types), position, config.rpm),
+            queue: StatusQueue::default(),
+            wear: Wear::default(),
+            counter: 0,
+            temperature: config.temperature,
+        };
+        electronics.watch_temperature(i16::MIN);
+        electronics
+    }
+
+    /// Power-on or reset: what was only in RAM is gone, and monitoring begins anew.
+    pub(super) fn restart(&mut self) {
+        self.queue = StatusQueue::default();
+        self.watch_temperature(i16::MIN);
+    }
+
+    pub(super) fn set_temperature(&mut self, celsius: i16) {
+        let before = std::mem::replace(&mut self.temperature, celsius);
+        self.watch_temperature(before);
+    }
+
+    /// The encoder has this command: 63h is for kit encoders only.
+    pub(super) fn has(&self, command: Command) -> bool {
+        command != Command::Synchronise || self.kit
+    }
+
+    /// Carries a request out at `at` and gives the data of its reply. 53h has neither effect nor data here.
+    ///
+    /// # Errors
+    /// The code with which the encoder refuses; then nothing has changed.
+    pub(super) fn execute(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
+        let data = self.carry_out(at, request)?;
+        let command = request.command();
+        if command.row().persistent {
+            self.wear.count(command);
+        }
+        Ok(data)
+    }
+
+    fn carry_out(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
+        match request {
+            Request::ReadPosition => self.read_position(at),
+            Request::SetPosition { position, code0 } | Request::Synchronise { position, code0 } => {
+                if !self.shaft.reaches(*position) {
+                    return Err(StatusCode::ARGUMENT);
+                }
+                self.check_code0(*code0)?;
+                self.shaft.set_position(at, *position);
+                Ok(vec![])
+            }
+            Request::ReadAnalogue { channel } => {
+                let [high, low] = self.analogue(at, *channel)?.to_be_bytes();
+                Ok(vec![*channel, high, low])
+            }
+            Request::ReadCounter => {
+                let [_, c2, c1, c0] = self.counter.to_be_bytes();
+                Ok(vec![c2, c1, c0])
+            }
+            Request::IncrementCounter => {
+                self.counter = (self.counter + 1) & Self::COUNTER_END;
+                if self.counter == 0 {
+                    self.queue.push(StatusCode::COUNTER_OVERFLOW);
+                }
+                Ok(vec![])
+            }
+            Request::ClearCounter { code0 } => {
+                self.check_code0(*code0)?;
+                self.counter = 0;
+                Ok(vec![])
+            }
+            Request::ReadData { field, address, count, code } => {
+                let data = self.memory.read(*field, *address, *count, *code)?;
+                Ok([&[*field, *address, *count], data].concat())
+            }
+            Request::StoreData { field, address, code, data } => {
+                self.memory.store(*field, *address, data, *code)?;
+                // 4Bh carries at most 128 bytes.
+                Ok(vec![*field, *address, u8::try_from(data.len()).unwrap_or(u8::MAX)])
+            }
+            Request::FieldStatus { field } => Ok(vec![*field, self.memory.status(*field)?.byte()]),
+            Request::DefineField { field, status, code } => {
+                self.memory.define(*field, *status, *code)?;
+                Ok(vec![*field, status.byte()])
+            }
+            Request::FreeMemory => {
+                let free = self.memory.free();
+                Ok(vec![free.blocks, free.fields])
+            }
+            Request::ChangeCode { number, old, new } => {
+                self.memory.change_code(*number, *old, *new)?;
+                Ok(vec![number.get()])
+            }
+            Request::ReadStatus => Ok(vec![self.queue.pop().byte()]),
+            Request::ReadTypeLabel => {
+                let Model { eeprom_units, options, .. } = self.model;
+                Ok(vec![self.stored_settings.byte(), self.encoder_type, eeprom_units, options])
+            }
+            Request::Reset => Ok(vec![]),
+            Request::SetAddress { new, code0 } => {
+                self.check_code0(*code0)?;
+                self.address = *new;
+                Ok(vec![new.byte()])
+            }
+            Request::ReadSerial => Ok([
+                self.serial_number.as_bytes(),
+                self.model.firmware_version.as_bytes(),
+                self.model.firmware_date.as_bytes(),
+            ]
+            .concat()),
+            Request::ConfigureLine { settings, code0 } => {
+                self.check_code0(*code0)?;
+                self.stored_settings = *settings;
+                Ok(vec![settings.byte()])
+            }
+            Request::ConfigureLineTemporarily { settings } => Ok(vec![settings.byte()]),
+        }
+    }
+
+    /// 4Bh while power fails: the first half of the bytes is written.
+    ///
+    /// # Errors
+    /// As for the whole store.
+    pub(super) fn store_half(
+        &mut self,
+        field: u8,
+        address: u8,
+        data: &[u8],
+        code: AccessCode,
+    ) -> Result<(), StatusCode> {
+        self.memory.check_store(field, address, data.len(), code)?;
+        let half = data.get(..data.len().div_ceil(2)).unwrap_or(data);
+        self.memory.store(field, address, half, code)?;
+        self.wear.count(Command::StoreData);
+        Ok(())
+    }
+
+    fn read_position(&self, at: Moment) -> Result<Vec<u8>, StatusCode> {
+        if self.shaft.is_too_fast() {
+            return Err(StatusCode::TOO_FAST);
+        }
+        Ok(self.shaft.position(at).to_be_bytes().to_vec())
+    }
+
+    fn analogue(&self, at: Moment, channel: u8) -> Result<i16, StatusCode> {
+        match channel {
+            Self::SINE => Ok(self.shaft.sine(at)),
+            Self::COSINE => Ok(self.shaft.cosine(at)),
+            Self::TEMPERATURE => Ok(self.temperature),
+            _ => Err(StatusCode::ARGUMENT),
+        }
+    }
+
+    fn check_code0(&self, code0: AccessCode) -> Result<(), StatusCode> {
+        self.memory.check_code(CodeNumber::ZERO, code0)
+    }
+
+    /// Reports a temperature that has just passed its limit, once.
+    fn watch_temperature(&mut self, before: i16) {
+        let limit = self.model.temperature_limit;
+        if before <= limit && limit < self.temperature {
+            self.queue.push(StatusCode::TEMPERATURE);
+        }
+    }
+}
+
+/// The memory as the motor's maker delivers it: field 0 with the name plate, the rest free.
+fn delivered_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
+    let mut memory = Memory::new(model.user_blocks);
+    if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {
+        let status = DataFieldStatus::new(size, CodeNumber::ZERO, true);
+        // A name plate that does not fit leaves the field out.
+        let _ = memory
+            .define(0, status, AccessCode::FACTORY)
+            .and_then(|()| memory.store(0, 0, model.name_plate, AccessCode::FACTORY));
+    }
+    if !model.extended_label.is_empty() {
+        memory = memory.with_extended_label(model.extended_label);
+    }
+    memory.with_codes(codes)
+}

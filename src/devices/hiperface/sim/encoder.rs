@@ -1,0 +1,392 @@
+//! One virtual encoder on the line: when it hears, how long it works, when it answers, and with which settings (manual,
+//! "Dialog Timing", figure 38 "Einschaltverhalten", "Fehlerbehandlung"). What a command does is in
+//! [`electronics`](super::electronics); who else talks at the same time is known to the [`Bus`](super::Bus) alone.
+//!
+//! ```text
+//! off ── power ──▶ INIT (deaf) ── 100 ms ──▶ DEFAULT (factory settings) ── 900 ms ──▶ SWITCH (deaf) ── 200 ms ──▶ USER
+//!                                               └── plausible command: keeps the factory settings
+//! listening ── silence ≥ time-out ──▶ executing ──▶ talking ──▶ listening
+//! ```
+//! Left open by the manual (`U`) and chosen here: what the encoder is sent while it works or talks is lost, to the end of
+//! that frame; its own reply ends a frame at once; a broken broadcast is not answered.
+
+use std::time::Duration;
+
+use super::config::Config;
+use super::electronics::{Electronics, Wear};
+use super::memory::Memory;
+use crate::devices::hiperface::protocol::{
+    BROADCAST, Command, DeviceAddress, Frame, FrameError, LineSettings, Request, StatusCode, Timing, checksum,
+};
+use crate::sim::Faults;
+use crate::units::Moment;
+
+/// How long the encoder works on a command.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pace {
+    /// As observed: 3.7 ms for the position, 20 ms and 1.5 ms a byte for a store, half of the longest time for the rest.
+    #[default]
+    Typical,
+    /// Always the longest time of the manual's table.
+    Worst,
+}
+
+impl Pace {
+    const READ_POSITION: Duration = Duration::from_micros(3_700);
+    const STORE: Duration = Duration::from_millis(20);
+    const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
+
+    /// A refused frame takes the time of the status that answers it.
+    fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
+        let longest = |command: Command| command.row().max_time;
+        match (self, verdict) {
+            (Pace::Worst, Ok(request)) => longest(request.command()),
+            (Pace::Worst, Err(_)) => longest(Command::ReadStatus),
+            (Pace::Typical, Ok(Request::ReadPosition)) => Self::READ_POSITION,
+            (Pace::Typical, Ok(Request::StoreData { data, .. })) => {
+                Self::STORE + Self::STORE_A_BYTE * u32::try_from(data.len()).unwrap_or(u32::MAX)
+            }
+            (Pace::Typical, Ok(request)) => longest(request.command()) / 2,
+            (Pace::Typical, Err(_)) => longest(Command::ReadStatus) / 2,
+        }
+    }
+}
+
+/// A character at an encoder's receiver.
+#[derive(Clone, Copy)]
+pub(super) struct Heard {
+    pub(super) start: Moment,
+    pub(super) end: Moment,
+    pub(super) byte: u8,
+    /// Its parity bit fits, and its stop bit is where it belongs.
+    pub(super) intact: bool,
+}
+
+/// A reply that begins now.
+#[derive(Clone)]
+pub(super) struct Transmission {
+    pub(super) start: Moment,
+    pub(super) settings: LineSettings,
+    pub(super) bytes: Vec<u8>,
+}
+
+/// A virtual encoder. Moments are those of the [`Bus`](super::Bus) it is on. It has no `Debug`: frames in it may carry
+/// access codes.
+#[derive(Clone)]
+pub struct Encoder {
+    electronics: Electronics,
+    faults: Faults,
+    pace: Pace,
+    power: Power,
+    /// Stored settings as they were at the last start.
+    user: LineSettings,
+    /// 67h.
+    temporary: Option<LineSettings>,
+    activity: Activity,
+    /// End of the last character that was lost, and the rest of its frame with it.
+    lost: Option<Moment>,
+    frames_processed: u32,
+    stores_begun: u32,
+    silent: bool,
+}
+
+#[derive(Clone, Debug)]
+enum Power {
+    Off,
+    /// Switched on at that moment; in the DEFAULT window came a plausible command, or not.
+    Starting {
+        since: Moment,
+        keeps_default: bool,
+    },
+    OnForLong,
+}
+
+#[derive(Clone)]
+enum Activity {
+    Listening(Option<Reception>),
+    Executing { until: Moment, settings: LineSettings, verdict: Result<Request, StatusCode> },
+    Talking { until: Moment },
+}
+
+/// A frame that is being heard.
+#[derive(Clone)]
+struct Reception {
+    bytes: Vec<u8>,
+    intact: bool,
+    overlong: bool,
+    /// Silence lasts long enough then, unless another character begins before.
+    ends: Moment,
+}
+
+impl Reception {
+    /// More than the longest request has (4Bh with 128 bytes: 135).
+    const CAPACITY: usize = 140;
+
+    fn beginning(ends: Moment) -> Self {
+        Reception { bytes: Vec::new(), intact: true, overlong: false, ends }
+    }
+}
+
+impl Encoder {
+    pub(super) fn new(config: &Config, index: u8) -> Self {
+        Encoder {
+            electronics: Electronics::new(config, index),
+            faults: config.faults.clone(),
+            pace: config.pace,
+            power: Power::OnForLong,
+            user: config.settings,
+            temporary: None,
+            activity: Activity::Listening(None),
+            lost: None,
+            frames_processed: 0,
+            stores_begun: 0,
+            silent: config.faults.silent_after() == Some(0),
+        }
+    }
+
+    /// The address it obeys.
+    pub fn address(&self) -> DeviceAddress {
+        self.electronics.address
+    }
+
+    /// Its data fields and access codes.
+    pub fn memory(&self) -> &Memory {
+        &self.electronics.memory
+    }
+
+    /// How often its EEPROM was written.
+    pub fn wear(&self) -> &Wear {
+        &self.electronics.wear
+    }
+
+    /// The 24-bit counter.
+    pub fn counter(&self) -> u32 {
+        self.electronics.counter
+    }
+
+    /// Sets the counter (24 bits are taken) without wear.
+    pub fn set_counter(&mut self, counter: u32) {
+        self.electronics.counter = counter & 0x00FF_FFFF;
+    }
+
+    /// The position word at a moment.
+    pub fn position(&self, at: Moment) -> u32 {
+        self.electronics.shaft.position(at)
+    }
+
+    /// Turns the shaft at another speed from `now` on.
+    pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        self.electronics.shaft.set_rpm(now, rpm);
+    }
+
+    /// Warms or cools it; beyond the limit it warns once (code 1Eh).
+    pub fn set_temperature(&mut self, celsius: i16) {
+        self.electronics.set_temperature(celsius);
+    }
+
+    /// Its monitoring finds something: a code for the queue. Lost when four wait already.
+    pub fn report(&mut self, code: StatusCode) {
+        self.electronics.queue.push(code);
+    }
+
+    /// The settings stored with 57h, in force after the next start.
+    pub fn stored_settings(&self) -> LineSettings {
+        self.electronics.stored_settings
+    }
+
+    /// The settings it listens with at a moment; `None` while it is deaf.
+    pub fn settings_at(&self, at: Moment) -> Option<LineSettings> {
+        if self.silent {
+            return None;
+        }
+        let switched = self.temporary.unwrap_or(self.user);
+        match self.power {
+            Power::Off => None,
+            Power::OnForLong => Some(switched),
+            Power::Starting { since, keeps_default } => {
+                let running = at.since(since);
+                let factory = Some(self.temporary.unwrap_or(LineSettings::FACTORY));
+                if running < Timing::INITIALISATION {
+                    None
+                } else if keeps_default || running < Timing::DEFAULT_WINDOW_END {
+                    factory
+                } else if running < Timing::DEFAULT_WINDOW_END + Timing::SWITCH {
+                    None
+                } else {
+                    Some(switched)
+                }
+            }
+        }
+    }
+
+    /// Other faults from now on; frames and stores are counted on.
+    pub(super) fn set_faults(&mut self, faults: Faults) {
+        self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
+        self.faults = faults;
+    }
+
+    /// Power goes and comes back at `now`.
+    pub(super) fn power_cycle(&mut self, now: Moment) {
+        self.power_off();
+        self.power_on(now);
+    }
+
+    /// Gives the power back to an encoder that has lost it.
+    pub(super) fn connect(&mut self, now: Moment) {
+        if matches!(self.power, Power::Off) {
+            self.power_on(now);
+        }
+    }
+
+    fn power_off(&mut self) {
+        self.power = Power::Off;
+        self.activity = Activity::Listening(None);
+    }
+
+    /// Power-on and 53h alike.
+    fn power_on(&mut self, now: Moment) {
+        self.power = Power::Starting { since: now, keeps_default: false };
+        self.user = self.electronics.stored_settings;
+        self.temporary = None;
+        self.activity = Activity::Listening(None);
+        self.lost = None;
+        self.electronics.restart();
+    }
+
+    /// When [`act`](Self::act) is to be called next.
+    pub(super) fn acts_at(&self) -> Option<Moment> {
+        match &self.activity {
+            Activity::Listening(reception) => reception.as_ref().map(|reception| reception.ends),
+            Activity::Executing { until, .. } | Activity::Talking { until } => Some(*until),
+        }
+    }
+
+    /// A character begins at its receiver; everything due before has been [done](Self::act).
+    pub(super) fn hear(&mut self, heard: Heard) {
+        let Some(settings) = self.settings_at(heard.start) else { return };
+        let Some(timing) = Timing::of_settings(settings) else { return };
+        let in_lost_frame = self.lost.is_some_and(|end| heard.start < end + timing.timeout);
+        match &mut self.activity {
+            Activity::Listening(reception) if !in_lost_frame => {
+                let ends = heard.end + timing.timeout;
+                let reception = reception.get_or_insert_with(|| Reception::beginning(ends));
+                reception.ends = ends;
+                reception.intact &= heard.intact;
+                if reception.bytes.len() < Reception::CAPACITY {
+                    reception.bytes.push(heard.byte);
+                } else {
+                    reception.overlong = true;
+                }
+            }
+            _ => self.lost = Some(heard.end),
+        }
+    }
+
+    /// Does what is due at `at`, the moment given by [`acts_at`](Self::acts_at).
+    pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
+        match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
+            Activity::Listening(Some(reception)) => {
+                self.end_of_frame(at, &reception);
+                None
+            }
+            Activity::Executing { settings, verdict, .. } => self.answer(at, settings, verdict),
+            Activity::Listening(None) | Activity::Talking { .. } => None,
+        }
+    }
+
+    fn end_of_frame(&mut self, at: Moment, reception: &Reception) {
+        // A frame that ends while the settings are switched is lost.
+        let Some(settings) = self.settings_at(at) else { return };
+        let broadcast = match reception.bytes.first() {
+            Some(&BROADCAST) => true,
+            Some(first) if *first == self.address().byte() => false,
+            _ => return,
+        };
+        let frame = if reception.overlong { Err(StatusCode::LENGTH) } else { valid_frame(reception) };
+        if frame.is_err() && broadcast {
+            return;
+        }
+        if self.faults.silent_after() == Some(self.frames_processed) {
+            self.silent = true;
+            return;
+        }
+        self.frames_processed = self.frames_processed.saturating_add(1);
+        let verdict = frame.and_then(|frame| self.understand(&frame));
+        if let (Power::Starting { since, keeps_default }, Ok(_)) = (&mut self.power, &verdict)
+            && at.since(*since) < Timing::DEFAULT_WINDOW_END
+        {
+            *keeps_default = true;
+        }
+        if verdict == Ok(Request::Reset) {
+            self.power_on(at);
+            return;
+        }
+        let until = at + self.pace.time(&verdict) + self.faults.delay();
+        self.activity = Activity::Executing { until, settings, verdict };
+    }
+
+    /// Whether the encoder has the command comes before its length and arguments.
+    fn understand(&self, frame: &Frame<'_>) -> Result<Request, StatusCode> {
+        if Command::from_byte(frame.command).is_some_and(|command| !self.electronics.has(command)) {
+            return Err(StatusCode::UNKNOWN_COMMAND);
+        }
+        Request::parse(frame).map_err(|error| error.status())
+    }
+
+    /// The end of processing: the effect, and the first bit of the reply.
+    fn answer(
+        &mut self,
+        at: Moment,
+        settings: LineSettings,
+        verdict: Result<Request, StatusCode>,
+    ) -> Option<Transmission> {
+        let address = self.address().byte();
+        if let Ok(request) = &verdict
+            && self.dies_in(request)
+        {
+            self.power_off();
+            return None;
+        }
+        let outcome = verdict.and_then(|request| {
+            let data = self.electronics.execute(at, &request)?;
+            Ok((request, data))
+        });
+        let error_bit = if self.electronics.queue.is_empty() { 0 } else { Frame::ERROR_BIT };
+        let (command, payload) = match &outcome {
+            Ok((request, data)) => (request.command(), data.as_slice()),
+            Err(code) => (Command::ReadStatus, &[code.byte()][..]),
+        };
+        let bytes = Frame { address, command: command.byte() | error_bit, payload }.emit();
+        // The settings were in force when the request was heard, so that they are no reserved ones.
+        let talk = Timing::of_settings(settings).map_or(Duration::ZERO, |timing| timing.characters(bytes.len()));
+        self.activity = Activity::Talking { until: at + talk };
+        if let Ok((Request::ConfigureLineTemporarily { settings }, _)) = outcome {
+            // In force from the end of the reply on: until then nothing is heard anyway.
+            self.temporary = Some(settings);
+        }
+        Some(Transmission { start: at, settings, bytes })
+    }
+
+    /// The store in which power is lost: half of it is written.
+    fn dies_in(&mut self, request: &Request) -> bool {
+        let Request::StoreData { field, address, code, data } = request else { return false };
+        if self.electronics.memory.check_store(*field, *address, data.len(), *code).is_err() {
+            return false;
+        }
+        self.stores_begun = self.stores_begun.saturating_add(1);
+        self.faults.die_in_store() == Some(self.stores_begun)
+            && self.electronics.store_half(*field, *address, data, *code).is_ok()
+    }
+}
+
+/// Parity first, then the checksum, then the length: the order of the reference.
+fn valid_frame(reception: &Reception) -> Result<Frame<'_>, StatusCode> {
+    if !reception.intact {
+        return Err(StatusCode::PARITY);
+    }
+    Frame::parse(&reception.bytes).map_err(|error| match error {
+        FrameError::Checksum { .. } => StatusCode::CHECKSUM,
+        FrameError::Short { .. } if checksum(&reception.bytes) != 0 => StatusCode::CHECKSUM,
+        FrameError::Short { .. } => StatusCode::LENGTH,
+    })
+}

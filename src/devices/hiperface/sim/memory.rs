@@ -1,0 +1,314 @@
+//! The EEPROM of an encoder: data fields one after the other, and four access codes (manual, "Datenspeicherung und
+//! Verwaltung"). It refuses with the status codes of the reference, in the order field (12h), range (11h), access code
+//! (0Fh), write enable (0Eh), size (10h). It knows nothing of frames, time or wear.
+//!
+//! Left open by the manual (`U`) and chosen here: bytes never written are FFh; a deleted field's bytes stay where they
+//! are and show again in a field created in their place; a change of a field asks for its present code.
+
+use std::ops::Range;
+
+use crate::devices::hiperface::protocol::{
+    AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, StatusCode,
+};
+
+/// Data fields and access codes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Memory {
+    bytes: Vec<u8>,
+    fields: Vec<DataFieldStatus>,
+    codes: [AccessCode; 4],
+    extended_label: Option<Vec<u8>>,
+}
+
+impl Memory {
+    /// E, not WE, code 0, no code required, 64 bytes.
+    const LABEL_STATUS: DataFieldStatus = DataFieldStatus::from_byte(0x83);
+
+    /// `blocks` of 16 bytes without any field, every access code at its factory value.
+    pub fn new(blocks: u8) -> Self {
+        Memory {
+            bytes: vec![0xFF; usize::from(blocks) * FieldSize::BLOCK],
+            fields: Vec::new(),
+            codes: [AccessCode::FACTORY; 4],
+            extended_label: None,
+        }
+    }
+
+    /// The same memory with a read-only field FFh of 64 bytes.
+    #[must_use]
+    pub(super) fn with_extended_label(mut self, content: &[u8]) -> Self {
+        let mut label = content.to_vec();
+        label.resize(Self::LABEL_STATUS.size().bytes(), 0);
+        self.extended_label = Some(label);
+        self
+    }
+
+    /// The same memory with other access codes.
+    #[must_use]
+    pub(super) fn with_codes(mut self, codes: [AccessCode; 4]) -> Self {
+        self.codes = codes;
+        self
+    }
+
+    /// 4Eh.
+    pub fn free(&self) -> FreeMemory {
+        let blocks = (self.bytes.len() - self.used()) / FieldSize::BLOCK;
+        // Both fit: a memory has at most 255 blocks, and a field at least one.
+        let byte = |count: usize| u8::try_from(count).unwrap_or(u8::MAX);
+        FreeMemory { blocks: byte(blocks), fields: byte(self.fields.len()) }
+    }
+
+    /// 4Ch.
+    ///
+    /// # Errors
+    /// 12h for a field that does not exist.
+    pub fn status(&self, field: u8) -> Result<DataFieldStatus, StatusCode> {
+        if field == EXTENDED_LABEL_FIELD {
+            return self.extended_label.as_ref().map(|_| Self::LABEL_STATUS).ok_or(StatusCode::NO_SUCH_FIELD);
+        }
+        self.fields.get(usize::from(field)).copied().ok_or(StatusCode::NO_SUCH_FIELD)
+    }
+
+    /// All bytes of a field, whatever its code; `None` where it does not exist.
+    pub fn field_bytes(&self, field: u8) -> Option<&[u8]> {
+        if field == EXTENDED_LABEL_FIELD {
+            return self.extended_label.as_deref();
+        }
+        self.bytes.get(self.place(field)?)
+    }
+
+    /// The present value of an access code.
+    pub fn code(&self, number: CodeNumber) -> AccessCode {
+        // A number is 0…3; the factory value stands in for the impossible.
+        self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
+    }
+
+    /// 4Ah.
+    ///
+    /// # Errors
+    /// 12h, 11h, and 0Fh where the field asks for its code.
+    pub fn read(&self, field: u8, address: u8, count: u8, code: AccessCode) -> Result<&[u8], StatusCode> {
+        let status = self.status(field)?;
+        let bytes = self.field_bytes(field).ok_or(StatusCode::NO_SUCH_FIELD)?;
+        let start = usize::from(address);
+        let wanted = bytes.get(start..start + usize::from(count)).ok_or(StatusCode::OUT_OF_FIELD)?;
+        self.check_code_if_required(status, code)?;
+        Ok(wanted)
+    }
+
+    /// Whether 4Bh with `count` bytes would be carried out.
+    ///
+    /// # Errors
+    /// 12h, 11h, 0Fh where the field asks for its code, 0Eh where it is write protected (FFh always is).
+    pub fn check_store(&self, field: u8, address: u8, count: usize, code: AccessCode) -> Result<(), StatusCode> {
+        let status = self.status(field)?;
+        if usize::from(address) + count > status.size().bytes() {
+            return Err(StatusCode::OUT_OF_FIELD);
+        }
+        self.check_code_if_required(status, code)?;
+        if status.is_writable() { Ok(()) } else { Err(StatusCode::WRITE_PROTECTED) }
+    }
+
+    /// 4Bh.
+    ///
+    /// # Errors
+    /// Those of [`check_store`](Self::check_store); then nothing is written.
+    pub fn store(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
+        self.check_store(field, address, data.len(), code)?;
+        let start = self.place(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
+        let target = self.bytes.get_mut(start..start + data.len()).ok_or(StatusCode::OUT_OF_FIELD)?;
+        target.copy_from_slice(data);
+        Ok(())
+    }
+
+    /// 4Dh: creates the next field, changes or deletes an existing one.
+    ///
+    /// # Errors
+    /// 12h for a number beyond the next one, 0Fh for a wrong code, 0Eh for FFh, 10h when there is no room, when another
+    /// than the last field is to change its size or to be deleted.
+    pub fn define(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
+        let next = usize::from(field) == self.fields.len() && field != EXTENDED_LABEL_FIELD;
+        match (next, status.exists()) {
+            (true, true) => self.create(status, code),
+            (_, true) => self.change(field, status, code),
+            (_, false) => self.delete(field, code),
+        }
+    }
+
+    /// 4Fh.
+    ///
+    /// # Errors
+    /// 0Fh when `old` is not the present value.
+    pub fn change_code(&mut self, number: CodeNumber, old: AccessCode, new: AccessCode) -> Result<(), StatusCode> {
+        self.check_code(number, old)?;
+        if let Some(code) = self.codes.get_mut(usize::from(number.get())) {
+            *code = new;
+        }
+        Ok(())
+    }
+
+    /// The check of every command that asks for one particular code.
+    pub(super) fn check_code(&self, number: CodeNumber, code: AccessCode) -> Result<(), StatusCode> {
+        if self.code(number) == code { Ok(()) } else { Err(StatusCode::WRONG_CODE) }
+    }
+
+    fn create(&mut self, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
+        self.check_code(status.code(), code)?;
+        if self.used() + status.size().bytes() > self.bytes.len() {
+            return Err(StatusCode::SIZE_FIXED);
+        }
+        self.fields.push(status);
+        Ok(())
+    }
+
+    fn change(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
+        let present = self.check_owner(field, code)?;
+        let used_then = self.used() - present.size().bytes() + status.size().bytes();
+        if present.size() != status.size() && (!self.is_last(field) || used_then > self.bytes.len()) {
+            return Err(StatusCode::SIZE_FIXED);
+        }
+        if let Some(entry) = self.fields.get_mut(usize::from(field)) {
+            *entry = status;
+        }
+        Ok(())
+    }
+
+    fn delete(&mut self, field: u8, code: AccessCode) -> Result<(), StatusCode> {
+        self.check_owner(field, code)?;
+        if !self.is_last(field) {
+            return Err(StatusCode::SIZE_FIXED);
+        }
+        self.fields.pop();
+        Ok(())
+    }
+
+    /// The field's present status, if `code` is its code (asked for even where CE is 0) and it is not the encoder's own.
+    fn check_owner(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
+        let present = self.status(field)?;
+        self.check_code(present.code(), code)?;
+        if field == EXTENDED_LABEL_FIELD { Err(StatusCode::WRITE_PROTECTED) } else { Ok(present) }
+    }
+
+    fn check_code_if_required(&self, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
+        if status.code_required() { self.check_code(status.code(), code) } else { Ok(()) }
+    }
+
+    fn is_last(&self, field: u8) -> bool {
+        usize::from(field) + 1 == self.fields.len()
+    }
+
+    fn used(&self) -> usize {
+        self.fields.iter().map(|status| status.size().bytes()).sum()
+    }
+
+    fn place(&self, field: u8) -> Option<Range<usize>> {
+        let number = usize::from(field);
+        let size = self.fields.get(number)?.size().bytes();
+        let start: usize = self.fields.iter().take(number).map(|status| status.size().bytes()).sum();
+        Some(start..start + size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CODE: AccessCode = AccessCode::FACTORY;
+    const WRONG: AccessCode = AccessCode::new(0x00);
+
+    fn status(byte: u8) -> DataFieldStatus {
+        DataFieldStatus::from_byte(byte)
+    }
+
+    /// Field 0: 32 bytes, field 1: 16 bytes, of 8 blocks.
+    fn two_fields() -> Memory {
+        let mut memory = Memory::new(8);
+        memory.define(0, status(0xC9), CODE).unwrap();
+        memory.define(1, status(0xE8), CODE).unwrap();
+        memory
+    }
+
+    #[test]
+    fn fields_lie_one_after_the_other() {
+        let mut memory = two_fields();
+        assert_eq!(memory.free(), FreeMemory { blocks: 5, fields: 2 });
+        memory.store(0, 31, &[1], CODE).unwrap();
+        memory.store(1, 0, &[2], CODE).unwrap();
+        assert_eq!(memory.bytes[31..33], [1, 2]);
+        assert_eq!(memory.field_bytes(1).unwrap()[..2], [2, 0xFF]);
+        assert_eq!(memory.field_bytes(2), None);
+    }
+
+    #[test]
+    fn refusals_of_reading_and_writing() {
+        let mut memory = two_fields();
+        assert_eq!(memory.read(2, 0, 1, CODE), Err(StatusCode::NO_SUCH_FIELD));
+        assert_eq!(memory.read(1, 16, 1, WRONG), Err(StatusCode::OUT_OF_FIELD));
+        assert_eq!(memory.read(1, 15, 1, WRONG), Err(StatusCode::WRONG_CODE));
+        assert_eq!(memory.store(2, 0, &[0], CODE), Err(StatusCode::NO_SUCH_FIELD));
+        assert_eq!(memory.store(0, 31, &[0, 0], CODE), Err(StatusCode::OUT_OF_FIELD));
+        memory.define(1, status(0xA8), CODE).unwrap(); // WE = 0
+        assert_eq!(memory.store(1, 0, &[0], WRONG), Err(StatusCode::WRONG_CODE));
+        assert_eq!(memory.store(1, 0, &[0], CODE), Err(StatusCode::WRITE_PROTECTED));
+        memory.define(1, status(0xE0), CODE).unwrap(); // CE = 0
+        assert_eq!(memory.store(1, 0, &[7], WRONG), Ok(()));
+        assert_eq!(memory.read(1, 0, 1, WRONG), Ok(&[7][..]));
+    }
+
+    #[test]
+    fn refusals_of_defining() {
+        let mut memory = two_fields();
+        // what, field, status, code, answer
+        let cases = [
+            ("a number is left out", 3, 0xC8, CODE, StatusCode::NO_SUCH_FIELD),
+            ("deleting the next", 2, 0x48, CODE, StatusCode::NO_SUCH_FIELD),
+            ("wrong code to create", 2, 0xC8, WRONG, StatusCode::WRONG_CODE),
+            ("six blocks, five are free", 2, 0xCD, CODE, StatusCode::SIZE_FIXED),
+            ("wrong code to change, though CE = 0 is asked", 1, 0xE0, WRONG, StatusCode::WRONG_CODE),
+            ("size of a field that is not the last", 0, 0xC8, CODE, StatusCode::SIZE_FIXED),
+            ("seven blocks, six are there", 1, 0xEE, CODE, StatusCode::SIZE_FIXED),
+            ("deleting a field that is not the last", 0, 0x49, CODE, StatusCode::SIZE_FIXED),
+            ("there is no label", 0xFF, 0xC8, CODE, StatusCode::NO_SUCH_FIELD),
+        ];
+        let before = memory.clone();
+        for (what, field, byte, code, answer) in cases {
+            assert_eq!(memory.define(field, status(byte), code), Err(answer), "{what}");
+        }
+        assert!(memory == before, "what is refused changes nothing");
+    }
+
+    #[test]
+    fn a_changed_field_is_guarded_by_its_present_code() {
+        let mut memory = two_fields();
+        let code2 = CodeNumber::new(2).unwrap();
+        memory.change_code(code2, CODE, AccessCode::new(0x66)).unwrap();
+        assert_eq!(memory.change_code(code2, CODE, CODE), Err(StatusCode::WRONG_CODE));
+        // Field 1 moves from code 2 to code 0: the code 2 is asked for.
+        assert_eq!(memory.define(1, status(0xC8), CODE), Err(StatusCode::WRONG_CODE));
+        assert_eq!(memory.define(1, status(0xC8), AccessCode::new(0x66)), Ok(()));
+        assert_eq!(memory.read(1, 0, 1, CODE), Ok(&[0xFF][..]));
+    }
+
+    #[test]
+    fn the_last_field_grows_shrinks_and_goes_and_its_content_stays() {
+        let mut memory = two_fields();
+        memory.store(1, 0, &[0x08, 0x15], CODE).unwrap();
+        memory.define(1, status(0xED), CODE).unwrap();
+        assert_eq!(memory.free(), FreeMemory { blocks: 0, fields: 2 });
+        memory.define(1, status(0x68), CODE).unwrap();
+        assert_eq!(memory.free(), FreeMemory { blocks: 6, fields: 1 });
+        memory.define(1, status(0xC8), CODE).unwrap();
+        assert_eq!(memory.field_bytes(1).unwrap()[..3], [0x08, 0x15, 0xFF]);
+    }
+
+    #[test]
+    fn the_label_is_read_without_a_code_and_never_written() {
+        let mut memory = Memory::new(8).with_extended_label(&[0x53]);
+        assert_eq!(memory.status(0xFF).unwrap().byte(), 0x83);
+        assert_eq!(memory.read(0xFF, 0, 64, WRONG).unwrap().len(), 64);
+        assert_eq!(memory.read(0xFF, 1, 64, CODE), Err(StatusCode::OUT_OF_FIELD));
+        assert_eq!(memory.store(0xFF, 0, &[0], CODE), Err(StatusCode::WRITE_PROTECTED));
+        assert_eq!(memory.define(0xFF, status(0x03), CODE), Err(StatusCode::WRITE_PROTECTED));
+        assert_eq!(memory.free().fields, 0, "the label is not counted");
+    }
+}

@@ -1,0 +1,111 @@
+//! The encoders that can be simulated, as data (types and geometry: SICK data sheets; field FFh: manual, "Inhalt des
+//! Datenfeldes FFh").
+
+use crate::devices::hiperface::protocol::Geometry;
+
+/// What an encoder is when it leaves the factory (and the motor's, for data field 0).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    /// The name used in `sim:?model=`.
+    pub name: &'static str,
+    /// Type byte of 52h; FFh refers to the extended label.
+    pub encoder_type: u8,
+    /// Periods and turns.
+    pub geometry: Geometry,
+    /// Without a bearing of its own: it has command 63h.
+    pub kit: bool,
+    /// Nine characters.
+    pub serial_number: &'static str,
+    /// Up to twenty characters.
+    pub firmware_version: &'static str,
+    /// `DD.MM.YY`.
+    pub firmware_date: &'static str,
+    /// EEPROM size in units of 16 bytes, as 52h tells it; part of it is the encoder's own.
+    pub eeprom_units: u8,
+    /// Blocks of 16 bytes for data fields.
+    pub user_blocks: u8,
+    /// Options byte of 52h.
+    pub options: u8,
+    /// Position at the start, in steps.
+    pub position: u32,
+    /// Degrees Celsius above which code 1Eh is reported.
+    pub temperature_limit: i16,
+    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32); empty: there is no field.
+    pub name_plate: &'static [u8],
+    /// Content of field FFh; it is filled up with 00h to 64 bytes. Empty: there is none.
+    pub extended_label: &'static [u8],
+}
+
+/// Every model; the first is the default.
+#[rustfmt::skip]
+pub const MODELS: [Model; 3] = [
+    Model { name: "skm36", encoder_type: 0x37, geometry: rotary(128, 4096), serial_number: "GB0450179", position: 0x000E_0531, ..COMMON },
+    Model { name: "sks36", encoder_type: 0x32, geometry: rotary(128, 1),    serial_number: "GB0463022", position: 0x0000_0531, ..COMMON },
+    Model { name: "sel37", encoder_type: 0xFF, geometry: rotary(16, 4096),  serial_number: "1730A0042", position: 0x000E_0531, kit: true, name_plate: KIT_MOTOR, extended_label: SEL37_LABEL, ..COMMON },
+];
+
+const COMMON: Model = Model {
+    name: "",
+    encoder_type: 0,
+    geometry: rotary(1, 1),
+    kit: false,
+    serial_number: "",
+    firmware_version: "V1.23",
+    firmware_date: "01.02.16",
+    eeprom_units: 0x80,
+    user_blocks: 112,
+    options: 0x01,
+    position: 0,
+    temperature_limit: 115,
+    name_plate: MOTOR,
+    extended_label: &[],
+};
+
+const fn rotary(periods: u32, turns: u32) -> Geometry {
+    Geometry::Rotary { periods, turns }
+}
+
+/// A servo motor's name plate as a drive maker might lay it out: designation, then big-endian words: speed in 1/min,
+/// rated and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, serial number (32 bit).
+const MOTOR: &[u8] = b"EMD71K-4 3000rpm\x0B\xB8\x01\x22\x03\x66\x00\x03\x00\xE6\x2A\x5F\x00\x01\xE2\x40";
+
+/// The same layout for the motor into which the kit encoder was built.
+const KIT_MOTOR: &[u8] = b"SMK42-08 4500rpm\x11\x94\x00\xB4\x02\x1C\x00\x04\x00\x30\x71\xC4\x00\x03\x0D\x40";
+
+/// 16 periods, 4096 turns, limits 0 and 1 valid: channel 48h, 115 °C. The first byte is the XOR of all others.
+const SEL37_LABEL: &[u8] = b"\x53\x00\x00\x00\x00\x10\x00\x00\x10\x00SEL37-HFB0-K02    \x00\x03\x00\x48\x00\x73";
+
+impl Model {
+    /// The model of that name.
+    pub fn find(name: &str) -> Option<&'static Model> {
+        MODELS.iter().find(|model| model.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperface::protocol::ExtendedLabel;
+
+    #[test]
+    fn every_model_is_possible() {
+        for model in MODELS {
+            assert_eq!(Model::find(model.name), Some(&model));
+            assert_eq!(model.serial_number.len(), 9, "{}", model.name);
+            assert_eq!(model.firmware_date.len(), 8, "{}", model.name);
+            assert!(model.firmware_version.len() <= 20, "{}", model.name);
+            assert_eq!(model.name_plate.len(), 32, "{}", model.name);
+            assert!(u64::from(model.position) < model.geometry.range().unwrap(), "{}", model.name);
+            assert_eq!(model.encoder_type == 0xFF, !model.extended_label.is_empty(), "{}", model.name);
+        }
+        assert_eq!(Model::find("skm37"), None);
+    }
+
+    #[test]
+    fn the_kits_label_is_the_one_of_the_reference() {
+        let label = ExtendedLabel::parse(SEL37_LABEL).unwrap();
+        assert!(label.checksum_fits);
+        assert_eq!(label.designation, "SEL37-HFB0-K02");
+        assert_eq!(label.geometry, Some(rotary(16, 4096)));
+    }
+}

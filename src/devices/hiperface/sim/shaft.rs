@@ -1,0 +1,156 @@
+//! The shaft (or scale) and what the encoder sees of it: the position as an exact function of time, and the sine and
+//! cosine signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical place plus an
+//! offset; the analogue signals know only the mechanical place, so that setting a position may break their phase, as
+//! it does with a real encoder.
+
+use std::f64::consts::TAU;
+
+use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
+use crate::units::Moment;
+
+/// A shaft turning at constant speed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Shaft {
+    geometry: Geometry,
+    rpm: f64,
+    /// Mechanical place in steps at `since`.
+    place: f64,
+    since: Moment,
+    /// Position word minus mechanical place.
+    offset: u64,
+}
+
+impl Shaft {
+    /// Above this speed there is no position (data sheets: 6000/min for the absolute value).
+    pub(super) const MAX_RPM: f64 = 6000.0;
+    /// The position word has 32 bits.
+    const WORD: u64 = 1 << 32;
+    /// Analogue values: 10 bits for 5 V.
+    const COUNTS_PER_VOLT: f64 = 1023.0 / 5.0;
+    const MEAN_VOLTS: f64 = 2.5;
+    const AMPLITUDE_VOLTS: f64 = 0.5;
+
+    pub(super) fn new(geometry: Geometry, position: u32, rpm: f64) -> Self {
+        Shaft { geometry, rpm, place: f64::from(position), since: Moment::START, offset: 0 }
+    }
+
+    pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        (self.place, self.since) = (self.place(now), now);
+        self.rpm = rpm;
+    }
+
+    pub(super) fn is_too_fast(&self) -> bool {
+        self.rpm.abs() > Self::MAX_RPM
+    }
+
+    /// The position word can have this value.
+    pub(super) fn reaches(&self, position: u32) -> bool {
+        u64::from(position) < self.range()
+    }
+
+    /// The position word at `at`.
+    pub(super) fn position(&self, at: Moment) -> u32 {
+        let word = (self.whole_steps(at) + self.offset) % self.range();
+        // The range is at most 2³².
+        u32::try_from(word).unwrap_or(u32::MAX)
+    }
+
+    /// From `at` on the shaft's present place has this position.
+    pub(super) fn set_position(&mut self, at: Moment, position: u32) {
+        let range = self.range();
+        self.offset = (u64::from(position) % range + range - self.whole_steps(at)) % range;
+    }
+
+    /// The sine signal in counts of 10 bits for 5 V: 2.5 V in the mean, 1 Vpp, 0 rising at the start of a period.
+    pub(super) fn sine(&self, at: Moment) -> i16 {
+        Self::counts(self.phase(at).sin())
+    }
+
+    /// The cosine signal, scaled as the sine signal.
+    pub(super) fn cosine(&self, at: Moment) -> i16 {
+        Self::counts(self.phase(at).cos())
+    }
+
+    fn counts(signal: f64) -> i16 {
+        let volts = Self::MEAN_VOLTS + Self::AMPLITUDE_VOLTS * signal;
+        (volts * Self::COUNTS_PER_VOLT) as i16 // between 409 and 614
+    }
+
+    fn phase(&self, at: Moment) -> f64 {
+        let period = f64::from(STEPS_PER_PERIOD);
+        self.place(at) % period / period * TAU
+    }
+
+    fn whole_steps(&self, at: Moment) -> u64 {
+        self.place(at) as u64 // not negative, below the range
+    }
+
+    /// Mechanical place in steps, from 0 up to the range.
+    fn place(&self, at: Moment) -> f64 {
+        // A linear scale has no turns; there `rpm` counts periods a minute.
+        let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;
+        let moved = at.since(self.since).as_secs_f64() * self.rpm / 60.0 * steps_per_turn;
+        let range = self.range() as f64;
+        // rem_euclid may round up to the range itself.
+        let place = (self.place + moved).rem_euclid(range);
+        if place < range { place } else { 0.0 }
+    }
+
+    fn range(&self) -> u64 {
+        self.geometry.range().unwrap_or(Self::WORD).clamp(1, Self::WORD)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    #[test]
+    fn a_turning_shaft_is_where_it_must_be() {
+        let mut shaft = Shaft::new(SKM36, 0, 60.0); // 4096 steps a second
+        assert_eq!(shaft.position(at(0)), 0);
+        assert_eq!(shaft.position(at(250)), 1024);
+        assert_eq!(shaft.position(at(4_096_000)), 0, "after 4096 turns");
+        shaft.set_rpm(at(500), -60.0);
+        assert_eq!(shaft.position(at(500)), 2048);
+        assert_eq!(shaft.position(at(1500)), 0x00FF_F800, "below zero it is at the end of the range");
+        assert!(!shaft.is_too_fast());
+        shaft.set_rpm(at(1500), -6000.5);
+        assert!(shaft.is_too_fast());
+    }
+
+    #[test]
+    fn a_set_position_shifts_the_word_and_not_the_signals() {
+        let mut shaft = Shaft::new(SKM36, 24, 0.0);
+        assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (409, 511));
+        shaft.set_position(at(0), 0);
+        assert_eq!(shaft.position(at(9)), 0);
+        assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (409, 511));
+        shaft.set_position(at(0), 0x00FF_FFFF);
+        assert_eq!(shaft.position(at(9)), 0x00FF_FFFF);
+        assert!(!shaft.reaches(0x0100_0000));
+    }
+
+    /// Quarter periods: 2.5 V is count 511 (01FFh of the reference), 3 V is 613, 2 V is 409.
+    #[test]
+    fn the_signals_go_round_once_a_period() {
+        for (position, sine, cosine) in [(0, 511, 613), (8, 613, 511), (16, 511, 409), (24, 409, 511)] {
+            let shaft = Shaft::new(SKM36, 0x531 / 32 * 32 + position, 0.0);
+            assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (sine, cosine), "{position}");
+        }
+    }
+
+    #[test]
+    fn a_scale_of_unknown_length_uses_the_whole_word() {
+        let shaft = Shaft::new(Geometry::Linear { period_nm: 1_000_000, periods: 0 }, u32::MAX, 60.0);
+        assert_eq!(shaft.position(at(0)), u32::MAX);
+        assert_eq!(shaft.position(at(1000)), 31);
+    }
+}

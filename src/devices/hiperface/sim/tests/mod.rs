@@ -1,0 +1,106 @@
+//! What a host sees of the virtual encoder, in virtual time. Expected bytes are the manual's and the reference's; none
+//! is computed by the code under test.
+
+mod at_adapter;
+mod commands;
+mod faults;
+mod line;
+mod power_up;
+
+use std::time::Duration;
+
+use super::*;
+use crate::bits::{hex, parse_hex};
+use crate::devices::hiperface::protocol::LineSettings;
+use crate::sim::ByteDevice;
+use crate::units::CharacterFormat;
+use crate::units::Moment;
+
+/// A host at the line: it waits for everything that comes by itself, then keeps the dead time.
+struct Host {
+    bus: Bus,
+    now: Moment,
+}
+
+/// 9600 8E1: one character.
+const CHARACTER: Duration = Duration::from_nanos(1_145_833);
+
+fn ms(milliseconds: f64) -> Duration {
+    Duration::from_secs_f64(milliseconds / 1000.0)
+}
+
+impl Host {
+    fn new(config: &Config) -> Self {
+        Host { bus: Bus::new(config), now: Moment::START }
+    }
+
+    /// With the query of a `sim:` link.
+    fn with(query: &str) -> Self {
+        let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
+        let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
+        Self::new(&Config::from_pairs(&pairs).unwrap())
+    }
+
+    fn send(&mut self, request: &str) {
+        self.bus.on_bytes(self.now, &parse_hex(request).unwrap());
+    }
+
+    /// Everything that arrives until nothing more will, as hex, and when the last byte arrived.
+    fn receive(&mut self) -> (String, Moment) {
+        let (mut bytes, mut last) = (Vec::new(), self.now);
+        while let Some(at) = self.bus.poll_at() {
+            self.now = self.now.max(at);
+            let arrived = self.bus.poll(at);
+            if !arrived.is_empty() {
+                last = at;
+            }
+            bytes.extend(arrived);
+        }
+        (hex(&bytes), last)
+    }
+
+    fn ask(&mut self, request: &str) -> String {
+        self.send(request);
+        let (reply, _) = self.receive();
+        self.wait(ms(20.0));
+        reply
+    }
+
+    #[track_caller]
+    fn expect(&mut self, request: &str, reply: &str) {
+        assert_eq!(self.ask(request), reply, "reply to {request}");
+    }
+
+    /// From the first bit of the request to the last of the reply.
+    fn duration(&mut self, request: &str) -> Duration {
+        let start = self.now;
+        self.send(request);
+        let (_, last) = self.receive();
+        self.wait(ms(20.0));
+        last.since(start)
+    }
+
+    fn wait(&mut self, duration: Duration) {
+        self.now = self.now + duration;
+    }
+
+    fn set_format(&mut self, settings: u8) {
+        self.bus.set_host_format(self.now, LineSettings::from_byte(settings).format().unwrap());
+    }
+
+    fn encoder(&self) -> &Encoder {
+        self.bus.encoder(0).unwrap()
+    }
+
+    fn encoder_mut(&mut self) -> &mut Encoder {
+        self.bus.encoder_mut(0).unwrap()
+    }
+}
+
+/// An encoder with eight blocks of memory and no field, as in the manual's example.
+fn blank() -> Config {
+    let mut config = Config::default();
+    config.model.user_blocks = 8;
+    config.model.name_plate = &[];
+    config
+}

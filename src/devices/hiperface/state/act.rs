@@ -1,0 +1,131 @@
+//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+
+use std::time::Duration;
+
+use super::action::Action;
+use super::encoder::Encoder;
+use super::write::with_options;
+use crate::app::Text;
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::devices::hiperface::jobs::HiperfaceJob;
+use crate::devices::hiperface::procedures::Watch;
+use crate::devices::hiperface::profile::Item;
+use crate::devices::hiperface::protocol::LineSettings;
+use crate::devices::hiperface::state::explain as words;
+
+/// How often a watched value is read: what is watched changes slowly, and the position has to wait for it.
+const WATCHED_EVERY: Duration = Duration::from_millis(500);
+
+impl Encoder {
+    /// Does what is asked.
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Read => self.read_again(services),
+            Action::ReadStatus => self.submit(HiperfaceJob::Status, services),
+            Action::ReadPosition => {
+                let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
+                self.submit(HiperfaceJob::Position(geometry), services);
+            }
+            Action::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            Action::Watch(what, on) => self.watch(what, on),
+            Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
+            Action::ReadRest => self.read_rest(services),
+            Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
+            Action::Check { restart } => {
+                let then = self.stored_settings().filter(|_| restart);
+                self.submit_to_settings(HiperfaceJob::Check { restart }, then, services);
+            }
+            Action::Reset => self.submit_to_settings(HiperfaceJob::Reset, self.stored_settings(), services),
+            Action::ConfigureForNow(settings) => {
+                self.submit_to_settings(HiperfaceJob::ConfigureForNow(settings), Some(settings), services);
+            }
+            Action::UseCode { number, code } => {
+                if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
+                    self.tried_code = Some(number);
+                    self.know_code(number, code);
+                }
+            }
+            Action::Put { field, address, bytes } => self.put(field, address, &bytes, services),
+            Action::Undo => {
+                self.staged.undo();
+            }
+            Action::Redo => {
+                self.staged.redo();
+            }
+            Action::RevertAll => self.staged.revert(),
+            Action::Revert(range) => self.staged.revert_range(range),
+            Action::Review => self.review_edits(services),
+            Action::Plan(change) => self.plan(change, services),
+            Action::PlanAgain(options) => {
+                if let Some(review) = &self.review {
+                    self.plan_again(with_options(&review.change, options), services);
+                }
+            }
+            Action::ForceWear(force) => self.force_wear(force),
+            Action::Write(plan) => self.write(plan, services),
+            Action::CloseReview => self.close_review(),
+            Action::AskSave => self.session.ask_where_to_save(services),
+            Action::Save(path) => self.save(path, services),
+            Action::Commutation(action) => self.act_commutation(action, services),
+            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// Watches a value beside the position, or no more.
+    fn watch(&mut self, what: Watch, on: bool) {
+        let mut watched = self.record.watched();
+        watched.retain(|own| *own != what);
+        if on {
+            watched.push(what);
+        }
+        self.record.watch(&watched);
+        self.wish_watched();
+    }
+
+    /// Tells the session what is watched.
+    pub(super) fn wish_watched(&mut self) {
+        if let Some(line) = &self.session.line {
+            line.watch(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());
+        }
+    }
+
+    fn stored_settings(&self) -> Option<LineSettings> {
+        self.identity.as_ref().map(|identity| identity.label.settings)
+    }
+
+    /// Starts a job after which the encoder talks with other settings.
+    fn submit_to_settings(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
+        if self.try_submit(job, services) {
+            self.settings_then = then;
+        }
+    }
+
+    fn read_again(&mut self, services: &mut Services) {
+        if !self.session.read_file_again(services) {
+            self.read_encoder(services);
+        }
+    }
+
+    pub(super) fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
+        let allowed = match (&self.session.phase, self.field(field)) {
+            _ if self.session.is_writing() => Err(Text::new("session.busy")),
+            // A profile is a text: what it says about protection does not protect it.
+            (Phase::Offline, _) | (_, None) => Ok(()),
+            (_, Some(image)) => self.why_not_edited(image).map_or(Ok(()), Err),
+        };
+        let allowed = allowed.and_then(|()| {
+            let put = self.staged.put(field, address, bytes);
+            put.map_err(|error| words::staged(&error, bytes.len(), address))
+        });
+        if let Err(text) = allowed {
+            self.session.refuse(text, services);
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! What can be asked of the encoder that is shown.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::commutation;
+use crate::app::studio::SessionId;
+use crate::devices::hiperface::jobs::Change;
+use crate::devices::hiperface::procedures::Watch;
+use crate::devices::hiperface::profile::{FieldRange, RestoreOptions};
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings};
+use crate::profile::PlanId;
+
+/// Something in the HIPERFACE tab.
+pub enum Action {
+    /// Open the link again, after it was lost or could not be opened.
+    Reconnect,
+    /// Read everything again; edits stay.
+    Read,
+    /// Read the error queue.
+    ReadStatus,
+    /// Read the position once.
+    ReadPosition,
+    /// Read the position all the time, or no more.
+    Poll(Option<Duration>),
+    /// While the position is read all the time, read this too, or no more.
+    Watch(Watch, bool),
+    /// Read an analogue channel.
+    ReadAnalogue(u8),
+    /// Read the shaft at rest: position, sine and cosine.
+    ReadRest,
+    /// Read the counter.
+    ReadCounter,
+    /// The device check; with a restart first.
+    Check {
+        /// Send 53h first.
+        restart: bool,
+    },
+    /// Restart the encoder.
+    Reset,
+    /// Other interface settings until the next restart.
+    ConfigureForNow(LineSettings),
+    /// The user knows an access code.
+    UseCode {
+        /// Which.
+        number: CodeNumber,
+        /// Its value.
+        code: AccessCode,
+    },
+    /// Put bytes into a field.
+    Put {
+        /// The field.
+        field: u8,
+        /// First byte.
+        address: usize,
+        /// The bytes.
+        bytes: Vec<u8>,
+    },
+    /// Take the last edit back.
+    Undo,
+    /// Do it again.
+    Redo,
+    /// Take all edits back.
+    RevertAll,
+    /// Take the edits of a range back.
+    Revert(FieldRange),
+    /// Show what writing the edits would do.
+    Review,
+    /// Show what a change would do.
+    Plan(Change),
+    /// Make the plan again with other options, where the change is a restore.
+    PlanAgain(RestoreOptions),
+    /// Write although the encoder counts as worn.
+    ForceWear(bool),
+    /// Write the plan that was shown, and no other.
+    Write(PlanId),
+    /// Close the review.
+    CloseReview,
+    /// Ask where to save the profile.
+    AskSave,
+    /// Save the profile.
+    Save(PathBuf),
+    /// Show what restoring a backup would do.
+    Restore(PathBuf),
+    /// The commutation assistant.
+    Commutation(commutation::Action),
+    /// Show what writing this profile into a connected encoder would do.
+    WriteInto(SessionId),
+}

@@ -1,0 +1,255 @@
+//! The commutation assistant: from the position at which a motor rests in a static vector to the offset between encoder
+//! and motor, by both methods of the manual (SICK 8010701, commutation; section 5 of the project's sine/cosine reference).
+//! It energises nothing and writes nothing: what comes of it are edits of the memory or a position to be set, and both go
+//! through the review of a write.
+
+mod act;
+mod form;
+mod outcome;
+mod place;
+mod report;
+
+use crate::analysis::arctan::{Phase, exact};
+use crate::analysis::quality::{Limits, Verdict};
+use crate::analysis::synchronise::Synchroniser;
+use crate::app::Text;
+use crate::devices::hiperface::procedures::Rest;
+use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
+
+pub use form::{Form, Inputs, Slot, Source, Storage, Vector};
+pub use outcome::{Offset, Setting, Stored, may_read, stored};
+pub use place::Place;
+pub use report::kind_words;
+
+/// What can be done in the assistant.
+pub enum Action {
+    /// The form was edited.
+    Edit(Box<Form>),
+    /// Read the position at rest.
+    Read(Slot),
+    /// Take the position that is typed.
+    Use(Slot),
+    /// Forget what was read and taken.
+    Clear,
+    /// Method 1: put the offset into the memory, as an edit.
+    Store,
+    /// Method 2: show what setting the position would do.
+    Set,
+}
+
+/// The assistant for one encoder.
+#[derive(Debug, Default)]
+pub struct Commutation {
+    /// What is ticked, chosen and typed.
+    pub form: Form,
+    /// Why the last thing that was asked for was not done.
+    pub problem: Option<Text>,
+    readings: [Option<Reading>; 3],
+    /// What was read last: there the shaft still is, as far as anybody knows.
+    last: Option<Slot>,
+    /// The reading that is under way.
+    asked: Option<Asked>,
+}
+
+/// A reading that is under way: what it is for, and how it was asked for, whatever is chosen or typed meanwhile.
+#[derive(Debug)]
+struct Asked {
+    slot: Slot,
+    source: Source,
+    /// As typed.
+    phase: String,
+}
+
+/// A position at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The position in periods, in the whole range of the encoder.
+    pub fine_periods: f64,
+    /// How it came.
+    pub kind: Kind,
+    /// The position word, where the encoder was read.
+    pub raw: Option<u32>,
+}
+
+/// How a position came, and how good it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// Absolute position and phase brought together.
+    Fine {
+        /// Absolute minus fine position in periods.
+        residual_periods: f64,
+        /// Whether that is little enough.
+        verdict: Verdict,
+        /// The smallest step that can be told apart, in periods; `None` where the phase was typed.
+        resolution_periods: Option<f64>,
+    },
+    /// The absolute position alone: the middle of its step.
+    Absolute,
+    /// Typed.
+    Typed,
+}
+
+impl Commutation {
+    /// The position for a slot.
+    pub fn reading(&self, slot: Slot) -> Option<&Reading> {
+        let [one, other, second] = &self.readings;
+        match slot {
+            Slot::OneSide => one,
+            Slot::OtherSide => other,
+            Slot::Second => second,
+        }
+        .as_ref()
+    }
+
+    /// What is being read.
+    pub fn asked(&self) -> Option<Slot> {
+        self.asked.as_ref().map(|asked| asked.slot)
+    }
+
+    /// The encoder is asked for a position at rest.
+    fn ask(&mut self, slot: Slot) {
+        self.asked = Some(Asked { slot, source: self.form.source, phase: self.form.phase.clone() });
+    }
+
+    fn note(&mut self, slot: Slot, reading: Reading) {
+        let [one, other, second] = &mut self.readings;
+        let place = match slot {
+            Slot::OneSide => one,
+            Slot::OtherSide => other,
+            Slot::Second => second,
+        };
+        *place = Some(reading);
+        self.last = Some(slot);
+        self.problem = None;
+    }
+
+    /// What was read belongs to another zero, or is not wanted any more.
+    pub(super) fn forget_readings(&mut self) {
+        (self.readings, self.last, self.problem) = ([None; 3], None, None);
+    }
+
+    /// The encoder was read at rest: is it for a slot?
+    pub(super) fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
+        let Some(asked) = self.asked.take() else { return };
+        match asked.reading(rest, geometry) {
+            Ok(reading) => self.note(asked.slot, reading),
+            Err(why) => self.problem = Some(why),
+        }
+    }
+
+    /// A job has failed; true where it is the reading, and the reason stands where it was asked for.
+    pub(super) fn failed(&mut self, why: &Text) -> bool {
+        let own = self.asked.take().is_some();
+        if own {
+            self.problem = Some(why.clone());
+        }
+        own
+    }
+
+    /// What was asked for does not come any more.
+    pub(super) fn give_up(&mut self) {
+        self.asked = None;
+    }
+
+    fn use_typed(&mut self, slot: Slot) {
+        match self.form.fine(slot) {
+            Ok(fine_periods) => self.note(slot, Reading { fine_periods, kind: Kind::Typed, raw: None }),
+            Err(why) => self.problem = Some(why),
+        }
+    }
+}
+
+impl Asked {
+    fn reading(&self, rest: Rest, geometry: Option<Geometry>) -> Result<Reading, Text> {
+        if !rest.valid {
+            return Err(Text::new("commutation.invalid"));
+        }
+        let absolute = Reading {
+            fine_periods: (f64::from(rest.raw) + 0.5) / f64::from(STEPS_PER_PERIOD),
+            kind: Kind::Absolute,
+            raw: Some(rest.raw),
+        };
+        match (self.source, rest.signals) {
+            (Source::Absolute, _) | (Source::Signals, None) => Ok(absolute),
+            (Source::Typed, _) => fine(rest.raw, form::phase(&self.phase)?, geometry, None),
+            (Source::Signals, Some(signals)) => {
+                let volts = signals.sine_v.hypot(signals.cosine_v);
+                let no_signal = || Text::new("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
+                if Limits::HIPERFACE.amplitude(volts) == Verdict::Fault {
+                    return Err(no_signal());
+                }
+                let phase = exact(signals.sine_v, signals.cosine_v).ok_or_else(no_signal)?;
+                fine(rest.raw, phase, geometry, Some(signals.resolution_periods()))
+            }
+        }
+    }
+}
+
+/// Absolute position and phase brought together; a residual beyond 14/32 is no agreement.
+fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<Reading, Text> {
+    let steps = u64::from(STEPS_PER_PERIOD);
+    // A range that nobody knows is not gone round.
+    let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
+    let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
+    let told = synchroniser.synchronise(raw.into(), phase).map_err(|_| Text::new("commutation.half_apart"))?;
+    if told.verdict == Verdict::Fault {
+        let apart = told.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
+        return Err(Text::new("commutation.far_apart").with_number("steps", apart, 1));
+    }
+    let kind =
+        Kind::Fine { residual_periods: told.residual_periods, verdict: told.verdict, resolution_periods: resolution };
+    Ok(Reading { fine_periods: told.periods(), kind, raw: Some(raw) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperface::procedures::Signals;
+
+    const SKM36: Option<Geometry> = Some(Geometry::Rotary { periods: 128, turns: 4096 });
+
+    fn rest(raw: u32, volts: Option<(f64, f64)>) -> Rest {
+        Rest { raw, valid: true, signals: volts.map(|(sine_v, cosine_v)| Signals { sine_v, cosine_v }) }
+    }
+
+    fn read(source: Source, phase: &str, rest: Rest) -> Result<Reading, &'static str> {
+        let asked = Asked { slot: Slot::OneSide, source, phase: phase.to_owned() };
+        asked.reading(rest, SKM36).map_err(|text| text.id())
+    }
+
+    #[test]
+    fn a_reading_counts_as_it_was_asked_for() {
+        let form = Form { source: Source::Typed, phase: "0.27".to_owned(), ..Form::default() };
+        let mut commutation = Commutation { form, ..Commutation::default() };
+        commutation.ask(Slot::OneSide);
+        commutation.form = Form { source: Source::Absolute, phase: String::new(), ..Form::default() };
+        commutation.take(rest(40, None), SKM36);
+        let reading = commutation.reading(Slot::OneSide).unwrap();
+        assert!((reading.fine_periods - 1.27).abs() < 1e-12, "{reading:?}");
+    }
+
+    #[test]
+    fn a_reading_is_as_fine_as_the_encoder_lets_it_be() {
+        let without = read(Source::Signals, "", rest(40, None)).unwrap();
+        assert_eq!((without.fine_periods, without.kind, without.raw), (40.5 / 32.0, Kind::Absolute, Some(40)));
+        let with = read(Source::Signals, "", rest(40, Some((0.5, 0.0)))).unwrap();
+        assert_eq!(with.fine_periods, 1.25);
+        assert_eq!(read(Source::Absolute, "", rest(40, Some((0.5, 0.0)))).unwrap().kind, Kind::Absolute);
+        let typed = read(Source::Typed, "0,27", rest(40, None)).unwrap();
+        assert!((typed.fine_periods - 1.27).abs() < 1e-12);
+        // SKM36: the last step of the range and a phase beyond its end.
+        let around = read(Source::Typed, "0.01", rest(0x00FF_FFFF, None)).unwrap();
+        assert!((around.fine_periods - 0.01).abs() < 1e-12, "{around:?}");
+    }
+
+    #[test]
+    fn what_is_no_position_is_refused() {
+        assert_eq!(read(Source::Absolute, "", Rest { valid: false, ..rest(40, None) }), Err("commutation.invalid"));
+        for volts in [(0.0, 0.0), (0.1, 0.1), (0.7, 0.7), (f64::NAN, 0.5)] {
+            assert_eq!(read(Source::Signals, "", rest(40, Some(volts))), Err("commutation.no_signal"), "{volts:?}");
+        }
+        assert_eq!(read(Source::Typed, "", rest(40, None)), Err("entry.missing"));
+        assert_eq!(read(Source::Typed, "0.765625", rest(40, None)), Err("commutation.half_apart"), "8.5 + 16 steps");
+        assert_eq!(read(Source::Typed, "0.75", rest(40, None)), Err("commutation.far_apart"), "15.5 steps");
+    }
+}

@@ -1,0 +1,57 @@
+//! What the user asks of the commutation assistant, carried out.
+
+use super::outcome::may_read;
+use super::{Action, Slot};
+use crate::app::services::Services;
+use crate::app::session::{OnLine, WithMemory};
+use crate::app::{Severity, Text};
+use crate::devices::hiperface::jobs::{Change, HiperfaceJob};
+use crate::devices::hiperface::state::Encoder;
+
+impl Encoder {
+    pub(in crate::devices::hiperface::state) fn act_commutation(&mut self, action: Action, services: &mut Services) {
+        match action {
+            Action::Edit(form) => {
+                self.commutation.form = *form;
+                self.commutation.problem = None;
+            }
+            Action::Read(slot) => self.read_for(slot, services),
+            Action::Use(slot) => self.commutation.use_typed(slot),
+            Action::Clear => self.commutation.forget_readings(),
+            Action::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
+                Ok((field, address, bytes)) => {
+                    self.put(field, address, &bytes, services);
+                    // What is put there once more goes to the same place, whatever is empty then.
+                    (self.commutation.form.field, self.commutation.form.address) = (Some(field), address.to_string());
+                    let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
+                    if (address..).zip(&bytes).all(is_there) {
+                        let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));
+                        let id = if edited { "commutation.staged" } else { "commutation.same" };
+                        let text = Text::new(id).with("field", field).with("address", address);
+                        services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                    }
+                }
+                Err(why) => self.commutation.problem = Some(why),
+            },
+            Action::Set => match self.commutation.setting(self.geometry()) {
+                Ok(setting) => {
+                    let (wanted, exact) = (setting.value, setting.exact);
+                    let change = Change::SetPosition { wanted, exact, synchronise: false, kit: false };
+                    self.plan(change, services);
+                }
+                Err(why) => self.commutation.problem = Some(why),
+            },
+        }
+    }
+
+    fn read_for(&mut self, slot: Slot, services: &mut Services) {
+        if let Err(why) = may_read(&self.commutation, self.session.is_ready()) {
+            self.commutation.problem = Some(why);
+            return;
+        }
+        self.commutation.problem = None;
+        if self.try_submit(HiperfaceJob::Rest, services) {
+            self.commutation.ask(slot);
+        }
+    }
+}

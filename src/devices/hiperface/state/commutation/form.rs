@@ -1,0 +1,275 @@
+//! What is ticked, chosen and typed in the commutation assistant, and what it means.
+
+use crate::analysis::arctan::Phase;
+use crate::analysis::commutation::Motor;
+use crate::app::Text;
+use crate::app::number::{MOST_PERIODS, whole, within};
+use crate::devices::hiperface::protocol::Geometry;
+
+/// The form of the assistant. An empty number of periods is that of the encoder's type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Form {
+    /// Ticked: the controller is disabled.
+    pub disabled: bool,
+    /// Ticked: the motor is uncoupled, without load.
+    pub uncoupled: bool,
+    /// Ticked: the brake is released.
+    pub released: bool,
+    /// Current limit in amperes, as typed.
+    pub current_a: String,
+    /// Longest time with current in seconds, as typed.
+    pub time_s: String,
+    /// Which vector is energised.
+    pub vector: Vector,
+    /// Its angle in electrical degrees, as typed, where it is another.
+    pub vector_deg: String,
+    /// Pole pairs of the motor, as typed.
+    pub pole_pairs: String,
+    /// Signal periods a revolution, as typed.
+    pub periods: String,
+    /// The position falls while the electrical angle rises.
+    pub reversed: bool,
+    /// Where the position inside a period comes from.
+    pub source: Source,
+    /// That position in periods, as typed, where it is measured elsewhere.
+    pub phase: String,
+    /// How far apart both sides may be, in electrical degrees, as typed.
+    pub limit_deg: String,
+    /// How far the second vector is ahead, in electrical degrees, as typed.
+    pub second_deg: String,
+    /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
+    pub typed: [String; 3],
+    /// How the offset is stored.
+    pub storage: Storage,
+    /// The data field that gets it; `None` is the one that is proposed.
+    pub field: Option<u8>,
+    /// Its first byte there, as typed; empty is the one that is proposed.
+    pub address: String,
+    /// The period that the position is to have by method 2, as typed.
+    pub period: String,
+}
+
+/// What a position is read for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// At rest, approached from one side.
+    OneSide,
+    /// At rest, approached from the other side.
+    OtherSide,
+    /// At rest in the second vector.
+    Second,
+}
+
+/// The vector that is energised while the position is read, as a person wires it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vector {
+    /// Current into U, back out of V and W: 0°.
+    UAgainstBoth,
+    /// Into U, out of V: −30°.
+    UAgainstV,
+    /// Into U, out of W: 30°.
+    UAgainstW,
+    /// Another, whose angle is typed.
+    Other,
+}
+
+/// Where the position inside a period comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The encoder's analogue channels, where it has them, else the absolute position.
+    Signals,
+    /// Typed: the drive or a voltmeter measured it.
+    Typed,
+    /// The absolute position alone, 1/32 period.
+    Absolute,
+}
+
+/// How the offset is stored in a data field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Storage {
+    /// The record of sixteen bytes.
+    Record,
+    /// The bare number of four bytes, high byte first.
+    Number,
+}
+
+/// The numbers of a form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs {
+    /// The motor with the encoder on it.
+    pub motor: Motor,
+    /// Signal periods a revolution.
+    pub periods: u32,
+    /// Pole pairs.
+    pub pole_pairs: u32,
+    /// The position falls while the electrical angle rises.
+    pub reversed: bool,
+    /// Angle of the energised vector in electrical turns.
+    pub vector_turns: f64,
+    /// How far apart both sides may be, in electrical degrees.
+    pub limit_deg: f64,
+}
+
+/// More pole pairs than any motor has.
+const MOST_POLE_PAIRS: u32 = 500;
+
+impl Slot {
+    /// In the order in which they are read.
+    pub const ALL: [Slot; 3] = [Slot::OneSide, Slot::OtherSide, Slot::Second];
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Form {
+            disabled: false,
+            uncoupled: false,
+            released: false,
+            current_a: String::new(),
+            time_s: String::new(),
+            vector: Vector::UAgainstBoth,
+            vector_deg: String::new(),
+            pole_pairs: String::new(),
+            periods: String::new(),
+            reversed: false,
+            source: Source::Signals,
+            phase: String::new(),
+            limit_deg: "5".to_owned(),
+            second_deg: "90".to_owned(),
+            typed: Default::default(),
+            storage: Storage::Record,
+            field: None,
+            address: String::new(),
+            period: "0".to_owned(),
+        }
+    }
+}
+
+impl Form {
+    /// Current and time, in amperes and seconds.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn limits(&self) -> Result<(f64, f64), Text> {
+        let (current, time) = self.each_limit();
+        Ok((current?, time?))
+    }
+
+    /// What is wrong with the current and with the time that are typed, in words; an empty entry is not wrong yet.
+    pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
+        let typed = |text: &str| !text.trim().is_empty();
+        let (current, time) = self.each_limit();
+        (current.err().filter(|_| typed(&self.current_a)), time.err().filter(|_| typed(&self.time_s)))
+    }
+
+    fn each_limit(&self) -> (Result<f64, Text>, Result<f64, Text>) {
+        let current = within("commutation.current", &self.current_a, 0.001, 1000.0);
+        (current, within("commutation.time", &self.time_s, 0.1, 600.0))
+    }
+
+    /// All that has to be so before the motor is energised is ticked and written down.
+    ///
+    /// # Errors
+    /// What is not, in words.
+    pub fn prepared(&self) -> Result<(), Text> {
+        let ticks = [
+            (self.disabled, "commutation.disabled"),
+            (self.uncoupled, "commutation.uncoupled"),
+            (self.released, "commutation.released"),
+        ];
+        let open: Vec<Text> = ticks.into_iter().filter(|(ticked, _)| !ticked).map(|(_, id)| Text::new(id)).collect();
+        if !open.is_empty() {
+            return Err(Text::new("commutation.unprepared").with_list("what", open));
+        }
+        self.limits()?;
+        self.vector_deg().map(|_| ())
+    }
+
+    /// Angle of the energised vector in electrical degrees.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn vector_deg(&self) -> Result<f64, Text> {
+        match self.vector {
+            Vector::UAgainstBoth => Ok(0.0),
+            Vector::UAgainstV => Ok(-30.0),
+            Vector::UAgainstW => Ok(30.0),
+            Vector::Other => within("commutation.vector_angle", &self.vector_deg, -360.0, 360.0),
+        }
+    }
+
+    /// How far the second vector is ahead, in electrical turns: below ½, or the shaft may go the other way round.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn second_turns(&self) -> Result<f64, Text> {
+        Ok(within("commutation.second_angle", &self.second_deg, 1.0, 170.0)? / 360.0)
+    }
+
+    /// The position inside a period that was typed.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn phase(&self) -> Result<Phase, Text> {
+        phase(&self.phase)
+    }
+
+    /// The fine position in periods that was typed for a slot.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn fine(&self, slot: Slot) -> Result<f64, Text> {
+        let [one, other, second] = &self.typed;
+        let text = match slot {
+            Slot::OneSide => one,
+            Slot::OtherSide => other,
+            Slot::Second => second,
+        };
+        within("commutation.fine", text, 0.0, f64::from(1_u32 << 27))
+    }
+
+    /// Signal periods a revolution: as typed, or else as the encoder's type has them.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
+        match (self.periods.trim().is_empty(), geometry) {
+            (_, Some(Geometry::Linear { .. })) => Err(Text::new("commutation.linear")),
+            (true, Some(Geometry::Rotary { periods, .. })) => Ok(periods.max(1)),
+            _ => whole("commutation.periods", &self.periods, 1, MOST_PERIODS),
+        }
+    }
+
+    /// The number of periods that is typed is not that of the encoder's type, in words.
+    pub fn other_periods(&self, geometry: Option<Geometry>) -> Option<Text> {
+        let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
+        let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
+        Some(Text::new("commutation.other_periods").with("own", own).with("typed", typed))
+    }
+
+    /// All numbers that the offset needs.
+    ///
+    /// # Errors
+    /// The first that is none, in words.
+    pub fn inputs(&self, geometry: Option<Geometry>) -> Result<Inputs, Text> {
+        let pole_pairs = whole("commutation.pole_pairs", &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
+        let periods = self.periods(geometry)?;
+        Ok(Inputs {
+            motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing("commutation.pole_pairs"))?,
+            periods,
+            pole_pairs,
+            reversed: self.reversed,
+            vector_turns: self.vector_deg()? / 360.0,
+            limit_deg: within("commutation.limit", &self.limit_deg, 0.1, 90.0)?,
+        })
+    }
+}
+
+fn missing(what: &'static str) -> Text {
+    Text::new("entry.missing").with_text("what", Text::new(what))
+}
+
+/// A typed position inside a period.
+pub(super) fn phase(text: &str) -> Result<Phase, Text> {
+    let periods = within("commutation.phase", text, 0.0, 0.999_999_999)?;
+    Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))
+}

@@ -1,0 +1,240 @@
+//! What comes of the readings: the mean of both sides, the offset, what a second vector says, the bytes of method 1 and
+//! the position of method 2.
+
+use super::{Commutation, Inputs, Kind, Place, Slot, Source, Storage};
+use crate::analysis::arctan::Phase;
+use crate::analysis::commutation::{ElectricalAngle, position_to_set};
+use crate::analysis::quality::Verdict;
+use crate::app::Text;
+use crate::app::number::whole;
+use crate::devices::hiperface::profile::{CommutationRecord, Damaged};
+use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
+use crate::devices::hiperface::state::{Allowed, Staged};
+
+/// Method 2 is refused where its step is this or more: the torque may have the wrong sign (U).
+const UNUSABLE_DEG: f64 = 90.0;
+/// It is warned of from here on: the torque falls to cos 30° and below (U).
+const WEAK_DEG: f64 = 30.0;
+
+/// The offset between encoder and motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offset {
+    /// Where the shaft rests, in periods within a revolution.
+    pub fine_periods: f64,
+    /// The same in degrees.
+    pub shaft_deg: f64,
+    /// How far both sides are apart, in electrical degrees; `None` where only one was taken.
+    pub apart_deg: Option<f64>,
+    /// The offset: electrical angle = pole pairs × shaft − offset.
+    pub angle: ElectricalAngle,
+    /// The smallest step that the readings tell apart, in electrical degrees; `None` where nobody knows.
+    pub resolution_deg: Option<f64>,
+}
+
+/// Setting the position by method 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// The position to be set.
+    pub value: u32,
+    /// Absolute position and phase do not agree now: exactly this value makes them.
+    pub exact: bool,
+    /// What remains of the offset, in electrical degrees from −180 to 180.
+    pub remaining_deg: f64,
+    /// How good that can be with this step.
+    pub verdict: Verdict,
+}
+
+/// A commutation offset in the memory, as it is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stored {
+    /// The data field.
+    pub field: u8,
+    /// Its first byte there.
+    pub address: usize,
+    /// What it says.
+    pub record: Result<CommutationRecord, Damaged>,
+    /// It is an edit that is not written yet.
+    pub edited: bool,
+}
+
+impl Commutation {
+    /// The offset.
+    ///
+    /// # Errors
+    /// What is missing, or why the readings cannot be used, in words.
+    pub fn offset(&self, geometry: Option<Geometry>) -> Result<Offset, Text> {
+        let inputs = self.form.inputs(geometry)?;
+        let (one, other) = (self.reading(Slot::OneSide), self.reading(Slot::OtherSide));
+        let (first, apart) = match (one, other) {
+            (Some(one), Some(other)) => (one, Some(apart(one.fine_periods, other.fine_periods, inputs.periods))),
+            (Some(own), None) | (None, Some(own)) if own.kind == Kind::Typed => (own, None),
+            (None, None) => return Err(Text::new("commutation.no_reading")),
+            _ => return Err(Text::new("commutation.one_side_only")),
+        };
+        let apart_deg = apart.map(|apart| electrical_deg(apart.abs(), &inputs));
+        if let Some(apart_deg) = apart_deg.filter(|apart| *apart > inputs.limit_deg) {
+            let text = Text::new("commutation.friction").with_number("apart", apart_deg, 1);
+            return Err(text.with_number("limit", inputs.limit_deg, 1));
+        }
+        let turn = f64::from(inputs.periods);
+        let fine_periods = (first.fine_periods + apart.unwrap_or(0.0) / 2.0).rem_euclid(turn);
+        let resolution = [one, other].into_iter().flatten().map(|reading| match reading.kind {
+            Kind::Fine { resolution_periods, .. } => resolution_periods,
+            Kind::Absolute => Some(1.0 / f64::from(STEPS_PER_PERIOD)),
+            Kind::Typed => None,
+        });
+        // The coarser one counts.
+        let resolution = resolution.collect::<Option<Vec<f64>>>().and_then(|all| all.into_iter().reduce(f64::max));
+        Ok(Offset {
+            fine_periods,
+            shaft_deg: fine_periods / turn * 360.0,
+            apart_deg,
+            angle: angle(fine_periods, &inputs).ok_or_else(|| Text::new("commutation.no_reading"))?,
+            resolution_deg: resolution.map(|periods| electrical_deg(periods, &inputs)),
+        })
+    }
+
+    /// What the second vector says, and how bad that is; `None` while it was not read.
+    ///
+    /// # Errors
+    /// What is missing, in words.
+    pub fn second(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
+        let reading = self.reading(Slot::Second)?;
+        Some(self.judge_second(reading.fine_periods, geometry))
+    }
+
+    fn judge_second(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
+        /// Share of the expected movement below which the shaft counts as not moved.
+        const STILL: f64 = 0.1;
+        /// How far the movement may be from the expected one.
+        const FITS: std::ops::RangeInclusive<f64> = 0.8..=1.25;
+        let (inputs, offset, turns) = (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_turns()?);
+        let moved = apart(offset.fine_periods, fine_periods, inputs.periods);
+        let moved = if inputs.reversed { -moved } else { moved };
+        let said = inputs.motor.second_vector(moved, turns).filter(|said| said.ratio.abs() >= STILL);
+        let degrees = |text: Text| {
+            let text = text.with_number("moved", moved / f64::from(inputs.periods) * 360.0, 2);
+            text.with_number("expected", turns * 360.0 / f64::from(inputs.pole_pairs), 2)
+        };
+        let Some(said) = said else { return Ok((Verdict::Fault, degrees(Text::new("commutation.still")))) };
+        let pairs = turns * f64::from(inputs.periods) / moved.abs();
+        let whole = (pairs - pairs.round()).abs() < 0.25 && said.pole_pairs > 0;
+        let own = said.pole_pairs == inputs.pole_pairs;
+        let id = match (own && FITS.contains(&said.ratio.abs()), said.ratio > 0.0) {
+            (true, true) => return Ok((Verdict::Ok, degrees(Text::new("commutation.fits")))),
+            (true, false) => "commutation.exchanged",
+            (false, true) if whole && !own => "commutation.other_pairs",
+            (false, false) if whole && !own => "commutation.exchanged_pairs",
+            _ => "commutation.unclear",
+        };
+        Ok((Verdict::Fault, degrees(Text::new(id)).with("pairs", said.pole_pairs)))
+    }
+
+    /// The second vector was read and fits.
+    pub fn is_confirmed(&self, geometry: Option<Geometry>) -> bool {
+        matches!(self.second(geometry), Some(Ok((Verdict::Ok, _))))
+    }
+
+    /// Method 1: data field, first byte, and the bytes to be stored there.
+    ///
+    /// # Errors
+    /// What is missing, in words.
+    pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
+        let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
+        // What was found wrong is not stored, what was not looked at may be.
+        if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
+            return Err(Text::new("commutation.second_refuses"));
+        }
+        let Place { field, address } = self.place(staged)?;
+        let bytes = match self.form.storage {
+            Storage::Number => offset.angle.bits().to_be_bytes().to_vec(),
+            Storage::Record => {
+                if !address.is_multiple_of(CommutationRecord::BYTES) {
+                    return Err(Text::new("commutation.block").with("address", address));
+                }
+                let pole_pairs = u8::try_from(inputs.pole_pairs);
+                let pole_pairs = pole_pairs.map_err(|_| Text::new("commutation.too_many_pairs"))?;
+                let confirmed = self.is_confirmed(geometry);
+                let record =
+                    CommutationRecord { offset: offset.angle, pole_pairs, reversed: inputs.reversed, confirmed };
+                record.emit().to_vec()
+            }
+        };
+        Ok((field, address, bytes))
+    }
+
+    /// Method 2: the position to be set where the shaft rests now.
+    ///
+    /// # Errors
+    /// What is missing, or why the method cannot be used, in words.
+    pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
+        let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
+        if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
+            return Err(Text::new("commutation.second_refuses"));
+        }
+        let step = inputs.motor.electrical_step_deg();
+        if step >= UNUSABLE_DEG {
+            return Err(Text::new("commutation.unusable").with_number("step", step, 1));
+        }
+        let here = self.last.filter(|slot| *slot != Slot::Second).and_then(|slot| self.reading(slot));
+        let here = here.ok_or_else(|| Text::new("commutation.not_there"))?;
+        let phase = Phase::of_periods(here.fine_periods).ok_or_else(|| Text::new("commutation.not_there"))?;
+        let steps = u64::from(STEPS_PER_PERIOD);
+        let periods = geometry.and_then(Geometry::range).map_or(u64::from(inputs.periods), |range| range / steps);
+        let last = u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX).min((1 << 27) - 1);
+        let period = whole("commutation.period", &self.form.period, 0, last)?;
+        let value = position_to_set(period, phase).ok_or_else(|| Text::new("commutation.not_there"))?;
+        let remaining = angle(f64::from(period) + phase.periods(), &inputs);
+        let remaining = remaining.ok_or_else(|| Text::new("commutation.not_there"))?.degrees();
+        let off_step = here.raw.map_or(0, |raw| (raw % STEPS_PER_PERIOD).abs_diff(value % STEPS_PER_PERIOD));
+        Ok(Setting {
+            value,
+            // One step is rounding.
+            exact: off_step.min(STEPS_PER_PERIOD - off_step) > 1,
+            remaining_deg: if remaining > 180.0 { remaining - 360.0 } else { remaining },
+            verdict: if step >= WEAK_DEG { Verdict::Warn } else { Verdict::Ok },
+        })
+    }
+}
+
+/// Commutation offsets in a memory, as it is wanted.
+pub fn stored(staged: &Staged) -> Vec<Stored> {
+    let mut found = Vec::new();
+    for field in staged.wanted() {
+        let blocks = field.bytes.as_deref().unwrap_or_default().chunks(CommutationRecord::BYTES).enumerate();
+        for (block, bytes) in blocks {
+            let Some(record) = CommutationRecord::parse(bytes) else { continue };
+            let address = block * CommutationRecord::BYTES;
+            let edited = (address..address + bytes.len()).any(|at| staged.is_edited(field.number, at));
+            found.push(Stored { field: field.number, address, record, edited });
+        }
+    }
+    found
+}
+
+/// The position may be read: everything before it is done.
+pub fn may_read(commutation: &Commutation, ready: bool) -> Allowed {
+    commutation.form.prepared()?;
+    if commutation.form.source == Source::Typed {
+        commutation.form.phase()?;
+    }
+    if ready { Ok(()) } else { Err(Text::new("commutation.not_ready")) }
+}
+
+/// From one position to the other, in periods, the short way round within a revolution.
+fn apart(from: f64, to: f64, periods: u32) -> f64 {
+    let turn = f64::from(periods);
+    let forward = (to - from).rem_euclid(turn);
+    if forward > turn / 2.0 { forward - turn } else { forward }
+}
+
+fn electrical_deg(periods: f64, inputs: &Inputs) -> f64 {
+    periods * inputs.motor.electrical_step_deg()
+}
+
+/// The offset at a position at which the electrical angle is that of the vector.
+fn angle(fine_periods: f64, inputs: &Inputs) -> Option<ElectricalAngle> {
+    let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
+    let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;
+    inputs.motor.electrical_angle(shaft, vector)
+}

@@ -1,0 +1,146 @@
+//! Where in the memory the offset goes: a place that holds nothing is proposed, and what another one holds is told before
+//! it is replaced. Nothing here changes the memory.
+
+use super::{Commutation, Storage};
+use crate::app::Text;
+use crate::app::number::whole;
+use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
+use crate::devices::hiperface::protocol::Geometry;
+use crate::devices::hiperface::state::{Staged, rules};
+
+/// Bytes that hold nothing: erased, or never written.
+const FILLERS: [u8; 2] = [0x00, 0xFF];
+
+/// A place for an offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The data field.
+    pub field: u8,
+    /// Its first byte there.
+    pub address: usize,
+}
+
+impl Commutation {
+    /// The place that is chosen and typed; what is left open is proposed: a stored record of the same kind, or else the
+    /// last writable field that has room.
+    ///
+    /// # Errors
+    /// In words, where nothing has room or what is typed is no address.
+    pub fn place(&self, staged: &Staged) -> Result<Place, Text> {
+        let no_room = || Text::new("commutation.no_room").with("bytes", CommutationRecord::BYTES);
+        let form = &self.form;
+        let wanted = staged.wanted();
+        let writable = || wanted.iter().rev().filter(|field| rules::edit(field).is_ok());
+        let asked = || writable().filter(|field| form.field.is_none_or(|own| own == field.number));
+        if form.address.trim().is_empty() {
+            let kept = asked().find_map(|field| first(field, |bytes| is_kept(form.storage, bytes)));
+            let free = || asked().find_map(|field| first(field, is_filler));
+            return kept.or_else(free).ok_or_else(no_room);
+        }
+        let address = whole("commutation.address", &form.address, 0, 127)? as usize;
+        let field = form.field.or_else(|| writable().next().map(|field| field.number));
+        let field = field.ok_or_else(no_room)?;
+        Ok(Place { field, address })
+    }
+
+    /// What putting the offset into the memory would replace, as a warning; `None` where nothing is there, or an offset.
+    pub fn replaced(&self, geometry: Option<Geometry>, staged: &Staged) -> Option<Text> {
+        let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
+        let places = address..address + bytes.len();
+        let wanted: Vec<u8> = places.clone().filter_map(|at| staged.byte(field, at)).collect();
+        // Once it is put there, what the encoder still has is what goes.
+        let there = match wanted == bytes {
+            true => places.filter_map(|at| staged.on_device(field, at)).collect(),
+            false => wanted,
+        };
+        if there.len() < bytes.len() || there == bytes || is_filler(&there) || is_kept(self.form.storage, &there) {
+            return None;
+        }
+        let text = Text::new("commutation.replaces").with("field", field).with("first", address);
+        Some(text.with("last", address + bytes.len() - 1).with("text", ascii(&there)))
+    }
+}
+
+/// The first block of a field of which something holds. For a bare number too: zeros among other numbers may be numbers.
+fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<Place> {
+    let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
+    Some(Place { field: field.number, address: block * CommutationRecord::BYTES })
+}
+
+fn is_filler(bytes: &[u8]) -> bool {
+    FILLERS.iter().any(|filler| bytes.iter().all(|byte| byte == filler))
+}
+
+/// A record that is whole is there already: a new one takes its place.
+fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
+    storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
+}
+
+/// Bytes as the text that they may be.
+fn ascii(bytes: &[u8]) -> String {
+    let shown = |byte: &u8| if byte.is_ascii_graphic() || *byte == b' ' { char::from(*byte) } else { '·' };
+    bytes.iter().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperface::protocol::DataFieldStatus;
+
+    /// Status bytes as in section 4Dh of the manual: D8h and DAh are writable with 16 and 48 bytes, 89h is protected.
+    fn memory(fields: &[(u8, &[u8])]) -> Staged {
+        let image = |(number, (status, bytes)): (u8, &(u8, &[u8]))| FieldImage {
+            number,
+            status: DataFieldStatus::from_byte(*status),
+            bytes: Some(bytes.to_vec()),
+        };
+        let mut staged = Staged::default();
+        staged.refresh((0..).zip(fields).map(image).collect());
+        staged
+    }
+
+    fn proposed(staged: &Staged, storage: Storage, field: Option<u8>) -> Result<(u8, usize), &'static str> {
+        let mut commutation = Commutation::default();
+        (commutation.form.storage, commutation.form.field) = (storage, field);
+        commutation.place(staged).map(|place| (place.field, place.address)).map_err(|text| text.id())
+    }
+
+    const PLATE: &[u8; 16] = b"EMD71K-4 3000rpm";
+
+    #[test]
+    fn an_empty_place_is_proposed_or_none() {
+        let service: Vec<u8> = [PLATE.as_slice(), b"SERVICE\x00\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF", &[0xFF; 16]].concat();
+        let empty = &[0; 32];
+        for (label, fields, record, number) in [
+            ("full", vec![(0xD8, PLATE.as_slice())], Err("commutation.no_room"), Err("commutation.no_room")),
+            ("the last", vec![(0xD9, empty.as_slice()), (0xDA, &service)], Ok((1, 32)), Ok((1, 32))),
+            ("the last that has room", vec![(0xD9, empty), (0xD8, PLATE)], Ok((0, 0)), Ok((0, 0))),
+            ("protected", vec![(0x89, empty)], Err("commutation.no_room"), Err("commutation.no_room")),
+            ("none", vec![], Err("commutation.no_room"), Err("commutation.no_room")),
+        ] {
+            let staged = memory(&fields);
+            assert_eq!(proposed(&staged, Storage::Record, None), record, "{label}");
+            assert_eq!(proposed(&staged, Storage::Number, None), number, "{label}");
+        }
+        let both = memory(&[(0xD9, empty), (0xDA, &service)]);
+        assert_eq!(proposed(&both, Storage::Record, Some(0)), Ok((0, 0)), "in the field that is chosen");
+    }
+
+    /// The record of the reference: offset 5305 1EB8h, four pole pairs, its CRC by Python's `binascii.crc_hqx`.
+    #[test]
+    fn a_record_that_is_there_is_the_place_for_a_new_one() {
+        let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];
+        let fields = memory(&[(0xD8, &record), (0xD9, &[0; 32])]);
+        assert_eq!(proposed(&fields, Storage::Record, None), Ok((0, 0)));
+        assert_eq!(proposed(&fields, Storage::Number, None), Ok((1, 0)));
+        let mut damaged = record;
+        damaged[7] ^= 1;
+        let fields = memory(&[(0xD8, &damaged), (0xD9, &[0; 32])]);
+        assert_eq!(proposed(&fields, Storage::Record, None), Ok((1, 0)));
+    }
+
+    #[test]
+    fn bytes_are_shown_as_text() {
+        assert_eq!(ascii(b"EMD71K-4 \x0B\xB8\xFFrpm"), "EMD71K-4 ···rpm");
+    }
+}

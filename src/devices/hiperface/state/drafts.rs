@@ -1,0 +1,47 @@
+//! Edits of an encoder's memory, kept over a crash: field, address, byte.
+
+use super::encoder::Encoder;
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Session};
+use crate::devices::hiperface::jobs::Hiperface;
+use crate::devices::hiperface::profile::HiperfaceProfile;
+use crate::profile::Document;
+
+/// Edited bytes: field, address, byte.
+pub(crate) type Edits = Vec<(u8, usize, u8)>;
+
+impl OnDesk for Encoder {
+    type Device = Hiperface;
+
+    fn session(&self) -> &Session<Hiperface> {
+        &self.session
+    }
+
+    fn session_mut(&mut self) -> &mut Session<Hiperface> {
+        &mut self.session
+    }
+}
+
+impl Drafted for Encoder {
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        let identity = self.identity.as_ref()?;
+        Some((format!("{:02X}", identity.label.encoder_type), identity.serial.serial_number.clone()))
+    }
+
+    fn edited(&self) -> Edits {
+        self.staged.edits().collect()
+    }
+
+    fn take_edits(&mut self, edits: Edits) {
+        self.staged.take_draft(edits);
+    }
+
+    fn revert_edits(&mut self) {
+        self.staged.revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
+        let Some(profile) = document.body.get::<HiperfaceProfile>() else { return };
+        self.staged.refresh(profile.fields.clone());
+        self.session.take_document(file, document);
+    }
+}

@@ -1,0 +1,277 @@
+//! An encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its line.
+
+use std::collections::BTreeMap;
+
+use super::Staged;
+use super::commutation::Commutation;
+use super::meaning::Meaning;
+use super::record::Record;
+use super::rest::RestAsked;
+use super::review::Review;
+use super::rules;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
+use crate::app::studio::SessionId;
+use crate::app::{Severity, Text, explain};
+use crate::devices::hiperface::jobs::Hiperface;
+use crate::devices::hiperface::procedures::check;
+use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField};
+use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Item};
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
+use crate::devices::hiperface::state::explain as words;
+use crate::link::LinkUrl;
+use crate::profile::Document;
+
+/// An encoder, or a profile of one.
+pub struct Encoder {
+    /// What every session has.
+    pub session: Session<Hiperface>,
+    /// Who it is.
+    pub identity: Option<Identity>,
+    /// Its memory and the edits beside it.
+    pub staged: Staged,
+    /// The error queue as it was last read, with what the encoder announced since; `None`: never read.
+    pub codes: Option<Vec<StatusCode>>,
+    /// Data fields that could not be read, for another reason than their access code: why.
+    pub unreadable: BTreeMap<u8, Text>,
+    /// How good the line is.
+    pub line_quality: LineQuality,
+    /// The last device check.
+    pub check: Option<Vec<check::Line>>,
+    /// The counter as last read.
+    pub counter: Option<u32>,
+    /// The last position that was set here: from where, to where.
+    pub position_set: Option<(u32, u32)>,
+    /// Analogue values as last read, with their limits; or why the encoder does not give them.
+    pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
+    /// What was recorded while it was polled.
+    pub record: Record,
+    /// The commutation assistant.
+    pub commutation: Commutation,
+    pub(super) rest: RestAsked,
+    /// A write on its way.
+    pub review: Option<Review>,
+    pub(super) meaning: Meaning,
+    /// Access codes that the user gave or changed: the next session with this encoder begins with them.
+    pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
+    /// What was asked for by the job that reads a single value.
+    pub(super) asked: Option<Item>,
+    /// Access codes that are given to the session again, once it is known who is connected.
+    pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
+    /// Interface settings with which the encoder talks when the job that runs is done.
+    pub(super) settings_then: Option<LineSettings>,
+    /// The access code that the user gave last: whether it fits shows when the fields are read.
+    pub(super) tried_code: Option<CodeNumber>,
+}
+
+impl Encoder {
+    /// An encoder at a link that is being opened.
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+        Encoder::with(Session::at_link(id, url))
+    }
+
+    fn with(session: Session<Hiperface>) -> Self {
+        Encoder {
+            session,
+            identity: None,
+            staged: Staged::default(),
+            codes: None,
+            unreadable: BTreeMap::new(),
+            line_quality: LineQuality::default(),
+            check: None,
+            counter: None,
+            position_set: None,
+            analogue: BTreeMap::new(),
+            record: Record::default(),
+            commutation: Commutation::default(),
+            rest: RestAsked::default(),
+            review: None,
+            meaning: Meaning::default(),
+            access_codes: Vec::new(),
+            asked: None,
+            codes_due: Vec::new(),
+            settings_then: None,
+            tried_code: None,
+        }
+    }
+
+    /// A profile of an encoder.
+    pub(crate) fn in_file(
+        id: SessionId,
+        file: ProfileFile,
+        document: Document,
+        types: &EncoderTypes,
+        services: &Services,
+    ) -> Self {
+        let profile = document.body.get::<HiperfaceProfile>();
+        let fields = profile.map(|profile| profile.fields.clone()).unwrap_or_default();
+        let identity = profile.map(|profile| crate::devices::hiperface::procedures::identity_of(profile, types));
+        let counter = profile.and_then(|profile| profile.recorded.counter);
+        let mut encoder = Encoder::with(Session::in_file(id, file, document));
+        if let Some(identity) = identity {
+            encoder.identify(identity);
+        }
+        encoder.counter = counter;
+        encoder.staged.refresh(fields);
+        encoder.load_draft(services);
+        encoder
+    }
+
+    /// Who it is, from now on.
+    fn identify(&mut self, identity: Identity) {
+        let serial = &identity.serial.serial_number;
+        self.session.title =
+            Some(if serial.is_empty() { identity.name.clone() } else { format!("{} · {serial}", identity.name) });
+        self.identity = Some(identity);
+    }
+
+    /// Tells the log who has answered.
+    fn log_answer(&self, services: &mut Services) {
+        let Some(identity) = &self.identity else { return };
+        let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
+        let firmware = if firmware.is_empty() { Text::new("encoder_card.not_told") } else { explain::plain(firmware) };
+        let line = Text::new("log.line").with("address", format!("{:02X}h", identity.address));
+        let kind = Text::new("log.type").with("type", format!("{:02X}h", label.encoder_type));
+        let facts = vec![
+            line.with_text("settings", words::line_settings(label.settings)),
+            kind.with_text("firmware", firmware),
+        ];
+        self.session.log_answer(facts, services);
+    }
+
+    /// There are edits that are not written.
+    pub fn is_dirty(&self) -> bool {
+        self.staged.is_dirty()
+    }
+
+    /// Bytes that are edited.
+    pub(crate) fn edits(&self) -> usize {
+        self.staged.edits().count()
+    }
+
+    pub(crate) fn can_undo(&self) -> bool {
+        self.staged.can_undo()
+    }
+
+    pub(crate) fn can_redo(&self) -> bool {
+        self.staged.can_redo()
+    }
+
+    /// One of its data fields, as the encoder has it.
+    pub fn field(&self, number: u8) -> Option<&FieldImage> {
+        self.staged.device().iter().find(|field| field.number == number)
+    }
+
+    /// The profile as the user wants it, where this is one.
+    pub(crate) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
+        let Source::File { document, .. } = &self.session.source else { return None };
+        let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
+        profile.fields = self.staged.wanted();
+        // What was typed may be a commutation offset as well.
+        profile.mark_mounting();
+        Some(profile)
+    }
+
+    /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
+    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+        let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
+        let fresh = std::mem::take(&mut self.session.just_connected);
+        // Without a serial number, it may be any of its type; the same memory makes it as good as the same.
+        let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
+        if self.is_another(&identity) || (self.identity.is_some() && unproven) {
+            if self.staged.is_dirty() {
+                let kept = self.identity.as_ref().is_some_and(|known| !known.serial.serial_number.is_empty());
+                let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
+                let text = text.with("serial", &identity.serial.serial_number);
+                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            }
+            self.forget_encoder(services);
+        }
+        let first = self.identity.is_none();
+        self.identify(identity);
+        self.staged.refresh(fields);
+        self.counter = counter;
+        self.codes = Some(codes);
+        self.line_quality = line;
+        self.take_unreadable(&unreadable, services);
+        if let Some(position) = position {
+            self.add_samples(vec![position], 0);
+        }
+        if first {
+            self.load_draft(services);
+        }
+        if fresh {
+            self.log_answer(services);
+        }
+        self.tell_of_code(services);
+        self.list_backups(services);
+    }
+
+    /// Says which data fields could not be read, and why.
+    fn take_unreadable(&mut self, fields: &[UnreadableField], services: &mut Services) {
+        let why = |own: &UnreadableField| {
+            let text = Text::new("session.field_unreadable").with("field", own.number);
+            text.with_text("why", words::encoder(&own.why))
+        };
+        let before = std::mem::take(&mut self.unreadable);
+        self.unreadable = fields.iter().map(|own| (own.number, why(own))).collect();
+        if !self.unreadable.is_empty() && self.unreadable != before {
+            let texts = self.unreadable.values().cloned().collect();
+            services.tell(Severity::Warning, texts, Some(&self.session.name()));
+        }
+    }
+
+    /// Why the bytes of a field cannot be edited; `None`: they can.
+    pub fn why_not_edited(&self, field: &FieldImage) -> Option<Text> {
+        self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
+    }
+
+    /// Records what was sampled, or read on its own.
+    pub(super) fn add_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
+        let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
+        self.record.add(samples, dropped, geometry);
+    }
+
+    /// Whether the access code that the user gave opens the fields that it guards; never the code itself.
+    fn tell_of_code(&mut self, services: &mut Services) {
+        let Some(number) = self.tried_code.take() else { return };
+        let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
+        let fields: Vec<&FieldImage> = self.staged.device().iter().filter(own).collect();
+        let shut: Vec<String> =
+            fields.iter().filter(|field| field.bytes.is_none()).map(|field| field.number.to_string()).collect();
+        let (severity, text) = match (fields.is_empty(), shut.is_empty()) {
+            (true, _) => (Severity::Note, Text::new("session.code_unused")),
+            (false, true) => (Severity::Good, Text::new("session.code_fits")),
+            (false, false) => (Severity::Warning, Text::new("session.code_wrong").with("fields", shut.join(", "))),
+        };
+        if severity == Severity::Warning {
+            self.access_codes.retain(|(own, _)| *own != number);
+        }
+        services.tell(severity, vec![text.with("number", number)], Some(&self.session.name()));
+    }
+
+    /// Another encoder than the one that was read before.
+    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+        let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
+        self.identity.as_ref().is_some_and(|known| who(known) != who(identity))
+    }
+
+    fn forget_encoder(&mut self, services: &mut Services) {
+        self.leave_draft(services);
+        self.identity = None;
+        self.session.title = None;
+        self.staged.clear();
+        self.check = None;
+        self.unreadable.clear();
+        self.position_set = None;
+        self.analogue.clear();
+        self.record.forget();
+        self.session.backups = None;
+        self.session.writes = None;
+        self.session.statuses.clear();
+        self.access_codes.clear();
+        self.tried_code = None;
+        self.commutation = Commutation::default();
+        self.review = None;
+    }
+}

@@ -1,0 +1,280 @@
+//! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
+
+mod change;
+mod check;
+mod command;
+mod damage;
+mod doing;
+mod frame;
+mod label;
+mod op;
+mod words;
+
+use std::path::Path;
+
+pub use change::{change, staged};
+pub use check::{check, line_quality};
+pub use command::command;
+pub use damage::damage;
+pub use doing::doing;
+pub use frame::frame;
+pub use label::{LabelRow, label};
+pub use op::op;
+pub use words::{
+    field_access, field_code_required, field_status, geometry, line_settings, position, raw_position, status,
+    status_with_number,
+};
+
+use crate::app::Text;
+use crate::app::explain::{link, not_begun, phrase};
+use crate::devices::hiperface::jobs::{ChangeKind, JobError, OtherType};
+use crate::devices::hiperface::procedures::Error;
+use crate::devices::hiperface::procedures::write::{Interrupted, Written};
+use crate::devices::hiperface::profile::{PlanError, Redo, UnknownField};
+use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    match error {
+        JobError::Device(error) => vec![encoder(error)],
+        JobError::Plan(error) => vec![plan(error)],
+        JobError::NotBegun(why) => vec![not_begun(why)],
+        JobError::Interrupted { interrupted, backup, planned, kind } => {
+            interruption(interrupted, backup, *planned, *kind)
+        }
+    }
+}
+
+/// A write that was cut off: how far it came, what became of it, and where the state before is.
+pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+    let done = &interrupted.done;
+    let mut texts = vec![match &interrupted.cause {
+        Error::Cancelled => Text::new("write.cancelled").with("done", done.ops).with("planned", planned),
+        cause => {
+            let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
+            text.with_text("cause", encoder(cause))
+        }
+    }];
+    if !interrupted.left_unlocked.is_empty() {
+        let fields: Vec<String> = interrupted.left_unlocked.iter().map(ToString::to_string).collect();
+        texts.push(Text::new("write.left_unlocked").with("fields", fields.join(", ")));
+    }
+    // An operation that may have been carried out counts as a write cycle.
+    let id = match kind {
+        _ if done.write_cycles == 0 => "write.untouched",
+        ChangeKind::Restore => "write.backup",
+        ChangeKind::Bytes => "write.backup_bytes",
+        ChangeKind::Single => "write.backup_single",
+    };
+    texts.push(Text::new(id).with("backup", backup.display()));
+    texts
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    match error.device()? {
+        Error::Link(error) => Some(link(error)),
+        _ => None,
+    }
+}
+
+/// A write that is done. What cannot be read back was acknowledged by the encoder, and that is all there is.
+pub fn written(written: &Written) -> Text {
+    let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
+    Text::new(id).with("cycles", written.write_cycles)
+}
+
+/// The same for the end of a review.
+pub fn verified(written: &Written) -> Text {
+    match written.verified {
+        0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
+        verified => Text::new("review.verified").with("verified", verified).with("cycles", written.write_cycles),
+    }
+}
+
+/// An exchange with a HIPERFACE encoder that failed.
+pub fn encoder(error: &Error) -> Text {
+    match error {
+        Error::Link(error) => link(error),
+        Error::NoReply { address, command, tries, echo_heard } => {
+            let id = if *echo_heard { "encoder.echo_only" } else { "encoder.no_reply" };
+            Text::new(id)
+                .with("address", format!("{address:02X}h"))
+                .with_text("command", command::command(*command))
+                .with("tries", tries)
+        }
+        Error::Damaged { command, tries, cause } => {
+            let text =
+                Text::new("encoder.damaged").with_text("command", command::command(*command)).with("tries", tries);
+            text.with_text("why", damage(cause))
+        }
+        Error::NeverSilent => Text::new("encoder.never_silent"),
+        Error::Rejected { command, codes } => {
+            let code_needed = codes.contains(&StatusCode::WRONG_CODE);
+            let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
+            let codes = codes.iter().copied().map(status_with_number);
+            Text::new(id).with_text("command", command::command(*command)).with_list("codes", codes)
+        }
+        Error::Unclear { command, cause } => Text::new("encoder.unclear")
+            .with_text("command", command::command(*command))
+            .with_text("cause", encoder(cause)),
+        Error::Cancelled => Text::new("encoder.cancelled"),
+        Error::Moving { readings } => {
+            let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
+            Text::new("encoder.moving").with("readings", words.join(", "))
+        }
+        Error::NotAKit { encoder } => Text::new("encoder.not_a_kit").with("encoder", encoder),
+        Error::AddressTaken { address } => {
+            Text::new("encoder.address_taken").with("address", format!("{address:02X}h"))
+        }
+        Error::PositionRange { wanted, last } => {
+            Text::new("encoder.position_range").with("wanted", wanted).with("last", last)
+        }
+        Error::OutOfField { field, address, count, size } => {
+            out_of_field(*field, size.saturating_sub(1), *address, *count)
+        }
+        Error::CodeUnknown { field, number } => code_unknown(*field, number),
+        Error::Changed { item } => Text::new("encoder.changed").with_text("item", phrase(item)),
+        Error::NotVerified { item, expected, got } => Text::new("encoder.not_verified")
+            .with_text("item", phrase(item))
+            .with("expected", expected)
+            .with_text("got", phrase(got)),
+        Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
+    }
+}
+
+/// What has to be set up anew.
+pub fn redo(redo: &Redo) -> Text {
+    match redo {
+        Redo::Commutation => Text::new("redo.commutation"),
+        Redo::Value(range) => phrase(&range.to_string()),
+    }
+}
+
+/// A data field with bytes of unknown meaning that would go onto another encoder.
+pub fn unknown_field(field: &UnknownField) -> Text {
+    let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
+    Text::new(id).with("field", field.field).with("bytes", field.bytes)
+}
+
+/// Fields that a write created and that are not deleted where it is undone; `None` where there are none.
+pub fn created_left(fields: &[u8]) -> Option<Text> {
+    let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
+    (!fields.is_empty()).then(|| Text::new("review.created_left").with("fields", numbers.join(", ")))
+}
+
+/// So many status codes may have been lost on the way.
+pub fn codes_unheard(count: u32) -> Text {
+    Text::new("status.unheard").with("count", count)
+}
+
+/// A profile that goes onto another type of encoder.
+pub fn other_type(types: OtherType) -> Text {
+    let OtherType { profile, device } = types;
+    Text::new("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
+}
+
+/// A type by its name, where the table that ships has one, and its code.
+fn type_name(code: u8) -> String {
+    match EncoderTypes::built_in().find(code) {
+        Some(own) => format!("{} ({code:02X}h)", own.name),
+        None => format!("{code:02X}h"),
+    }
+}
+
+/// A plan that cannot be made.
+pub fn plan(error: &PlanError) -> Text {
+    match error {
+        PlanError::OtherDevice { profile, device } => {
+            let named = |number: &str| if number.is_empty() { "–".to_owned() } else { number.to_owned() };
+            Text::new("plan.other_device").with("profile", named(profile)).with("device", named(device))
+        }
+        PlanError::OtherType { profile, device } => {
+            Text::new("plan.other_type").with("profile", type_name(*profile)).with("device", type_name(*device))
+        }
+        PlanError::SizeFixed { field, profile, device } => {
+            Text::new("plan.size_fixed").with("field", field).with("profile", profile).with("device", device)
+        }
+        PlanError::Gap { field, missing } => Text::new("plan.gap").with("field", field).with("missing", missing),
+        PlanError::NoMemory { needed, free } => Text::new("plan.no_memory").with("needed", needed).with("free", free),
+        PlanError::WouldLose { field, code } => Text::new("plan.would_lose").with("field", field).with("code", code),
+        PlanError::NotNext { field, next } => Text::new("plan.not_next").with("field", field).with("next", next),
+        PlanError::NotLast { field, last } => Text::new("plan.not_last").with("field", field).with("last", last),
+        PlanError::NoSuchField { field, count: 0 } => Text::new("encoder.no_fields").with("field", field),
+        PlanError::NoSuchField { field, count } => {
+            Text::new("encoder.no_field").with("field", field).with("count", count).with("last", count - 1)
+        }
+        PlanError::WriteProtected { field } => Text::new("plan.write_protected").with("field", field),
+        PlanError::OutOfField { field, last, start, count } => out_of_field(*field, *last, *start, *count),
+        PlanError::CodeUnknown { field, code } => code_unknown(*field, code),
+    }
+}
+
+/// Bytes that a field does not have.
+pub fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
+    let text = Text::new(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
+    text.with("field", field).with("last", last).with("start", start).with("count", count)
+}
+
+fn code_unknown(field: u8, number: impl ToString) -> Text {
+    Text::new("encoder.code_unknown").with("field", field).with("number", number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::link::{LinkError, LinkErrorKind};
+
+    fn cut_off(cause: Error, write_cycles: u64) -> Interrupted {
+        let ops = usize::try_from(write_cycles).unwrap();
+        Interrupted { done: Written { ops, write_cycles, ..Written::default() }, cause, left_unlocked: Vec::new() }
+    }
+
+    #[test]
+    fn what_is_said_of_a_write_that_was_cut_off_fits_its_kind() {
+        let path = Path::new("b.ron");
+        let words = |cycles, kind| {
+            let texts = interruption(&cut_off(Error::Cancelled, cycles), path, 4, kind);
+            texts.last().unwrap().words(Language::English)
+        };
+        let cases = [
+            (
+                ChangeKind::Restore,
+                "Restoring the profile again completes it",
+                "restoring the profile again completes it",
+            ),
+            (ChangeKind::Bytes, "stay edited", "Give the command again to complete it"),
+            (ChangeKind::Single, "make the change again", "give the command again if you still want it"),
+        ];
+        for (kind, part, terminal) in cases {
+            let cut =
+                |cycles| interruption(&cut_off(Error::Cancelled, cycles), path, 4, kind).pop().unwrap().terminal();
+            assert!(words(2, kind).contains(part), "{}", words(2, kind));
+            assert!(words(0, kind).contains("nothing needs undoing"), "{}", words(0, kind));
+            assert!(cut(2).contains(terminal) && cut(2).contains("b.ron"), "{}", cut(2));
+            assert!(cut(0).contains("Nothing was changed") && cut(0).contains("b.ron"), "{}", cut(0));
+        }
+    }
+
+    #[test]
+    fn a_line_that_was_lost_in_a_write_is_lost_and_no_more() {
+        let gone = || Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
+        let interrupted = Box::new(cut_off(gone(), 1));
+        let backup = Path::new("b.ron").to_owned();
+        let error = JobError::Interrupted { interrupted, backup, planned: 4, kind: ChangeKind::Restore };
+        assert_eq!(loss(&error).unwrap().id(), "link.lost");
+        assert_eq!(loss(&JobError::Device(gone())).unwrap().id(), "link.lost");
+        assert_eq!(loss(&JobError::Device(Error::NeverSilent)), None);
+    }
+
+    #[test]
+    fn an_access_code_is_acknowledged_and_not_read_back() {
+        let of = |verified| Written { ops: 1, written: 1, verified, write_cycles: 1 };
+        assert!(verified(&of(3)).words(Language::English).starts_with("Read back and equal"));
+        for text in [written(&of(0)), verified(&of(0))] {
+            assert_eq!(text.id(), "session.acknowledged");
+        }
+        assert_eq!(written(&of(1)).id(), "session.written");
+    }
+}

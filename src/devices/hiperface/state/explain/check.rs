@@ -1,0 +1,99 @@
+//! The device check in words.
+
+use super::encoder;
+use super::words::{field_status, position, raw_position, status_with_number};
+use crate::app::Text;
+use crate::app::check::CheckLine;
+use crate::app::explain::plain;
+use crate::devices::hiperface::procedures::LineQuality;
+use crate::devices::hiperface::procedures::check::{Finding, Line, Step};
+
+/// The lines of a check.
+pub fn check(lines: &[Line]) -> Vec<CheckLine> {
+    lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
+}
+
+fn step(step: Step) -> Text {
+    Text::new(match step {
+        Step::Restart => "check.restart",
+        Step::Status => "check.status",
+        Step::Identity => "check.identity",
+        Step::Position => "check.position",
+        Step::Limits => "check.limits",
+        Step::DataFields => "check.data_fields",
+        Step::Line => "check.line",
+    })
+}
+
+/// How good a line is.
+pub fn line_quality(quality: &LineQuality) -> Text {
+    let [retries, damaged, silent, late] = quality.troubles();
+    Text::new(if quality.is_troubled() { "line.troubled" } else { "line.good" })
+        .with("requests", quality.requests)
+        .with("retries", retries)
+        .with("damaged", damaged)
+        .with("silent", silent)
+        .with("late", late)
+}
+
+/// What a step found.
+fn finding(finding: &Finding) -> Text {
+    match finding {
+        Finding::Code(code) => status_with_number(*code),
+        Finding::Position(found) => position(*found),
+        Finding::RawPosition(raw) => raw_position(*raw),
+        Finding::Name(name) => plain(name),
+        Finding::SerialNumber(number) => plain(number),
+        Finding::Limit { channel, value, limit } => {
+            let channel = format!("{channel:02X}h");
+            Text::new("check.limit").with("channel", channel).with("value", value).with("limit", limit)
+        }
+        Finding::Field { number, status } => {
+            Text::new("check.field").with("number", number).with_text("status", field_status(*status))
+        }
+        Finding::FieldLocked { number, status } => Text::new("check.field_locked")
+            .with("number", number)
+            .with_text("status", field_status(*status))
+            .with("code", status.code()),
+        Finding::FieldRefused { number, codes } => Text::new("check.field_refused")
+            .with("number", number)
+            .with_list("codes", codes.iter().copied().map(status_with_number)),
+        Finding::FieldUnreadable { number, why } => {
+            Text::new("check.field_unreadable").with("number", number).with_text("why", encoder(why))
+        }
+        Finding::Unreadable(why) => encoder(why),
+        Finding::Line(quality) => line_quality(quality),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::devices::hiperface::protocol::{DataFieldStatus, StatusCode};
+
+    #[test]
+    fn findings_are_said_to_each_in_his_words() {
+        let status = DataFieldStatus::from_byte(0xAA);
+        let cases = [
+            (
+                Finding::FieldLocked { number: 1, status },
+                "1: 48 bytes, write protected, code 2, code required, the access code 2 is not known",
+                "Datenfeld 1: 48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel nötig, Zugriffsschlüssel 2 ist \
+                 nicht bekannt",
+            ),
+            (
+                Finding::FieldRefused { number: 3, codes: vec![StatusCode::WRONG_CODE, StatusCode::TEMPERATURE] },
+                "3: 0Fh wrong access code, 1Eh critical encoder temperature",
+                "Datenfeld 3: 0Fh falscher Zugriffsschlüssel, 1Eh kritische Gebertemperatur",
+            ),
+            (Finding::Limit { channel: 0x48, value: 42, limit: 115 }, "48h: 42 ≤ 115", "Kanal 48h: 42, Grenzwert 115"),
+            (Finding::RawPosition(7), "7", "7 Schritte"),
+            (Finding::Name("SKM36".to_owned()), "SKM36", "SKM36"),
+        ];
+        for (found, terminal, german) in cases {
+            assert_eq!(finding(&found).terminal(), terminal);
+            assert_eq!(finding(&found).words(Language::German), german);
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! The commands in words.
+
+use crate::app::Text;
+use crate::devices::hiperface::protocol::Command;
+
+/// What a command is called.
+pub fn command(command: Command) -> Text {
+    Text::new(match command {
+        Command::ReadPosition => "command.read_position",
+        Command::SetPosition => "command.set_position",
+        Command::ReadAnalogue => "command.read_analogue",
+        Command::ReadCounter => "command.read_counter",
+        Command::IncrementCounter => "command.increment_counter",
+        Command::ClearCounter => "command.clear_counter",
+        Command::ReadData => "command.read_data",
+        Command::StoreData => "command.store_data",
+        Command::FieldStatus => "command.field_status",
+        Command::DefineField => "command.define_field",
+        Command::FreeMemory => "command.free_memory",
+        Command::ChangeCode => "command.change_code",
+        Command::ReadStatus => "command.read_status",
+        Command::ReadTypeLabel => "command.read_type_label",
+        Command::Reset => "command.reset",
+        Command::SetAddress => "command.set_address",
+        Command::ReadSerial => "command.read_serial",
+        Command::ConfigureLine => "command.configure_line",
+        Command::Synchronise => "command.synchronise",
+        Command::ConfigureLineTemporarily => "command.configure_line_temporarily",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::devices::hiperface::protocol::COMMANDS;
+
+    #[test]
+    fn commands_are_called_as_the_protocol_calls_them() {
+        for row in COMMANDS {
+            assert_eq!(command(row.command).words(Language::English), row.name);
+            assert_ne!(command(row.command).words(Language::German), row.name);
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! What was wrong with a reply, in words.
+
+use super::words::status_with_number;
+use crate::app::Text;
+use crate::devices::hiperface::procedures::Damage;
+use crate::devices::hiperface::protocol::{FrameError, ReplyError};
+
+/// What was wrong with a reply.
+pub fn damage(damage: &Damage) -> Text {
+    match damage {
+        Damage::Reply(error) => reply(error),
+        Damage::Unreadable => Text::new("damage.unreadable"),
+        Damage::Trailing => Text::new("damage.trailing"),
+        Damage::Late => Text::new("damage.late"),
+        Damage::Echo => Text::new("damage.echo"),
+        Damage::AtEncoder(code) => Text::new("damage.at_encoder").with_text("code", status_with_number(*code)),
+        Damage::Inconsistent => Text::new("damage.inconsistent"),
+    }
+}
+
+fn reply(error: &ReplyError) -> Text {
+    let byte = |byte: &u8| format!("{byte:02X}h");
+    match error {
+        ReplyError::Frame(FrameError::Short { got }) => Text::new("damage.short").with("got", got),
+        ReplyError::Frame(FrameError::Checksum { expected, got }) => {
+            Text::new("damage.checksum").with("got", format!("{got:02X}")).with("expected", format!("{expected:02X}"))
+        }
+        ReplyError::Address { expected, got } => {
+            Text::new("damage.address").with("got", byte(got)).with("expected", byte(expected))
+        }
+        ReplyError::Command { expected, got } => {
+            Text::new("damage.command").with("got", byte(got)).with("expected", byte(expected))
+        }
+        ReplyError::Length { command, got } => {
+            Text::new("damage.length").with("got", got).with("command", byte(command))
+        }
+        ReplyError::Argument => Text::new("damage.argument"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::devices::hiperface::protocol::StatusCode;
+
+    #[test]
+    fn damage_is_called_as_the_lower_floors_call_it() {
+        let cases = [
+            Damage::Reply(ReplyError::Frame(FrameError::Short { got: 2 })),
+            Damage::Reply(ReplyError::Frame(FrameError::Checksum { expected: 0x0A, got: 0xB0 })),
+            Damage::Reply(ReplyError::Address { expected: 0x40, got: 0x41 }),
+            Damage::Reply(ReplyError::Command { expected: 0x42, got: 0x50 }),
+            Damage::Reply(ReplyError::Length { command: 0x42, got: 3 }),
+            Damage::Reply(ReplyError::Argument),
+            Damage::Unreadable,
+            Damage::Trailing,
+            Damage::Late,
+            Damage::Echo,
+            Damage::AtEncoder(StatusCode::PARITY),
+            Damage::Inconsistent,
+        ];
+        for found in cases {
+            assert_eq!(damage(&found).words(Language::English), found.to_string());
+            assert_ne!(damage(&found).words(Language::German), found.to_string());
+        }
+    }
+}

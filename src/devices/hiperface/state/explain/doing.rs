@@ -1,0 +1,19 @@
+//! The step that a job is at, in words.
+
+use super::op;
+use crate::app::Text;
+use crate::devices::hiperface::jobs::Doing;
+use crate::devices::hiperface::procedures::find::Attempt;
+
+/// What a job does at the moment.
+pub fn doing(doing: &Doing) -> Text {
+    match doing {
+        Doing::Field(field) => Text::new("op.field").with("field", field),
+        Doing::Operation(operation) => op(operation).item,
+        Doing::Attempt(Attempt::Listening) => Text::new("doing.listening"),
+        Doing::Attempt(Attempt::DefaultWindow) => Text::new("doing.default_window"),
+        Doing::Attempt(Attempt::Probing { address, format }) => {
+            Text::new("doing.probing").with("address", format!("{address:02X}h")).with("format", format)
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What a frame says, in words: for the trace and for `decode`.
+
+use super::{command, field_status, line_settings, status_with_number};
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::bits::hex;
+use crate::devices::hiperface::protocol::{
+    Arguments, BROADCAST, Command, DataFieldStatus, EncoderTypes, Frame, LineSettings, Reply, RequestError, Said,
+    SerialLabel, StatusCode, TypeLabel,
+};
+
+/// One thing that a frame says.
+pub fn frame(said: &Said) -> Text {
+    match said {
+        Said::Heading { address, command } => heading(*address, *command),
+        Said::Request(arguments) => request(arguments),
+        Said::NoRequest(error) => Text::new("frame.no_request").with_text("why", no_request(*error)),
+        Said::Refused(code) => Text::new("frame.refused").with_text("code", kind_and_code(*code)),
+        Said::Code(code) => kind_and_code(*code),
+        Said::Reply(reply) => Text::new("frame.reply").with_text("words", answer(reply)),
+    }
+}
+
+fn heading(address: u8, byte: u8) -> Text {
+    let who = match address {
+        BROADCAST => Text::new("frame.broadcast"),
+        address => Text::new("frame.address").with("address", number(address)),
+    };
+    let what = Command::from_byte(byte).map_or_else(|| Text::new("command.unknown"), command);
+    let flagged = byte & Frame::ERROR_BIT != 0;
+    Text::new(if flagged { "frame.heading_error" } else { "frame.heading" })
+        .with_text("who", who)
+        .with_text("command", what)
+        .with("number", number(byte & !Frame::ERROR_BIT))
+}
+
+fn request(arguments: &Arguments) -> Text {
+    match arguments {
+        Arguments::None => Text::new("frame.request"),
+        Arguments::Position(position) => {
+            Text::new("frame.request_position").with("position", position).with("word", word(*position))
+        }
+        Arguments::Channel(channel) => Text::new("frame.request_channel").with("channel", number(*channel)),
+        Arguments::Read { field, address, count } => {
+            Text::new(if *count == 1 { "frame.request_byte" } else { "frame.request_bytes" })
+                .with("field", number(*field))
+                .with("count", count)
+                .with("address", address)
+        }
+        Arguments::Store { field, address, data } => Text::new("frame.request_store")
+            .with("field", number(*field))
+            .with("address", address)
+            .with("bytes", hex(data)),
+        Arguments::Field(field) => Text::new("frame.request_field").with("field", number(*field)),
+        Arguments::Define { field, status } => {
+            Text::new("frame.request_define").with("field", number(*field)).with_text("status", status_byte(*status))
+        }
+        Arguments::Code(code) => Text::new("frame.request_code").with("number", code),
+        Arguments::Address(address) => Text::new("frame.request_address").with("address", address),
+        Arguments::Settings(settings) => {
+            Text::new("frame.request_settings").with_text("settings", settings_byte(*settings))
+        }
+    }
+}
+
+fn no_request(error: RequestError) -> Text {
+    match error {
+        RequestError::Command(byte) => Text::new("frame.no_command").with("command", number(byte)),
+        RequestError::Length { expected, got } => {
+            Text::new("frame.wrong_length").with("got", got).with("expected", expected)
+        }
+        RequestError::Argument(name) => Text::new("frame.wrong_argument").with("name", name),
+    }
+}
+
+fn kind_and_code(code: StatusCode) -> Text {
+    let named = status_with_number(code);
+    if code == StatusCode::OK {
+        return named;
+    }
+    Text::new(if code.is_warning() { "frame.warning" } else { "frame.error" }).with_text("code", named)
+}
+
+fn answer(reply: &Reply) -> Text {
+    match reply {
+        Reply::Done => Text::new("frame.done"),
+        Reply::Position(raw) => Text::new("frame.position").with("position", raw).with("word", word(*raw)),
+        Reply::Analogue(value) => Text::new("frame.value").with("value", value),
+        Reply::Counter(value) => Text::new("frame.counter").with("value", value),
+        Reply::Data(bytes) => Text::new("frame.data").with("bytes", hex(bytes)),
+        Reply::FieldStatus(status) => Text::new("frame.field_status").with_text("status", status_byte(*status)),
+        Reply::FreeMemory(free) => Text::new(if free.fields == 1 { "frame.free_one" } else { "frame.free" })
+            .with("bytes", free.bytes())
+            .with("fields", free.fields),
+        Reply::Status(codes) => {
+            Text::new("frame.codes").with_list("codes", codes.iter().copied().map(status_with_number))
+        }
+        Reply::TypeLabel(label) => type_label(label),
+        Reply::Serial(SerialLabel { serial_number, firmware_version, firmware_date, .. }) => Text::new("frame.serial")
+            .with("serial", serial_number)
+            .with("version", firmware_version)
+            .with("date", firmware_date),
+    }
+}
+
+fn type_label(label: &TypeLabel) -> Text {
+    let types = EncoderTypes::built_in();
+    let name = types.find(label.encoder_type);
+    Text::new("frame.type_label")
+        .with_text("settings", settings_byte(label.settings))
+        .with("type", number(label.encoder_type))
+        .with_text("name", name.map_or_else(|| Text::new("frame.unknown_type"), |row| plain(&row.name)))
+        .with("bytes", label.eeprom_bytes())
+        .with("options", number(label.options))
+}
+
+fn status_byte(status: DataFieldStatus) -> Text {
+    Text::new("frame.byte").with("byte", number(status.byte())).with_text("words", field_status(status))
+}
+
+fn settings_byte(settings: LineSettings) -> Text {
+    Text::new("frame.byte").with("byte", number(settings.byte())).with_text("words", line_settings(settings))
+}
+
+fn number(byte: u8) -> String {
+    format!("{byte:02X}h")
+}
+
+fn word(raw: u32) -> String {
+    format!("{raw:08X}h")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::bits::parse_hex;
+    use crate::devices::hiperface::protocol::describe;
+
+    fn texts(bytes: &str) -> Vec<Text> {
+        describe(&parse_hex(bytes).unwrap(), None).unwrap().iter().map(frame).collect()
+    }
+
+    #[test]
+    fn decode_says_what_it_always_said() {
+        let cases = [
+            ("40 42 02", "address 40h: read position (42h)|request"),
+            ("40 42 00 0E 05 31 38", "address 40h: read position (42h)|reply: position 918833 (000E0531h)"),
+            ("40 D0 0F 9F", "address 40h: read encoder status (50h, error bit set)|error 0Fh wrong access code"),
+            (
+                "40 50 1D 0D",
+                "address 40h: read encoder status (50h)|warning 1Dh critical transmitter current (dirt or ageing)",
+            ),
+            ("40 4E 08 00 06", "address 40h: read available memory (4Eh)|reply: 128 bytes free, 0 data fields"),
+            ("40 4E 08 01 07", "address 40h: read available memory (4Eh)|reply: 128 bytes free, 1 data fields"),
+            ("40 4F 02 55 66 3E", "address 40h: change access code (4Fh)|request: access code 2"),
+            (
+                "40 4D 00 C9 55 91",
+                "address 40h: create, change or delete a data field (4Dh)|request: field 00h becomes C9h (32 bytes, \
+                 writable, code 0, code required)",
+            ),
+            ("40 4B 01 05 02 66 08 15 76", "address 40h: store data (4Bh)|request: field 01h, from address 5: 08 15"),
+            (
+                "40 52 E4 22 80 01 55",
+                "address 40h: read type label (52h)|reply: E4h (9600 8E1, time-out 44 bits, standard); type 22h \
+                 SRS/SCK/SFS; EEPROM 2048 bytes; options 01h",
+            ),
+            ("FF 53 AC", "broadcast: reset (53h)|request"),
+            ("40 41 01", "address 40h: unknown command (41h)|as a request: 41h is not a command"),
+        ];
+        for (bytes, expected) in cases {
+            let words: Vec<String> = texts(bytes).iter().map(Text::terminal).collect();
+            assert_eq!(words.join("|"), expected);
+        }
+    }
+
+    #[test]
+    fn the_trace_speaks_german() {
+        let cases = [
+            ("40 42 02", "Adresse 40h: Position lesen (42h)|Anfrage"),
+            (
+                "40 D0 0F 9F",
+                "Adresse 40h: Geberstatus lesen (50h, Fehlerbit gesetzt)|Fehler 0Fh falscher Zugriffsschlüssel",
+            ),
+            ("40 4E 08 01 07", "Adresse 40h: Freien Speicher lesen (4Eh)|Antwort: 128 Bytes frei, 1 Datenfeld"),
+            ("40 41 01", "Adresse 40h: unbekannter Befehl (41h)|als Anfrage: 41h ist kein Befehl"),
+        ];
+        for (bytes, expected) in cases {
+            let words: Vec<String> = texts(bytes).iter().map(|text| text.words(Language::German)).collect();
+            assert_eq!(words.join("|"), expected);
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The extended type label, byte by byte, in words.
+
+use crate::app::Text;
+use crate::bits::hex;
+use crate::devices::hiperface::protocol::{ExtendedLabel, LabelPart};
+
+/// Some bytes of the label with their meaning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LabelRow {
+    /// First and last address.
+    pub addresses: String,
+    /// The bytes.
+    pub bytes: String,
+    /// What they are.
+    pub meaning: Text,
+}
+
+/// The rows of a label; limits that are not valid are left out. Nothing for what is no label.
+pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
+    let Ok(parts) = ExtendedLabel::parts(bytes) else { return Vec::new() };
+    let flags = bytes.get(1).copied().unwrap_or(0);
+    let linear = flags & ExtendedLabel::LINEAR != 0;
+    let fits = ExtendedLabel::parse(bytes).is_ok_and(|label| label.checksum_fits);
+    parts
+        .into_iter()
+        .filter_map(|(address, count, part)| {
+            let own = bytes.get(address..address + count)?;
+            let addresses = match count {
+                1 => format!("{address:02X}h"),
+                _ => format!("{address:02X}…{:02X}h", address + count - 1),
+            };
+            Some(LabelRow { addresses, bytes: hex(own), meaning: meaning(part, linear, flags, fits)? })
+        })
+        .collect()
+}
+
+fn meaning(part: LabelPart, linear: bool, flags: u8, fits: bool) -> Option<Text> {
+    Some(match part {
+        LabelPart::Checksum => Text::new(if fits { "label.checksum" } else { "label.checksum_other" }),
+        LabelPart::Flags => {
+            let kind = Text::new(if linear { "label.linear" } else { "label.rotary" });
+            let bipolar = flags & ExtendedLabel::BIPOLAR != 0;
+            let counting = Text::new(if bipolar { "label.bipolar" } else { "label.unipolar" });
+            Text::new("label.flags").with_text("kind", kind).with_text("counting", counting)
+        }
+        LabelPart::Resolution(number) => {
+            Text::new(if linear { "label.period" } else { "label.periods" }).with("number", number)
+        }
+        LabelPart::Range(number) => {
+            Text::new(if linear { "label.range" } else { "label.turns" }).with("number", number)
+        }
+        LabelPart::Designation => Text::new("label.designation"),
+        LabelPart::Selector(_) => Text::new("label.selector"),
+        LabelPart::Limit { valid: false, .. } => return None,
+        LabelPart::Limit { number, value, .. } => Text::new("label.limit").with("number", number).with("value", value),
+    })
+}

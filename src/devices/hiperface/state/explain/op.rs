@@ -1,0 +1,111 @@
+//! The operations of a plan in words, for whoever is to consent to it.
+
+use super::words::{field_access, field_code_required, field_status, line_settings};
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::app::review::OpWords;
+use crate::bits::hex;
+use crate::devices::hiperface::profile::Op;
+use crate::devices::hiperface::protocol::DataFieldStatus;
+
+/// An operation in words. An access code is not told.
+pub fn op(op: &Op) -> OpWords {
+    match op {
+        Op::Define { field, from, to } => define(*field, *from, *to),
+        Op::Store { field, address, old, new, .. } => OpWords::one(
+            bytes(*field, usize::from(*address), new.len()),
+            old.as_ref().map_or_else(|| Text::new("op.new_field"), |old| plain(hex(old))),
+            plain(hex(new)),
+        ),
+        Op::ChangeCode { number, .. } => OpWords::one(
+            Text::new("op.access_code").with("number", number),
+            Text::new("op.present_code"),
+            Text::new("op.changed_code"),
+        ),
+        Op::SetPosition { from, to, synchronise } => {
+            let item = if *synchronise { "op.synchronise" } else { "op.position" };
+            OpWords::one(Text::new(item), plain(from), plain(to))
+        }
+        Op::SetAddress { from, to } => OpWords::one(Text::new("op.address"), plain(format!("{from:02X}h")), plain(to)),
+        Op::Configure { from, to } => OpWords::one(Text::new("op.settings"), line_settings(*from), line_settings(*to)),
+        Op::ClearCounter { from } => OpWords::one(Text::new("op.counter"), plain(from), plain(0)),
+        Op::IncrementCounter { from } => {
+            OpWords::one(Text::new("op.counter"), plain(from), plain((from + 1) & 0x00FF_FFFF))
+        }
+    }
+}
+
+fn bytes(field: u8, first: usize, count: usize) -> Text {
+    match count {
+        1 => Text::new("op.byte").with("field", field).with("first", first),
+        _ => Text::new("op.bytes")
+            .with("field", field)
+            .with("first", first)
+            .with("last", (first + count).saturating_sub(1)),
+    }
+}
+
+fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OpWords {
+    let item = Text::new("op.field").with("field", field);
+    match from {
+        Some(from) if from.exists() && !to.exists() => OpWords::one(item, field_status(from), Text::new("op.deleted")),
+        Some(from) if from.exists() => {
+            let (old, new) = differing(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
+            let parts = |texts: Vec<Text>| Text::new("op.parts").with_list("parts", texts);
+            OpWords::one(item, parts(old), parts(new))
+        }
+        _ => OpWords::one(item, Text::new("op.not_there"), field_status(to)),
+    }
+}
+
+/// Only what an operation changes of a field: that is what has to be looked at.
+fn differing(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
+    let size = |status: DataFieldStatus| Text::new("op.size").with("size", status.size().bytes());
+    let code = |status: DataFieldStatus| Text::new("op.code").with("code", status.code());
+    let parts: [&dyn Fn(DataFieldStatus) -> Text; 4] = [&size, &field_access, &code, &field_code_required];
+    parts.into_iter().map(|part| (part(from), part(to))).filter(|(old, new)| old != new).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, DeviceAddress, LineSettings};
+
+    #[test]
+    fn operations_are_said_as_a_person_would_say_them() {
+        let status = DataFieldStatus::from_byte;
+        let define = |from: Option<u8>, to| Op::Define { field: 1, from: from.map(status), to: status(to) };
+        let store = |old, new| Op::Store { field: 1, address: 3, status: status(0xC9), old, new };
+        let (old, new) = (AccessCode::FACTORY, AccessCode::new(0x1A));
+        let settings = LineSettings::from_byte;
+        let cases = [
+            (define(Some(0xE8), 0xA8), "data field 1: writable → write protected"),
+            (define(Some(0xE8), 0xE9), "data field 1: 16 bytes → 32 bytes"),
+            (define(Some(0xE8), 0xF0), "data field 1: access code 2, code required → access code 3, code not required"),
+            (define(None, 0xE9), "data field 1: not there → 32 bytes, writable, code 2, code required"),
+            (define(Some(0xE9), 0x69), "data field 1: 32 bytes, writable, code 2, code required → deleted"),
+            (store(Some(vec![0, 1]), vec![8, 0x1F]), "data field 1, bytes 3 to 4: 00 01 → 08 1F"),
+            (store(None, vec![8]), "data field 1, byte 3: new field → 08"),
+            (
+                Op::ChangeCode { number: CodeNumber::ZERO, old, new },
+                "access code 0: as now, not shown → changed, not shown",
+            ),
+            (Op::SetPosition { from: 123, to: 456, synchronise: false }, "position: 123 → 456"),
+            (Op::SetAddress { from: 0x40, to: DeviceAddress::new(0x41).unwrap() }, "address: 40h → 41h"),
+            (
+                Op::Configure { from: settings(0xE4), to: settings(0x65) },
+                "line settings: 9600 8E1, time-out 44 bits, standard → 19200 8E1, time-out 44 bits, bus",
+            ),
+            (Op::ClearCounter { from: 7 }, "counter: 7 → 0"),
+            (Op::IncrementCounter { from: 0x00FF_FFFF }, "counter: 16777215 → 0"),
+        ];
+        for (operation, english) in cases {
+            let words: Vec<String> = op(&operation).texts().map(|text| text.words(English)).collect();
+            let [item, old, new] = words.as_slice() else { panic!("{words:?}") };
+            assert_eq!(format!("{item}: {old} → {new}"), english);
+        }
+        let words: Vec<String> = op(&define(Some(0xE8), 0xA9)).texts().map(|text| text.words(German)).collect();
+        assert_eq!(words, ["Datenfeld 1", "16 Bytes, beschreibbar", "32 Bytes, schreibgeschützt"]);
+    }
+}

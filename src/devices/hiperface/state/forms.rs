@@ -1,0 +1,162 @@
+//! What a person types, read: codes, addresses, positions, channels. An entry that cannot be used says what could be.
+
+use crate::app::Text;
+use crate::devices::hiperface::protocol::{
+    AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings,
+};
+use crate::units::CharacterFormat;
+
+/// An access code: one byte in hexadecimal.
+///
+/// # Errors
+/// In words; the entry itself is not repeated.
+pub fn access_code(text: &str) -> Result<AccessCode, Text> {
+    byte(text).map(AccessCode::new).ok_or_else(|| Text::new("entry.code"))
+}
+
+/// A new access code, typed twice, because nobody can read it back.
+///
+/// # Errors
+/// In words; the entries are not repeated.
+pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
+    let code = access_code(text)?;
+    if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(Text::new("entry.codes_differ")) }
+}
+
+/// An address, 40h…5Fh in hexadecimal.
+///
+/// # Errors
+/// In words.
+pub fn address(text: &str) -> Result<DeviceAddress, Text> {
+    byte(text).and_then(DeviceAddress::new).ok_or_else(|| Text::new("entry.address").with("entry", text))
+}
+
+/// An analogue channel in hexadecimal.
+///
+/// # Errors
+/// In words.
+pub fn channel(text: &str) -> Result<u8, Text> {
+    byte(text).ok_or_else(|| Text::new("entry.channel").with("entry", text))
+}
+
+/// A position in steps, decimal or with `0x` in front; or degrees within the first turn with `°` or `deg`
+/// behind. No sign, no exponent, no words.
+///
+/// # Errors
+/// In words, with the range where it is known.
+pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
+    let text = text.trim();
+    let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
+    let refused = || Text::new("entry.position").with("entry", text).with("last", last);
+    let degrees = text.strip_suffix('°').or_else(|| text.strip_suffix("deg"));
+    let steps = match (degrees, text.strip_prefix("0x")) {
+        (Some(degrees), _) => {
+            let degrees = degrees.trim().replace(',', ".");
+            // The parser would take a sign, an exponent, and numbers that are none.
+            if !degrees.bytes().all(|c| c.is_ascii_digit() || c == b'.') {
+                return Err(refused());
+            }
+            let degrees: f64 = degrees.parse().map_err(|_| refused())?;
+            let per_turn = geometry.and_then(Geometry::steps_per_turn).ok_or_else(refused)?;
+            let steps = (degrees / 360.0 * per_turn as f64).round();
+            if steps < 0.0 || steps > last as f64 {
+                return Err(refused());
+            }
+            steps as u64
+        }
+        (None, Some(hex)) if hex.bytes().all(|c| c.is_ascii_hexdigit()) => {
+            u64::from_str_radix(hex, 16).map_err(|_| refused())?
+        }
+        (None, None) if text.bytes().all(|c| c.is_ascii_digit()) => text.parse().map_err(|_| refused())?,
+        (None, _) => return Err(refused()),
+    };
+    u32::try_from(steps).ok().filter(|_| steps <= last).ok_or_else(refused)
+}
+
+/// Interface settings with another format, time-out and wiring; what the studio does not know of the byte is kept.
+///
+/// # Errors
+/// The encoder has no such speed or parity.
+pub fn settings(
+    from: LineSettings,
+    format: CharacterFormat,
+    long_timeout: bool,
+    bus: bool,
+) -> Result<LineSettings, Text> {
+    let refused = || Text::new("entry.settings").with("format", format);
+    Ok(from.with_format(format).ok_or_else(refused)?.with_long_timeout(long_timeout).with_bus(bus))
+}
+
+/// The status of a new, writable field.
+pub fn new_field(size: FieldSize, code: CodeNumber, code_required: bool) -> DataFieldStatus {
+    DataFieldStatus::new(size, code, code_required)
+}
+
+fn byte(text: &str) -> Option<u8> {
+    let text = text.trim();
+    let digits = text.strip_prefix("0x").or_else(|| text.strip_suffix(['h', 'H'])).unwrap_or(text);
+    // The parser would take a sign.
+    u8::from_str_radix(digits, 16).ok().filter(|_| digits.bytes().all(|c| c.is_ascii_hexdigit()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
+
+    #[test]
+    fn positions_are_steps_or_degrees_within_the_range() {
+        // 128 periods × 32 steps = 4096 steps a turn; 90° are 1024 of them; 4096 turns are 16 777 216 steps.
+        for (text, steps) in [
+            ("0", 0),
+            (" 1024 ", 1024),
+            ("0x10", 16),
+            ("90°", 1024),
+            ("90 deg", 1024),
+            ("90deg", 1024),
+            ("0,5 °", 6),
+            ("16777215", 16_777_215),
+        ] {
+            assert_eq!(position(text, Some(SKM36)), Ok(steps), "{text}");
+        }
+        for text in [
+            "",
+            "-1",
+            "16777216",
+            "x",
+            "1.5",
+            "-90°",
+            "°",
+            "deg",
+            "NaN°",
+            "inf°",
+            "+5",
+            "+5°",
+            "0x+5",
+            "1e2°",
+            "5 h",
+            "4294967296",
+        ] {
+            assert!(position(text, Some(SKM36)).is_err(), "{text}");
+        }
+        assert_eq!(position("4294967295", None), Ok(u32::MAX));
+        assert!(position("90°", None).is_err(), "without a resolution, degrees are no steps");
+    }
+
+    #[test]
+    fn bytes_are_hexadecimal_in_every_usual_form() {
+        assert_eq!(address("41").unwrap().byte(), 0x41);
+        assert_eq!(address("0x5F").unwrap().byte(), 0x5F);
+        assert_eq!(channel("48h"), Ok(0x48));
+        assert_eq!(access_code(" ff ").unwrap().byte(), 0xFF);
+        for text in ["", "100", "+5", "zz", "0x"] {
+            assert!(channel(text).is_err(), "{text}");
+        }
+        assert!(address("3F").is_err() && address("60").is_err());
+        assert_eq!(new_access_code("1A", "0x1a").map(AccessCode::byte), Ok(0x1A));
+        assert!(new_access_code("1A", "1B").is_err() && new_access_code("1A", "").is_err());
+        let text = access_code("secret").unwrap_err().words(crate::app::Language::English);
+        assert!(!text.contains("secret"));
+    }
+}

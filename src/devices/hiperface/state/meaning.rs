@@ -1,0 +1,110 @@
+//! What the frames of the trace say: a reply is read with the request before it.
+
+use crate::app::Text;
+use crate::app::{Explained, TraceFault};
+use crate::devices::hiperface::procedures::Damage;
+use crate::devices::hiperface::protocol::{Answer, Frame, Reply, Request, Said, StatusCode, describe};
+use crate::devices::hiperface::state::explain as words;
+use crate::link::{Direction, TraceEntry};
+
+/// Reads frames in the order in which they went over the line.
+#[derive(Debug, Default)]
+pub(super) struct Meaning {
+    /// The last request, and whom it was sent to.
+    request: Option<(u8, Request)>,
+}
+
+impl Meaning {
+    /// What a frame says. It says nothing of access codes.
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
+        match (entry.bytes.to_bytes(), entry.direction) {
+            (Some(bytes), Direction::Sent) => self.sent(&bytes),
+            (None, Direction::Sent) => self.sent(&with_checksum(entry.bytes.filled(0))),
+            (Some(bytes), Direction::Received) => self.received(&bytes),
+            (None, Direction::Received) => {
+                self.request = None;
+                Explained::broken(Text::new("trace.hidden"))
+            }
+        }
+    }
+
+    fn sent(&mut self, bytes: &[u8]) -> Explained {
+        let frame = Frame::parse(bytes).ok();
+        self.request = frame.and_then(|frame| Some((frame.address, Request::parse(&frame).ok()?)));
+        let said = describe(bytes, None).unwrap_or_default();
+        said.iter().map(words::frame).collect::<Vec<Text>>().into()
+    }
+
+    fn received(&mut self, bytes: &[u8]) -> Explained {
+        let asked = self.request.take();
+        let answer = match asked.as_ref().map(|(address, request)| request.parse_reply(*address, bytes)) {
+            Some(Err(error)) => return Explained::broken(words::damage(&Damage::Reply(error))),
+            Some(Ok(answer)) => Some(answer),
+            None => None,
+        };
+        let said = match describe(bytes, asked.as_ref().map(|(_, request)| request)) {
+            Ok(said) => said,
+            Err(error) => return Explained::broken(words::damage(&Damage::Reply(error.into()))),
+        };
+        // The heading repeats the request's; of a reply only what it gives is new.
+        let known = |said: &Said| asked.is_some() && matches!(said, Said::Heading { .. });
+        let meaning = said.iter().filter(|said| !known(said)).map(words::frame).collect();
+        let fault = answer.filter(reports).map(|_| TraceFault::Reported);
+        Explained { meaning, fault }
+    }
+}
+
+/// A reply tells of an error or a warning.
+fn reports(answer: &Answer) -> bool {
+    match answer {
+        Answer::Rejected { .. } => true,
+        Answer::Reply { reply: Reply::Status(codes), .. } => codes.iter().any(|code| *code != StatusCode::OK),
+        Answer::Reply { pending, .. } => *pending,
+    }
+}
+
+/// A request whose secrets were masked, its checksum among them, as one with other secrets.
+fn with_checksum(mut frame: Vec<u8>) -> Vec<u8> {
+    if frame.pop().is_some() {
+        frame.push(frame.iter().fold(0, |sum, byte| sum ^ byte));
+    }
+    frame
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::bits::MaskedBytes;
+    use crate::units::Moment;
+
+    fn entry(direction: Direction, bytes: &[u8]) -> TraceEntry {
+        TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::clear(bytes) }
+    }
+
+    /// Issue 22.11: a broken reply says what is wrong with it, and is marked. The frames are those of the manual's
+    /// commands, broken by hand.
+    #[test]
+    fn a_broken_reply_has_a_meaning_and_a_mark() {
+        let position = [0x40, 0x42, 0x02];
+        let cases: [(&str, &[u8], Option<TraceFault>, &str); 6] = [
+            ("good", &[0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x38], None, "position"),
+            ("a bit flipped", &[0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x39], Some(TraceFault::Broken), "checksum"),
+            ("cut short", &[0x40, 0x42], Some(TraceFault::Broken), "2 bytes"),
+            ("another address", &[0x41, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x39], Some(TraceFault::Broken), "41h"),
+            ("refused", &[0x40, 0x50, 0x1F, 0x0F], Some(TraceFault::Reported), "1Fh"),
+            ("with a warning", &[0x40, 0xC2, 0x00, 0x01, 0x23, 0x45, 0xE5], Some(TraceFault::Reported), "position"),
+        ];
+        for (label, reply, fault, words) in cases {
+            let mut meaning = Meaning::default();
+            assert_eq!(meaning.of(&entry(Direction::Sent, &position)).fault, None);
+            let said = meaning.of(&entry(Direction::Received, reply));
+            let text: Vec<String> = said.meaning.iter().map(|text| text.words(Language::English)).collect();
+            assert_eq!(said.fault, fault, "{label}: {text:?}");
+            assert!(text.join(" ").contains(words), "{label}: {text:?}");
+        }
+        let mut meaning = Meaning::default();
+        let hidden = TraceEntry { bytes: MaskedBytes::hidden(3), ..entry(Direction::Received, &[]) };
+        assert_eq!(meaning.of(&hidden).fault, Some(TraceFault::Broken));
+    }
+}

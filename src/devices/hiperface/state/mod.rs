@@ -1,0 +1,30 @@
+//! HIPERFACE: an encoder on the desk, its memory beside what the user has made of it, and the review of a write.
+
+mod act;
+mod action;
+pub mod commutation;
+mod connect_form;
+mod drafts;
+mod encoder;
+pub mod explain;
+pub mod forms;
+mod meaning;
+mod mounting;
+mod news;
+mod record;
+mod rest;
+mod review;
+pub mod rules;
+mod search;
+mod staged;
+mod words;
+mod write;
+
+pub use action::Action;
+pub use connect_form::{LinkForm, LinkKind};
+pub use encoder::Encoder;
+pub use record::{Record, watch_name};
+pub use review::{Review, ReviewState};
+pub use rules::Allowed;
+pub use search::Search;
+pub use staged::{Staged, StagedError};

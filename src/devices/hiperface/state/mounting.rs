@@ -1,0 +1,28 @@
+//! What in the memory belongs to the mounting: values that are right for one encoder on one motor and no other.
+
+use super::encoder::Encoder;
+use crate::app::session::Source;
+use crate::devices::hiperface::procedures::profile_of;
+use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded};
+
+impl Encoder {
+    /// What in a field belongs to the mounting, with its meaning.
+    pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
+        let own = |profile: &HiperfaceProfile| {
+            let marks = profile.mounting.iter().filter(|mark| mark.item.field == field);
+            marks
+                .map(|mark| {
+                    let start = mark.item.start;
+                    (start..start.saturating_add(mark.item.count.unwrap_or(0)), mark.meaning.clone())
+                })
+                .collect()
+        };
+        match &self.session.source {
+            Source::File { document, .. } => document.body.get::<HiperfaceProfile>().map(own).unwrap_or_default(),
+            Source::Link(_) | Source::New { .. } => {
+                let Some(identity) = &self.identity else { return Vec::new() };
+                own(&profile_of(identity, self.staged.device().to_vec(), Recorded::default()))
+            }
+        }
+    }
+}

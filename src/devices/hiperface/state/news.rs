@@ -1,0 +1,330 @@
+//! What the line to an encoder tells: results of jobs, what the encoder says on the way, live samples, and its loss.
+
+use super::drafts::Edits;
+use super::encoder::Encoder;
+use super::review::Review;
+use super::words;
+use crate::app::action::{Attempt, Done, Opened};
+use crate::app::review::told;
+use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
+use crate::app::{Severity, Text};
+use crate::devices::hiperface::jobs::{
+    Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
+};
+use crate::devices::hiperface::procedures::{Error, Sample, Station};
+use crate::devices::hiperface::profile::{Item, Op};
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, KIND, StatusCode};
+use crate::devices::hiperface::state::explain as explained;
+use crate::link::TraceEntry;
+use crate::profile::Body;
+use crate::worker::{JobId, Session};
+
+impl Kind for Hiperface {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
+    type Aside = ();
+
+    fn aside(_session: &Session<Self>) {}
+
+    fn opener(world: &World) -> &Opener<Self> {
+        &world.open_hiperface
+    }
+
+    fn opened(attempt: Attempt<Self>) -> Done {
+        Done::OpenedHiperface(attempt)
+    }
+
+    fn job(job: &HiperfaceJob) -> Text {
+        words::job(job)
+    }
+
+    fn writes(job: &HiperfaceJob) -> bool {
+        matches!(job, HiperfaceJob::Commit(_))
+    }
+
+    fn survey() -> HiperfaceJob {
+        HiperfaceJob::Survey
+    }
+
+    fn doing(what: &Doing) -> Text {
+        explained::doing(what)
+    }
+
+    fn told(output: &HiperfaceOutput) -> Option<(Severity, Vec<Text>)> {
+        match output {
+            HiperfaceOutput::Committed(committed) => Some(told::<Hiperface>(committed)),
+            _ => None,
+        }
+    }
+
+    fn why(error: &JobError) -> Vec<Text> {
+        explained::job(error)
+    }
+
+    fn loss(error: &JobError) -> Option<Text> {
+        explained::loss(error)
+    }
+
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
+    }
+}
+
+impl Encoder {
+    /// The link is open: the encoder is read.
+    pub(crate) fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.session.take_line(opened, services);
+        self.wish_watched();
+        self.codes_due.clear();
+        self.tried_code = None;
+        self.read_encoder(services);
+    }
+
+    /// Reads the encoder. After connecting, who is there comes before the access codes: they are for one encoder and no
+    /// other.
+    pub(super) fn read_encoder(&mut self, services: &mut Services) {
+        let identify = self.session.just_connected && !self.access_codes.is_empty();
+        self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
+    }
+
+    /// Gives the session the next access code of the encoder that is connected again; after the last it is read.
+    fn give_codes(&mut self, services: &mut Services) {
+        match self.codes_due.pop() {
+            Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
+            None => self.submit(HiperfaceJob::Survey, services),
+        }
+    }
+
+    fn announced(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
+        let texts = codes.iter().map(|code| explained::status(*code)).collect();
+        services.tell(Severity::Warning, texts, Some(&self.session.name()));
+        self.codes.get_or_insert_default().extend(codes);
+    }
+
+    /// After a write, the session talks to another address or with other codes: so will the next one. What a position was
+    /// before it was set is nowhere but here: the encoder does not tell its offset.
+    pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
+        for op in ops {
+            match op {
+                Op::ChangeCode { number, new, .. } => self.know_code(*number, *new),
+                Op::SetAddress { to, .. } => {
+                    if let Source::Link(url) = &mut self.session.source {
+                        url.query.set("address", &format!("0x{:02X}", to.byte()));
+                    }
+                }
+                Op::SetPosition { from, to, .. } => {
+                    self.position_set = Some((*from, *to));
+                    // They were read from another zero.
+                    self.commutation.forget_readings();
+                    let steps = i64::from(*to) - i64::from(*from);
+                    let text = Text::new("session.position_set").with("from", from).with("to", to);
+                    services.note(
+                        Severity::Note,
+                        vec![text.with("steps", format!("{steps:+}"))],
+                        Some(&self.session.name()),
+                    );
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// The encoder talks by now as the job was to bring about, so the next session begins like that.
+    fn follow_settings(&mut self) {
+        let Some(settings) = self.settings_then.take() else { return };
+        let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
+        let Ok(now) = Station::from_query(&url.query, std::time::Duration::ZERO) else { return };
+        if now.format.baud != format.baud {
+            url.query.set("baud", &format.baud.to_string());
+        }
+        if now.format.parity != format.parity {
+            url.query.set("parity", format.parity.word());
+        }
+        if now.long_timeout != settings.long_timeout() {
+            url.query.set("timeout", if settings.long_timeout() { "44" } else { "11" });
+        }
+    }
+
+    pub(super) fn know_code(&mut self, number: CodeNumber, code: AccessCode) {
+        self.access_codes.retain(|(own, _)| *own != number);
+        self.access_codes.push((number, code));
+    }
+
+    fn take_value(&mut self, value: Value) {
+        match (value, self.asked.take()) {
+            (Value::Analogue { value, limit }, Some(Item::Analogue(channel))) => {
+                self.analogue.insert(channel, Ok((value, limit)));
+            }
+            (Value::Number(number), Some(Item::Counter)) => {
+                self.counter = u32::try_from(number).ok();
+            }
+            _ => {}
+        }
+    }
+
+    fn saved(&mut self, saved: SavedProfile, services: &mut Services) {
+        let edits = self.is_dirty().then(|| self.edits());
+        let locked = saved.locked.iter();
+        let remarks = locked
+            .map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number))
+            .collect();
+        self.session.write_read(Body::new(saved.profile), edits, remarks, services);
+    }
+
+    /// After a write that ended early, the session follows those operations that were carried out.
+    fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
+        let JobError::Interrupted { interrupted, .. } = error else { return };
+        let Some(prepared) = self.review.as_ref().and_then(Review::writing) else { return };
+        let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
+        self.follow(&done, services);
+    }
+}
+
+impl OnLine for Encoder {
+    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+        self.add_samples(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        let meaning = &mut self.meaning;
+        self.session.trace.add(frames, missed, |entry| meaning.of(entry));
+    }
+
+    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+        match remark {
+            Remark::Codes(codes) => self.announced(codes, services),
+            Remark::CodesUnheard(count) => {
+                let text = explained::codes_unheard(count);
+                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            }
+            Remark::Line(quality) => self.line_quality = quality,
+            Remark::Found(_) => {}
+        }
+    }
+
+    fn is_answer(output: &HiperfaceOutput) -> bool {
+        !matches!(output, HiperfaceOutput::CodeNoted)
+    }
+
+    fn finished(&mut self, output: HiperfaceOutput, services: &mut Services) {
+        match output {
+            HiperfaceOutput::Surveyed(survey) => self.take_survey(*survey, services),
+            HiperfaceOutput::Identity(identity) => {
+                let proven = !identity.serial.serial_number.is_empty() && !self.is_another(&identity);
+                if proven {
+                    self.codes_due.clone_from(&self.access_codes);
+                } else {
+                    self.access_codes.clear();
+                }
+                self.give_codes(services);
+            }
+            HiperfaceOutput::Status(codes) => self.codes = Some(codes),
+            HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
+            HiperfaceOutput::Rest(rest) => self.take_rest(rest),
+            HiperfaceOutput::Value(value) => self.take_value(value),
+            HiperfaceOutput::Check(lines) => {
+                self.check = Some(lines);
+                self.follow_settings();
+            }
+            HiperfaceOutput::Reset(codes) => {
+                self.codes = Some(codes);
+                self.follow_settings();
+                services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.session.name()));
+                self.submit(HiperfaceJob::Survey, services);
+            }
+            HiperfaceOutput::Configured => {
+                self.follow_settings();
+                services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.session.name()));
+                self.submit(HiperfaceJob::Survey, services);
+            }
+            HiperfaceOutput::CodeNoted => self.give_codes(services),
+            HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
+            HiperfaceOutput::Prepared(prepared) => self.planned(prepared, services),
+            HiperfaceOutput::Committed(committed) => self.committed(committed, services),
+            // A search has a session of its own.
+            HiperfaceOutput::Found(_) => {}
+        }
+    }
+
+    /// The link is open and the encoder does not answer; or nothing has been read at all since it was opened, because what
+    /// comes makes no sense.
+    fn is_silence(&self, error: &JobError) -> bool {
+        let cause = match error {
+            JobError::Device(cause) => cause,
+            JobError::Interrupted { interrupted, .. } => &interrupted.cause,
+            _ => return false,
+        };
+        cause.is_lost() || (self.session.just_connected && matches!(cause, Error::Damaged { .. } | Error::NeverSilent))
+    }
+
+    fn forget_asked(&mut self) {
+        self.asked = None;
+        self.give_up_rest();
+        self.forget_plan();
+    }
+
+    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], services: &mut Services) -> bool {
+        if let Cut::Cancelled(error) = how {
+            self.follow_what_was_done(error, services);
+            self.asked = None;
+            self.give_up_rest();
+        }
+        self.cut_write(how, texts);
+        // It is told as well.
+        false
+    }
+
+    fn try_submit(&mut self, job: HiperfaceJob, services: &mut Services) -> bool {
+        let asked = match &job {
+            HiperfaceJob::Read(item) => Some(*item),
+            _ => None,
+        };
+        let begun = self.session.submit(job, services);
+        if begun {
+            self.asked = asked;
+            self.settings_then = None;
+        }
+        begun
+    }
+
+    /// What an encoder lacks is an answer; what makes no sense is none.
+    fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
+        let texts = Hiperface::why(error);
+        let why = first(&texts);
+        services.job_ends(self.session.id, id, JobEnd::Failed(why.clone()));
+        let stands_there = self.rest_failed(&why);
+        if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
+            // The encoder has no such channel: that is an answer, and stands where it was asked for.
+            self.analogue.insert(channel, Err(why));
+            self.session.answers();
+            return;
+        }
+        self.session.save_to = None;
+        let gone = Hiperface::loss(error);
+        self.follow_what_was_done(error, services);
+        let silent = gone.is_none() && self.is_silence(error);
+        let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
+        if gone.is_none() && !silent && !garbled {
+            self.session.answers();
+        }
+        let is_shown = self.cut_write(Cut::Failed(error), &texts);
+        match gone {
+            Some(why) => {
+                if is_shown {
+                    services.note(Severity::Error, texts, Some(&self.session.name()));
+                }
+                self.lose(why, services);
+            }
+            None if silent => self.session.fall_silent(texts, services),
+            None => {
+                self.session.say(Severity::Error, texts, is_shown || stands_there, services);
+                if Hiperface::has_begun(error) {
+                    self.submit(HiperfaceJob::Survey, services);
+                }
+            }
+        }
+    }
+}

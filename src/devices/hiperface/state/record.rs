@@ -1,0 +1,154 @@
+//! What is recorded of a HIPERFACE encoder while it is polled: its positions in the units of its geometry, analogue values
+//! and its counter.
+
+use std::time::Duration;
+
+use jiff::Zoned;
+
+use crate::analysis::history::Value;
+use crate::app::Text;
+use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
+use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
+
+/// The recorder of an encoder, and what it said last.
+#[derive(Debug, Default)]
+pub struct Record {
+    track: Track<Watch>,
+    last: Option<PositionReading>,
+    refused: bool,
+}
+
+impl Record {
+    /// Position, speed and acceleration as lines, and what is watched.
+    pub fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    /// A session has begun; what was recorded before stays.
+    pub(super) fn begin(&mut self, began: &Zoned) {
+        (self.last, self.refused) = (None, false);
+        self.track.begin(began);
+    }
+
+    /// Positions are wished at this interval from now on.
+    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+    }
+
+    pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
+        self.track.lose(dropped);
+        let meaning = meaning(geometry);
+        for sample in samples {
+            match sample {
+                Sample::Position(reading) => {
+                    let sighting = Sighting {
+                        at: reading.at,
+                        position: Some(reading.raw.into()),
+                        is_bad: !reading.valid,
+                        is_warned: !reading.codes.is_empty(),
+                    };
+                    self.track.add(&[sighting], &meaning);
+                    (self.last, self.refused) = (Some(reading), false);
+                }
+                Sample::NoPosition { at, .. } => {
+                    self.track.add(&[Sighting { at, position: None, is_bad: true, is_warned: false }], &meaning);
+                    self.refused = true;
+                }
+                Sample::Watched(reading) => self.track.add_watched(&reading.what, &watching(&reading)),
+            }
+        }
+    }
+
+    /// Records these values too, and no others beside the position.
+    pub(super) fn watch(&mut self, wished: &[Watch]) {
+        self.track.watch(wished);
+    }
+
+    /// What is recorded beside the position.
+    pub fn watched(&self) -> Vec<Watch> {
+        self.track.watched()
+    }
+
+    /// The last position, as long as the encoder has one to give.
+    pub fn last(&self) -> Option<&PositionReading> {
+        self.last.as_ref().filter(|_| !self.refused)
+    }
+
+    /// The encoder has no position to give at the moment.
+    pub fn refused(&self) -> bool {
+        self.refused
+    }
+
+    /// Samples that came too fast to be recorded.
+    pub fn dropped(&self) -> u64 {
+        self.track.dropped()
+    }
+
+    /// Positions that are recorded.
+    pub fn positions(&self) -> u64 {
+        self.track.positions()
+    }
+
+    /// Another encoder: nothing of what was recorded is about it.
+    pub(super) fn forget(&mut self) {
+        self.track.forget();
+        (self.last, self.refused) = (None, false);
+    }
+}
+
+/// What position words mean.
+fn meaning(geometry: Option<Geometry>) -> Meaning {
+    match geometry {
+        Some(Geometry::Linear { period_nm, .. }) => {
+            Meaning::of_millimetres(f64::from(period_nm) / f64::from(STEPS_PER_PERIOD) * 1e-6)
+        }
+        Some(rotary @ Geometry::Rotary { .. }) => {
+            let range = rotary.range().and_then(|range| i64::try_from(range).ok());
+            Meaning::of_turns(range, rotary.steps_per_turn().unwrap_or(1) as f64)
+        }
+        // The whole word, which goes round at its end.
+        None => Meaning::of_steps(Some(1 << 32)),
+    }
+}
+
+fn watching(reading: &WatchedReading) -> Watching {
+    Watching {
+        at: reading.at,
+        value: reading.value.as_ref().ok().map(|value| Value::Whole(*value)),
+        is_warned: !reading.codes.is_empty(),
+        never: reading.is_refused().then(|| Text::new("recorder.absent")),
+    }
+}
+
+impl Watchable for Watch {
+    fn is_whole(&self) -> bool {
+        true
+    }
+
+    fn line(&self, group: GroupId) -> Line {
+        let (heading, unit) = match *self {
+            Watch::TEMPERATURE => ("temperature".to_owned(), "unit.celsius"),
+            Watch::Analogue(channel) => (format!("analogue {channel:02X}h"), "unit.counts"),
+            Watch::Counter => ("counter".to_owned(), "unit.counts"),
+        };
+        Line::of(group, 0, watch_name(*self), heading, vec![Scale::new(unit, 1.0, 0)])
+    }
+}
+
+/// What a watched value is called.
+pub fn watch_name(what: Watch) -> Text {
+    match what {
+        Watch::TEMPERATURE => Text::new("recorder.temperature"),
+        Watch::Analogue(channel) => Text::new("recorder.channel").with("channel", format!("{channel:02X}h")),
+        Watch::Counter => Text::new("recorder.counter"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

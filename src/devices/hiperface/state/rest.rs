@@ -1,0 +1,83 @@
+//! Reading the shaft at rest, and for whom it was: a place of the commutation assistant, or whoever asked for the reading
+//! itself.
+
+use super::{Action, Encoder};
+use crate::app::services::Services;
+use crate::app::session::OnLine;
+use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
+use crate::devices::hiperface::jobs::HiperfaceJob;
+use crate::devices::hiperface::procedures::Rest;
+use crate::devices::hiperface::protocol::Geometry;
+
+/// A reading that was asked for itself.
+#[derive(Debug, Default)]
+pub(super) struct RestAsked {
+    is_under_way: bool,
+    told: Option<Result<Rest, Text>>,
+}
+
+impl Encoder {
+    /// Periods and turns, where the type tells them.
+    pub fn geometry(&self) -> Option<Geometry> {
+        self.identity.as_ref().and_then(|identity| identity.geometry)
+    }
+
+    pub(super) fn read_rest(&mut self, services: &mut Services) {
+        self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
+    }
+
+    /// The shaft was read at rest.
+    pub(super) fn take_rest(&mut self, rest: Rest) {
+        if std::mem::take(&mut self.rest.is_under_way) {
+            self.rest.told = Some(Ok(rest));
+            return;
+        }
+        let geometry = self.geometry();
+        self.commutation.take(rest, geometry);
+    }
+
+    /// A job has failed; true where it is such a reading, and the reason stands where it was asked for.
+    pub(super) fn rest_failed(&mut self, why: &Text) -> bool {
+        if std::mem::take(&mut self.rest.is_under_way) {
+            self.rest.told = Some(Err(why.clone()));
+            return true;
+        }
+        self.commutation.failed(why)
+    }
+
+    /// What was asked for does not come any more.
+    pub(super) fn give_up_rest(&mut self) {
+        self.rest.is_under_way = false;
+        self.commutation.give_up();
+    }
+}
+
+impl SineCosineSource for Encoder {
+    fn is_ready(&self) -> bool {
+        self.session.is_ready()
+    }
+
+    fn read_action(&self) -> crate::app::Action {
+        crate::app::Action::Hiperface(self.session.id, Action::ReadRest)
+    }
+
+    fn origin(&self) -> SineCosineOrigin {
+        let range = match self.geometry() {
+            Some(Geometry::Rotary { periods, turns }) => Some(SineCosineRange { periods, turns }),
+            Some(Geometry::Linear { .. }) | None => None,
+        };
+        let serial_number = self.identity.as_ref().map(|own| own.serial.serial_number.clone());
+        SineCosineOrigin { session: self.session.id, serial_number, range }
+    }
+
+    fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>> {
+        self.rest.told.take().map(|told| told.map(SineCosineReading::from))
+    }
+}
+
+impl From<Rest> for SineCosineReading {
+    fn from(rest: Rest) -> Self {
+        let signals = rest.signals.map(|own| SineCosineVolts { sine_v: own.sine_v, cosine_v: own.cosine_v });
+        SineCosineReading { position: rest.raw, valid: rest.valid, signals }
+    }
+}

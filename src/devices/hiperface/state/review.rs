@@ -1,0 +1,147 @@
+//! The review of a write into a HIPERFACE encoder: what its plan needs, warns of and costs.
+
+use crate::app::review::{self, OpWords, Permit, Question, Reviewed};
+use crate::app::{Text, explain};
+use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared, WEAR_LIMIT};
+use crate::devices::hiperface::procedures::write::Written;
+use crate::devices::hiperface::profile::{Base, Op, RestoreOptions, UnknownField};
+use crate::devices::hiperface::protocol::CodeNumber;
+use crate::devices::hiperface::state::explain as words;
+use crate::profile::Plan;
+
+/// A write on its way.
+pub type Review = review::Review<Hiperface>;
+/// How far it is.
+pub type ReviewState = review::ReviewState<Hiperface>;
+
+impl Review {
+    /// The options of a restore, where this is one.
+    pub fn options(&self) -> Option<RestoreOptions> {
+        match &self.change {
+            Change::Restore { options, .. } => Some(options.clone()),
+            _ => None,
+        }
+    }
+}
+
+impl Reviewed for Hiperface {
+    type Change = Change;
+    type Base = Base;
+    type Op = Op;
+    type Prepared = Prepared;
+    type Written = Written;
+
+    fn change(change: &Change) -> Text {
+        words::change(change)
+    }
+
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        let Change::Restore { options, .. } = change else { return None };
+        match permit {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate => Some(&mut options.recreate),
+            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Copy(field) => Some(options.copy.entry(field).or_insert(false)),
+        }
+    }
+
+    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
+        &prepared.plan
+    }
+
+    fn op(_: &Prepared, op: &Op) -> OpWords {
+        words::op(op)
+    }
+
+    fn leaves_mounting(prepared: &Prepared) -> bool {
+        !prepared.mounting_left.is_empty()
+    }
+
+    fn redo(prepared: &Prepared) -> Vec<Text> {
+        prepared.redo().iter().map(words::redo).collect()
+    }
+
+    fn questions(prepared: &Prepared) -> Vec<Question> {
+        let question = |own: &UnknownField| Question {
+            what: words::unknown_field(own),
+            no: Text::new("review.leave_field").with("field", own.field),
+            yes: Text::new("review.copy_field").with("field", own.field),
+            permit: Permit::Copy(own.field),
+            is_on: own.is_copied(),
+        };
+        prepared.unknown_fields.iter().map(question).collect()
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
+        let mut warnings = Vec::new();
+        warnings.extend(prepared.other_type.map(words::other_type));
+        warnings.extend(words::created_left(&prepared.created_left));
+        if let Some(wanted) = prepared.wanted_position {
+            let set = prepared.plan.ops.iter().find_map(|op| match op {
+                Op::SetPosition { to, .. } => Some(*to),
+                _ => None,
+            });
+            warnings.push(Text::new("review.other_position").with("wanted", wanted).with("set", set.unwrap_or(wanted)));
+        }
+        let mounting = prepared.mounting_left.iter().map(|range| explain::phrase(&range.to_string())).collect();
+        warnings.extend(review::left_alone("review.missing", &prepared.missing, mounting));
+        if prepared.plan.ops.iter().any(|op| matches!(op, Op::IncrementCounter { .. })) {
+            warnings.push(Text::new("review.counter"));
+        }
+        warnings
+    }
+
+    fn needs(_: &Change, prepared: &Prepared) -> Vec<Text> {
+        let mut needs = Vec::new();
+        let mut codes: Vec<CodeNumber> = Vec::new();
+        for op in &prepared.plan.ops {
+            let need = match op {
+                Op::SetPosition { synchronise: true, .. } => Some(Text::new("review.needs_synchronise")),
+                Op::SetPosition { .. } => Some(Text::new("review.needs_standstill")),
+                Op::SetAddress { .. } => Some(Text::new("review.needs_alone")),
+                Op::Configure { .. } => Some(Text::new("review.needs_restart")),
+                Op::Define { from: Some(_), to, .. } if !to.exists() => Some(Text::new("review.needs_loss")),
+                _ => None,
+            };
+            needs.extend(need.filter(|need| !needs.contains(need)));
+            if let Op::Store { status, .. } = op
+                && !codes.contains(&status.code())
+            {
+                codes.push(status.code());
+            }
+            if let Op::ChangeCode { .. } = op {
+                needs.push(Text::new("review.needs_code_kept"));
+            }
+        }
+        if !codes.is_empty() {
+            let numbers: Vec<String> = codes.iter().map(ToString::to_string).collect();
+            needs.push(Text::new("review.needs_code").with("codes", numbers.join(", ")));
+        }
+        needs
+    }
+
+    fn cost(prepared: &Prepared) -> Text {
+        let cycles = prepared.plan.write_cycles();
+        match prepared.cycles_seen {
+            Some(seen) => Text::new("review.cost").with("cycles", cycles).with("seen", seen),
+            None => Text::new("review.cost_unknown").with("cycles", cycles),
+        }
+    }
+
+    fn is_worn(prepared: &Prepared) -> bool {
+        prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles()) > WEAR_LIMIT
+    }
+
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.cycles_seen
+    }
+
+    fn written(written: &Written) -> Text {
+        words::written(written)
+    }
+
+    fn verified(written: &Written) -> Text {
+        words::verified(written)
+    }
+}

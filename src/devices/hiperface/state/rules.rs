@@ -1,0 +1,129 @@
+//! What the encoder's own rules allow with its data fields, asked before anything is offered: the same plans that a write
+//! would make, on the memory as it was read.
+
+use super::Staged;
+use crate::app::Text;
+use crate::devices::hiperface::jobs::Change;
+use crate::devices::hiperface::profile::{
+    FieldImage, HiperfacePlan, Op, PlanError, plan_create, plan_delete, plan_redefine,
+};
+use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
+use crate::devices::hiperface::state::explain as words;
+
+/// Whether something may be done; if not, why.
+pub type Allowed = Result<(), Text>;
+
+/// A new field of this size may be created, and which number it would get.
+pub fn create(memory: FreeMemory, size: FieldSize, code: CodeNumber, code_required: bool) -> Allowed {
+    allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
+}
+
+/// The field may get this size.
+pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &Staged) -> Allowed {
+    status(field)?;
+    edits_stay(staged, field.number, size.bytes())?;
+    allowed(plan_redefine(memory, field, field.status.with_size(size)))
+}
+
+/// The field may change its size at all: it is the last.
+pub fn resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
+    status(field)?;
+    allowed(plan_delete(memory, field))
+}
+
+/// The field may be deleted.
+pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowed {
+    resizable(memory, field)?;
+    edits_stay(staged, field.number, 0)
+}
+
+/// The field's protection and access code may be changed: the encoder asks for its access code.
+pub fn status(field: &FieldImage) -> Allowed {
+    match field.bytes {
+        Some(_) => Ok(()),
+        None => Err(Text::new("rules.code_unknown").with("field", field.number).with("number", field.status.code())),
+    }
+}
+
+/// What is known of a change before the encoder is asked.
+pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
+    let field = |number: &u8| staged.device().iter().find(|field| field.number == *number);
+    match change {
+        Change::DeleteField { number }
+        | Change::ResizeField { number, .. }
+        | Change::LockField { number, .. }
+        | Change::Redefine { number, .. } => field(number).map_or(Ok(()), status)?,
+        Change::ChangeCode { number, .. } => {
+            let mut guarded = staged.device().iter().filter(|field| field.status.code() == *number);
+            guarded.try_for_each(status)?;
+        }
+        _ => {}
+    }
+    match change {
+        Change::DeleteField { number } => edits_stay(staged, *number, 0),
+        Change::ResizeField { number, size } => edits_stay(staged, *number, size.bytes()),
+        Change::Redefine { number, status } => edits_stay(staged, *number, status.size().bytes()),
+        _ => Ok(()),
+    }
+}
+
+/// Carrying the plan out leaves a place for every edit that is not written.
+pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
+    plan.ops.iter().try_for_each(|op| match op {
+        Op::Define { field, from: Some(_), to } => {
+            edits_stay(staged, *field, if to.exists() { to.size().bytes() } else { 0 })
+        }
+        _ => Ok(()),
+    })
+}
+
+/// No edit of the field is beyond its first `bytes`.
+fn edits_stay(staged: &Staged, field: u8, bytes: usize) -> Allowed {
+    match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
+        0 => Ok(()),
+        count => Err(Text::new("rules.edits").with("field", field).with("count", count)),
+    }
+}
+
+/// The field's bytes may be edited.
+pub fn edit(field: &FieldImage) -> Allowed {
+    if field.bytes.is_none() {
+        let error = PlanError::CodeUnknown { field: field.number, code: field.status.code() };
+        return Err(words::plan(&error));
+    }
+    if !field.status.is_writable() {
+        return Err(words::plan(&PlanError::WriteProtected { field: field.number }));
+    }
+    Ok(())
+}
+
+/// The largest size that the last field can get.
+pub fn largest(memory: FreeMemory, field: &FieldImage) -> FieldSize {
+    let fits = |size: &FieldSize| plan_redefine(memory, field, field.status.with_size(*size)).is_ok();
+    FieldSize::all().filter(fits).last().unwrap_or(field.status.size())
+}
+
+fn allowed(plan: Result<HiperfacePlan, PlanError>) -> Allowed {
+    plan.map(|_| ()).map_err(|error| words::plan(&error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As a restore that creates fields again does it.
+    #[test]
+    fn a_plan_that_deletes_a_field_leaves_its_edits_no_place() {
+        let status = DataFieldStatus::from_byte(0xC8);
+        let field = FieldImage { number: 0, status, bytes: Some(vec![0; 16]) };
+        let memory = FreeMemory { blocks: 2, fields: 1 };
+        let mut staged = Staged::default();
+        staged.refresh(vec![field.clone()]);
+        let plan = plan_delete(memory, &field).unwrap();
+        assert_eq!(keeps_edits(&staged, &plan), Ok(()));
+        staged.put(0, 3, &[1]).unwrap();
+        assert_eq!(keeps_edits(&staged, &plan).unwrap_err().id(), "rules.edits");
+        let grown = plan_redefine(memory, &field, DataFieldStatus::from_byte(0xC9)).unwrap();
+        assert_eq!(keeps_edits(&staged, &grown), Ok(()));
+    }
+}

@@ -1,0 +1,308 @@
+//! The bytes of the data fields as the encoder has them, and beside them as the user wants them. Nothing here is written
+//! to an encoder; a plan is made of the difference.
+//!
+//! Edits survive a fresh reading of the encoder: a byte that the user changed stays as he wants it, whatever the encoder
+//! has now; every other byte follows the encoder. Those of a field that cannot be read, because its access code is not
+//! known any more, wait until it can.
+
+use crate::app::edits::Edits;
+use crate::devices::hiperface::profile::{FieldImage, FieldRange};
+
+/// Data fields with the user's edits.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Staged {
+    device: Vec<FieldImage>,
+    /// Bytes that differ from the device's, by field and address.
+    edits: Edits<(u8, usize)>,
+}
+
+/// Why an edit cannot be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum StagedError {
+    /// There is no such field.
+    #[error("data field {field} does not exist")]
+    NoField {
+        /// Its number.
+        field: u8,
+    },
+    /// Its access code is not known, so its bytes are not.
+    #[error("data field {field} is locked")]
+    Locked {
+        /// Its number.
+        field: u8,
+    },
+    /// It ends before.
+    #[error("data field {field} ends at {last}")]
+    Outside {
+        /// Its number.
+        field: u8,
+        /// Its last address.
+        last: usize,
+    },
+}
+
+impl Staged {
+    /// Takes what was read from the encoder; edits stay, unless the byte they are for is gone or is as wanted now.
+    pub fn refresh(&mut self, device: Vec<FieldImage>) {
+        self.device = device;
+        self.forget_the_impossible();
+        self.edits.forget_redo();
+    }
+
+    /// The edits were written: what led to them cannot be undone any more.
+    pub fn forget_steps(&mut self) {
+        self.edits.forget_steps();
+    }
+
+    /// Forgets everything: another encoder.
+    pub fn clear(&mut self) {
+        *self = Staged::default();
+    }
+
+    /// The fields as the encoder has them.
+    pub fn device(&self) -> &[FieldImage] {
+        &self.device
+    }
+
+    /// The fields as the user wants them.
+    pub fn wanted(&self) -> Vec<FieldImage> {
+        let mut fields = self.device.clone();
+        for ((number, address), byte) in self.edits.iter() {
+            let field = fields.iter_mut().find(|field| field.number == number);
+            if let Some(own) = field.and_then(|field| field.bytes.as_mut()).and_then(|bytes| bytes.get_mut(address)) {
+                *own = byte;
+            }
+        }
+        fields
+    }
+
+    /// One byte as the encoder has it.
+    pub fn on_device(&self, field: u8, address: usize) -> Option<u8> {
+        self.field(field)?.bytes.as_ref()?.get(address).copied()
+    }
+
+    /// One byte as the user wants it.
+    pub fn byte(&self, field: u8, address: usize) -> Option<u8> {
+        self.edits.get((field, address)).or_else(|| self.on_device(field, address))
+    }
+
+    /// The user wants another byte here than the encoder has.
+    pub fn is_edited(&self, field: u8, address: usize) -> bool {
+        self.edits.get((field, address)).is_some()
+    }
+
+    /// There is something to write.
+    pub fn is_dirty(&self) -> bool {
+        self.edits.is_dirty()
+    }
+
+    /// Runs of edited bytes.
+    pub fn changes(&self) -> Vec<FieldRange> {
+        let mut runs: Vec<FieldRange> = Vec::new();
+        for ((field, address), _) in self.edits.iter() {
+            match runs.last_mut() {
+                Some(FieldRange { field: own, start, count: Some(count) })
+                    if *own == field && *start + *count == address =>
+                {
+                    *count += 1;
+                }
+                _ => runs.push(FieldRange::new(field, address, 1)),
+            }
+        }
+        runs
+    }
+
+    /// The edited runs with their bytes: what is to be written.
+    pub fn changed_runs(&self) -> Vec<(FieldRange, Vec<u8>)> {
+        let bytes = |range: &FieldRange| {
+            let addresses = (range.start..).take(range.count.unwrap_or(0));
+            addresses.filter_map(|address| self.byte(range.field, address)).collect()
+        };
+        self.changes().into_iter().map(|range| (range, bytes(&range))).collect()
+    }
+
+    /// Puts bytes into a field, as one step that can be undone.
+    ///
+    /// # Errors
+    /// When the field does not have them all; then nothing is changed.
+    pub fn put(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), StagedError> {
+        let image = self.field(field).ok_or(StagedError::NoField { field })?;
+        let size = image.bytes.as_ref().ok_or(StagedError::Locked { field })?.len();
+        if address.checked_add(bytes.len()).is_none_or(|end| end > size) {
+            return Err(StagedError::Outside { field, last: size.saturating_sub(1) });
+        }
+        self.set((address..).zip(bytes).map(|(at, byte)| ((field, at), *byte)));
+        Ok(())
+    }
+
+    /// Takes all edits back, as one step that can be undone.
+    pub fn revert(&mut self) {
+        self.edits.revert(|_| true);
+    }
+
+    /// Takes the edits of one range back.
+    pub fn revert_range(&mut self, range: FieldRange) {
+        self.edits.revert(|(field, address)| range.contains(field, address));
+    }
+
+    /// There is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        self.edits.can_undo()
+    }
+
+    /// There is a step to do again.
+    pub fn can_redo(&self) -> bool {
+        self.edits.can_redo()
+    }
+
+    /// Undoes the last step. False when there is none.
+    pub fn undo(&mut self) -> bool {
+        let done = self.edits.undo();
+        self.forget_the_impossible();
+        done
+    }
+
+    /// Does the last undone step again. False when there is none.
+    pub fn redo(&mut self) -> bool {
+        let done = self.edits.redo();
+        self.forget_the_impossible();
+        done
+    }
+
+    /// The edits, for a draft on disk.
+    pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {
+        self.edits.iter().map(|((field, address), byte)| (field, address, byte))
+    }
+
+    /// Takes edits from a draft. Those for bytes that are not there, or that are as wanted, fall away.
+    pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
+        self.set(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
+    }
+
+    fn field(&self, number: u8) -> Option<&FieldImage> {
+        self.device.iter().find(|field| field.number == number)
+    }
+
+    fn set(&mut self, bytes: impl IntoIterator<Item = ((u8, usize), u8)>) {
+        let device = &self.device;
+        self.edits.put(bytes, |at, byte| is_edit(device, at, byte));
+    }
+
+    /// After a refresh, an earlier step may hold edits that are no longer any.
+    fn forget_the_impossible(&mut self) {
+        let device = &self.device;
+        self.edits.settle(|at, byte| is_edit(device, at, byte));
+    }
+}
+
+/// A byte here is another than the encoder's, as far as that is known.
+fn is_edit(device: &[FieldImage], (field, address): (u8, usize), byte: u8) -> bool {
+    let image = device.iter().find(|image| image.number == field);
+    match image.map(|image| (&image.bytes, image.status)) {
+        Some((Some(bytes), _)) => bytes.get(address).is_some_and(|own| *own != byte),
+        Some((None, status)) => address < status.size().bytes(),
+        None => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperface::protocol::DataFieldStatus;
+
+    fn fields(first: &[u8; 16]) -> Vec<FieldImage> {
+        let status = DataFieldStatus::from_byte;
+        vec![
+            FieldImage { number: 0, status: status(0xC8), bytes: Some(first.to_vec()) },
+            FieldImage { number: 1, status: status(0xE8), bytes: None },
+        ]
+    }
+
+    fn staged() -> Staged {
+        let mut staged = Staged::default();
+        staged.refresh(fields(&[0; 16]));
+        staged
+    }
+
+    #[test]
+    fn an_edit_stands_beside_the_device() {
+        let mut staged = staged();
+        staged.put(0, 3, &[0x08, 0x00, 0x15]).unwrap();
+        assert_eq!((staged.on_device(0, 3), staged.byte(0, 3)), (Some(0), Some(0x08)));
+        assert!(staged.is_edited(0, 3) && !staged.is_edited(0, 4) && staged.is_edited(0, 5));
+        assert_eq!(staged.changes(), [FieldRange::new(0, 3, 1), FieldRange::new(0, 5, 1)]);
+        assert_eq!(staged.wanted()[0].bytes.as_ref().unwrap()[5], 0x15);
+        staged.put(0, 3, &[0, 0, 0]).unwrap();
+        assert!(!staged.is_dirty(), "as the device has it is no edit");
+    }
+
+    #[test]
+    fn what_cannot_be_edited_says_why_and_changes_nothing() {
+        let mut staged = staged();
+        assert_eq!(staged.put(0, 15, &[1, 2]), Err(StagedError::Outside { field: 0, last: 15 }));
+        assert_eq!(staged.put(0, usize::MAX, &[1]), Err(StagedError::Outside { field: 0, last: 15 }));
+        assert_eq!(staged.put(1, 0, &[1]), Err(StagedError::Locked { field: 1 }));
+        assert_eq!(staged.put(7, 0, &[1]), Err(StagedError::NoField { field: 7 }));
+        assert!(!staged.is_dirty() && !staged.undo());
+    }
+
+    #[test]
+    fn steps_are_undone_and_done_again() {
+        let mut staged = staged();
+        staged.put(0, 0, &[1, 2]).unwrap();
+        staged.put(0, 1, &[3]).unwrap();
+        assert!(staged.undo());
+        assert_eq!((staged.byte(0, 0), staged.byte(0, 1)), (Some(1), Some(2)));
+        assert!(staged.undo() && !staged.is_dirty() && !staged.undo());
+        assert!(staged.redo() && staged.redo() && !staged.redo());
+        assert_eq!(staged.byte(0, 1), Some(3));
+        staged.revert();
+        assert!(!staged.is_dirty());
+        assert!(staged.undo() && staged.byte(0, 1) == Some(3));
+        staged.revert_range(FieldRange::new(0, 1, 1));
+        assert!(staged.is_edited(0, 0) && !staged.is_edited(0, 1));
+    }
+
+    #[test]
+    fn edits_survive_a_fresh_reading() {
+        let mut staged = staged();
+        staged.put(0, 0, &[1, 2]).unwrap();
+        let mut now = [0; 16];
+        now[1] = 2; // written meanwhile, by us or by somebody else
+        now[9] = 9;
+        staged.refresh(fields(&now));
+        assert!(staged.is_edited(0, 0) && !staged.is_edited(0, 1));
+        assert_eq!(staged.byte(0, 9), Some(9), "what was not edited follows the device");
+        assert!(staged.undo());
+        assert!(!staged.is_edited(0, 0));
+        assert_eq!(staged.byte(0, 1), Some(2));
+    }
+
+    #[test]
+    fn edits_wait_for_a_field_that_cannot_be_read() {
+        let mut staged = staged();
+        staged.put(0, 0, &[1, 2]).unwrap();
+        let mut locked = fields(&[0; 16]);
+        locked[0].bytes = None;
+        staged.refresh(locked);
+        assert!(staged.is_dirty());
+        assert_eq!(
+            staged.changed_runs(),
+            [(FieldRange::new(0, 0, 2), vec![1, 2])],
+            "a plan says which code is missing"
+        );
+        staged.refresh(fields(&[1; 16]));
+        assert_eq!(staged.edits().collect::<Vec<_>>(), [(0, 1, 2)]);
+    }
+
+    #[test]
+    fn a_draft_comes_back() {
+        let mut staged = staged();
+        staged.put(0, 0, &[1, 2]).unwrap();
+        let draft: Vec<(u8, usize, u8)> = staged.edits().collect();
+        let mut other = self::staged();
+        other.take_draft(draft.into_iter().chain([(5, 0, 1), (0, 99, 1), (0, 3, 0)]));
+        assert_eq!(other.wanted(), staged.wanted());
+        assert_eq!(other.edits().count(), 2);
+    }
+}

@@ -1,0 +1,27 @@
+//! Jobs in words.
+
+use crate::app::{Text, explain};
+use crate::bits::hex;
+use crate::devices::hiperface::jobs::HiperfaceJob;
+use crate::devices::hiperface::state::explain as words;
+
+/// What it is called in the list of jobs.
+pub(super) fn job(job: &HiperfaceJob) -> Text {
+    match job {
+        HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),
+        HiperfaceJob::Status => Text::new("job.status"),
+        HiperfaceJob::Position(_) => Text::new("job.position"),
+        HiperfaceJob::Rest => Text::new("job.rest"),
+        HiperfaceJob::Read(item) => Text::new("job.read").with_text("item", explain::phrase(&item.to_string())),
+        HiperfaceJob::Save(_) => Text::new("job.save"),
+        HiperfaceJob::Check { .. } => Text::new("job.check"),
+        HiperfaceJob::Reset => Text::new("job.reset"),
+        HiperfaceJob::Find(_) => Text::new("job.find"),
+        HiperfaceJob::ConfigureForNow(settings) => {
+            Text::new("job.configure_for_now").with("settings", hex(&[settings.byte()]))
+        }
+        HiperfaceJob::UseCode { number, .. } => Text::new("job.use_code").with("number", number),
+        HiperfaceJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
+        HiperfaceJob::Commit(_) => Text::new("job.write"),
+    }
+}

@@ -1,0 +1,140 @@
+//! What is written into an encoder: the edits or a profile as a wish, its jobs, and what the session follows after it.
+
+use super::encoder::Encoder;
+use super::review::Review;
+use super::rules;
+use crate::app::review::Permit;
+use crate::app::services::Services;
+use crate::app::session::{Agreed, Known, OnLine, Saved, WithMemory, without_edits};
+use crate::app::{Severity, Text};
+use crate::devices::hiperface::jobs::{Change, Commit, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
+use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
+use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Recorded, RestoreOptions, check_device};
+use crate::profile::{Body, ProfileError};
+use crate::store::DeviceKey;
+
+impl Encoder {
+    pub(super) fn review_edits(&mut self, services: &mut Services) {
+        if !self.staged.is_dirty() {
+            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
+            return;
+        }
+        let edits: Vec<(FieldRange, Vec<u8>)> = self.staged.changed_runs();
+        self.plan(Change::Store(edits), services);
+    }
+
+    pub(crate) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
+        let options = RestoreOptions::default();
+        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
+    }
+
+    /// Makes the plan of the review anew; an encoder that did not answer is asked again.
+    pub(super) fn plan_again(&mut self, change: Change, services: &mut Services) {
+        if self.session.is_busy() {
+            return;
+        }
+        let Some(review) = &mut self.review else { return };
+        *review = Review::new(change.clone(), review.is_for_another, review.is_for_another_type);
+        if !self.try_submit(HiperfaceJob::Prepare(change), services) {
+            self.review = None;
+        }
+    }
+}
+
+impl WithMemory for Encoder {
+    fn review(&self) -> Option<&Review> {
+        self.review.as_ref()
+    }
+
+    fn review_mut(&mut self) -> &mut Option<Review> {
+        &mut self.review
+    }
+
+    fn is_for_another(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
+        check_device(profile, &own.serial.serial_number, own.label.encoder_type).is_err()
+    }
+
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
+        profile.identity.encoder_type != own.label.encoder_type
+    }
+
+    fn is_of_another(&self, prepared: &Prepared) -> bool {
+        self.is_another(&prepared.identity)
+    }
+
+    fn prepare(change: Change) -> HiperfaceJob {
+        HiperfaceJob::Prepare(change)
+    }
+
+    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Hiperface>) -> HiperfaceJob {
+        HiperfaceJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
+    }
+
+    fn forget_steps(&mut self) {
+        self.staged.forget_steps();
+    }
+
+    fn objection(&self, change: &Change) -> Option<Text> {
+        rules::change(&self.staged, change).err()
+    }
+
+    fn objection_to(&self, prepared: &Prepared) -> Option<Text> {
+        rules::keeps_edits(&self.staged, &prepared.plan).err()
+    }
+
+    fn carried_out(&mut self, _: &Committed, services: &mut Services) {
+        let Some(prepared) = self.review.as_ref().and_then(Review::writing) else { return };
+        let ops = prepared.plan.ops.clone();
+        self.follow(&ops, services);
+    }
+
+    /// The list of jobs alone says that it begins.
+    fn log_begin(&self, _: &Text, _: &Prepared, _: &mut Services) {}
+
+    fn plan_with(&mut self, permit: Permit, services: &mut Services) {
+        if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
+            self.plan_again(change, services);
+        }
+    }
+}
+
+impl Saved for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity.as_ref().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> HiperfaceJob {
+        HiperfaceJob::Save(SaveOptions::default())
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Some(Body::new(self.wanted_profile()?))
+    }
+
+    fn known_body(&self) -> Option<Known> {
+        let identity = self.identity.as_ref()?;
+        let fields = self.staged.device().to_vec();
+        let locked = fields.iter().filter(|own| own.bytes.is_none() && !self.unreadable.contains_key(&own.number));
+        let locked = locked
+            .map(|own| Text::new("session.saved_locked").with("field", own.number).with("number", own.status.code()));
+        let remarks =
+            without_edits(self.edits()).into_iter().chain(locked).chain(self.unreadable.values().cloned()).collect();
+        let recorded = Recorded { counter: self.counter, ..Recorded::default() };
+        Some(Ok((Body::new(profile_of(identity, fields, recorded)), remarks)))
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_profile()?, services);
+        Ok(())
+    }
+}
+
+/// A restore with other options; any other change as it is.
+pub(super) fn with_options(change: &Change, options: RestoreOptions) -> Change {
+    match change {
+        Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },
+        other => other.clone(),
+    }
+}

@@ -1,0 +1,225 @@
+//! The commutation assistant: what has to be so before, what is read, what comes of it, and both ways to keep it.
+
+mod result;
+
+use egui::{RichText, Ui};
+
+use crate::analysis::quality::Verdict;
+use crate::app::{Action, Text};
+use crate::devices::hiperface::state::commutation::{
+    Action as Assistant, Form, Slot, Source, Vector, kind_words, may_read,
+};
+use crate::devices::hiperface::state::{Action as Hiperface, Encoder};
+use crate::ui::controls::{
+    allowed_button, card, card_with, choice, entry, icon_button, labelled_entry, paragraph, row, split, text_entry,
+    verdict_ui,
+};
+use crate::ui::{Skin, icons};
+
+/// Width of an entry for a number.
+const NUMBER: f32 = 96.0;
+/// Width of the column of buttons that read.
+const READ: f32 = 176.0;
+/// Width of an entry for a position.
+const POSITION: f32 = 80.0;
+/// The least width for two columns.
+const COLUMNS: f32 = 700.0;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let mut form = encoder.commutation.form.clone();
+    // Beside the long column where there are two, else at the end.
+    let wide = ui.available_width() >= COLUMNS;
+    split(
+        ui,
+        skin,
+        (0.5, COLUMNS),
+        (&mut *actions, &mut form),
+        |ui, (_, form)| {
+            before(ui, skin, form);
+            ui.add_space(skin.space.groups);
+            motor(ui, skin, encoder, form);
+            if wide {
+                ui.add_space(skin.space.groups);
+                result::report_ui(ui, skin, encoder);
+            }
+        },
+        |ui, (actions, form)| {
+            rest(ui, skin, encoder, form, actions);
+            ui.add_space(skin.space.groups);
+            second(ui, skin, encoder, form, actions);
+            ui.add_space(skin.space.groups);
+            result::offset_ui(ui, skin, encoder);
+            ui.add_space(skin.space.groups);
+            result::field_ui(ui, skin, encoder, form, actions);
+            ui.add_space(skin.space.groups);
+            result::position_ui(ui, skin, encoder, form, actions);
+        },
+    );
+    if !wide {
+        ui.add_space(skin.space.groups);
+        result::report_ui(ui, skin, encoder);
+    }
+    if form != encoder.commutation.form {
+        actions.push(ask(encoder, Assistant::Edit(Box::new(form))));
+    }
+}
+
+fn ask(encoder: &Encoder, action: Assistant) -> Action {
+    Action::Hiperface(encoder.session.id, Hiperface::Commutation(action))
+}
+
+fn before(ui: &mut Ui, skin: &Skin, form: &mut Form) {
+    card(ui, skin, "commutation.before", |ui| {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+            paragraph(ui, RichText::new(skin.say("commutation.danger")).color(skin.palette.warn));
+        });
+        ui.checkbox(&mut form.disabled, skin.say("commutation.disabled"));
+        ui.checkbox(&mut form.uncoupled, skin.say("commutation.uncoupled"));
+        ui.checkbox(&mut form.released, skin.say("commutation.released"));
+        let (current, time) = form.limit_problems();
+        number(ui, skin, "commutation.current", &mut form.current_a, "");
+        problem_ui(ui, skin, current.as_ref());
+        number(ui, skin, "commutation.time", &mut form.time_s, "");
+        problem_ui(ui, skin, time.as_ref());
+        entry(ui, skin, &skin.say("commutation.vector"), |ui| {
+            let vectors = Vector::ALL.map(|vector| (vector, skin.say(vector.word())));
+            choice(ui, &skin.say("commutation.vector"), &mut form.vector, vectors);
+        });
+        if form.vector == Vector::Other {
+            number(ui, skin, "commutation.vector_angle", &mut form.vector_deg, "0");
+        }
+    });
+}
+
+/// What is wrong with the entry above.
+fn problem_ui(ui: &mut Ui, skin: &Skin, problem: Option<&Text>) {
+    if let Some(why) = problem {
+        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.bad));
+    }
+}
+
+fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form) {
+    card(ui, skin, "commutation.motor", |ui| {
+        number(ui, skin, "commutation.pole_pairs", &mut form.pole_pairs, "");
+        let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
+        number(ui, skin, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
+        if let Some(words) = form.other_periods(encoder.geometry()) {
+            verdict_ui(ui, skin, Verdict::Warn, &words);
+        }
+        entry(ui, skin, &skin.say("commutation.direction"), |ui| {
+            let directions = [(false, "commutation.with"), (true, "commutation.against")];
+            let directions = directions.map(|(reversed, id)| (reversed, skin.say(id)));
+            choice(ui, &skin.say("commutation.direction"), &mut form.reversed, directions);
+        });
+        entry(ui, skin, &skin.say("commutation.source"), |ui| {
+            let sources = [
+                (Source::Signals, "commutation.from_signals"),
+                (Source::Typed, "commutation.from_typed"),
+                (Source::Absolute, "commutation.from_absolute"),
+            ];
+            let sources = sources.map(|(source, id)| (source, skin.say(id)));
+            choice(ui, &skin.say("commutation.source"), &mut form.source, sources);
+        });
+        if form.source == Source::Typed {
+            number(ui, skin, "commutation.phase", &mut form.phase, &skin.number(0.0, 4));
+        }
+        let limit = number(ui, skin, "commutation.limit", &mut form.limit_deg, "5");
+        limit.on_hover_text(skin.say("commutation.limit_hint"));
+        if let Err(why) = form.inputs(encoder.geometry()) {
+            paragraph(ui, skin.label(skin.words(&why)));
+        }
+    });
+}
+
+fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
+    labelled_entry(ui, skin, id, text, NUMBER, hint)
+}
+
+fn rest(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+    let commutation = &encoder.commutation;
+    let any = Slot::ALL.into_iter().any(|slot| commutation.reading(slot).is_some());
+    let mut clear = false;
+    let aside = |ui: &mut Ui| {
+        clear = icon_button(ui, any, icons::TRASH, &skin.say("commutation.clear")).clicked();
+    };
+    card_with(ui, skin, "commutation.rest", aside, |ui| {
+        paragraph(ui, skin.label(skin.say("commutation.rest_words")));
+        let [one, other, _] = &mut form.typed;
+        slot(ui, skin, encoder, Slot::OneSide, one, actions);
+        slot(ui, skin, encoder, Slot::OtherSide, other, actions);
+        match commutation.offset(encoder.geometry()) {
+            Ok(offset) => {
+                if let Some(apart) = offset.apart_deg {
+                    let text = Text::new("commutation.apart_value").with_number("apart", apart, 2);
+                    row(ui, skin, &skin.say("commutation.apart"), skin.mono(skin.words(&text)));
+                }
+                row(ui, skin, &skin.say("commutation.mean"), skin.mono(skin.number(offset.fine_periods, 5)));
+                if offset.apart_deg.is_none() {
+                    verdict_ui(ui, skin, Verdict::Warn, &Text::new("commutation.only_one_side"));
+                }
+            }
+            Err(why) if any => {
+                paragraph(ui, RichText::new(skin.words(&why)).color(skin.palette.warn));
+            }
+            Err(_) => {}
+        }
+        problem_ui(ui, skin, commutation.problem.as_ref());
+    });
+    if clear {
+        actions.push(ask(encoder, Assistant::Clear));
+    }
+}
+
+fn second(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+    card(ui, skin, "commutation.second", |ui| {
+        paragraph(ui, skin.label(skin.say("commutation.second_words")));
+        number(ui, skin, "commutation.second_angle", &mut form.second_deg, "90");
+        let [_, _, typed] = &mut form.typed;
+        slot(ui, skin, encoder, Slot::Second, typed, actions);
+        match encoder.commutation.second(encoder.geometry()) {
+            Some(Ok((verdict, words))) => verdict_ui(ui, skin, verdict, &words),
+            Some(Err(why)) => paragraph(ui, skin.label(skin.words(&why))),
+            None => {}
+        }
+    });
+}
+
+/// One position: as it was read or taken, and both ways to get it.
+fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
+    let commutation = &encoder.commutation;
+    let (read, take) = match slot {
+        Slot::OneSide => ("commutation.read_one", "commutation.use_one"),
+        Slot::OtherSide => ("commutation.read_other", "commutation.use_other"),
+        Slot::Second => ("commutation.read_second", "commutation.use_second"),
+    };
+    ui.add_space(skin.space.inside);
+    let reading = commutation.reading(slot);
+    let shown = match reading {
+        Some(reading) => skin.mono(skin.number(reading.fine_periods, 5)),
+        None => skin.mono("–").color(skin.palette.muted),
+    };
+    row(ui, skin, &skin.say(slot.word()), shown);
+    if let Some(reading) = reading {
+        ui.label(skin.caption(skin.words(&kind_words(reading))));
+    }
+    ui.horizontal_wrapped(|ui| {
+        let allowed = may_read(commutation, encoder.session.is_ready());
+        // Of one width, so that what is typed stands in one column.
+        let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.set_min_width(size.x);
+            if allowed_button(ui, skin, &allowed, icons::CROSSHAIR, &skin.say(read)).clicked() {
+                actions.push(ask(encoder, Assistant::Read(slot)));
+            }
+        });
+        // What is typed for one place has to be told from what is typed for another.
+        let label = format!("{} · {}", skin.say(slot.word()), skin.say("commutation.fine"));
+        let response = text_entry(ui, typed, POSITION, &label, &skin.say("commutation.or_type"));
+        let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        let filled = !typed.trim().is_empty();
+        if icon_button(ui, filled, icons::CHECK, &skin.say(take)).clicked() || (enter && filled) {
+            actions.push(ask(encoder, Assistant::Use(slot)));
+        }
+    });
+}

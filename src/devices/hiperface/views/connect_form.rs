@@ -1,0 +1,177 @@
+//! The connection form of a HIPERFACE encoder, and the search for one whose settings nobody remembers.
+
+use std::time::Duration;
+
+use egui::Ui;
+
+use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::{Action, Text};
+use crate::devices::hiperface::procedures::find::FindOptions;
+use crate::devices::hiperface::protocol::BAUDS;
+use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::{LinkForm, LinkKind, Search};
+use crate::ui::controls::{allowed_button, button, choice, entry, fill, name, paragraph, spinner, text_entry};
+use crate::ui::dialogs::connect::entries::{echo, margin, network, parity, recording, serial, unfolded};
+use crate::ui::{Skin, icons};
+
+/// What the form remembers of the search's options.
+#[derive(Default)]
+pub(crate) struct SearchView {
+    one_encoder: bool,
+    power_cycle: bool,
+}
+
+/// How long to wait for the encoder's supply to be switched off and on.
+const POWER_CYCLE: Duration = Duration::from_secs(30);
+
+/// Draws the form.
+pub(crate) fn form_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    dialog: &Dialog,
+    form: &mut LinkForm,
+    (view, open): (&mut SearchView, &mut bool),
+    actions: &mut Vec<Action>,
+) {
+    kinds(ui, skin, form);
+    ui.add_space(skin.space.between);
+    match form.kind {
+        LinkKind::Virtual => simulated(ui, skin, form),
+        LinkKind::Serial => serial(ui, skin, dialog, &mut form.port, actions),
+        LinkKind::Tcp => network(ui, skin, &mut form.host, &mut form.tcp_port),
+        LinkKind::Replay => recording(ui, skin, &mut form.file, actions),
+    }
+    if form.kind != LinkKind::Replay {
+        line(ui, skin, form);
+        more(ui, skin, form, open);
+    }
+    if form.kind != LinkKind::Replay {
+        ui.add_space(skin.space.between);
+        search(ui, skin, dialog, view, actions);
+    }
+}
+
+fn kinds(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    ui.horizontal(|ui| {
+        let kinds = [
+            (LinkKind::Virtual, "connect.virtual"),
+            (LinkKind::Serial, "connect.serial"),
+            (LinkKind::Tcp, "connect.tcp"),
+            (LinkKind::Replay, "connect.replay"),
+        ];
+        for (kind, id) in kinds {
+            let word = skin.say(id);
+            let response = ui.add(egui::Button::selectable(form.kind == kind, &word));
+            if name(response, true, &word).clicked() {
+                form.kind = kind;
+            }
+        }
+    });
+}
+
+fn simulated(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    entry(ui, skin, &skin.say("connect.model"), |ui| {
+        let mut at = LinkForm::models().position(|model| model == form.model).unwrap_or(0);
+        let models = LinkForm::models().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
+        if choice(ui, &skin.say("connect.model"), &mut at, models)
+            && let Some(model) = LinkForm::models().nth(at)
+        {
+            model.clone_into(&mut form.model);
+        }
+    });
+    entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
+    entry(ui, skin, &skin.say("connect.fault"), |ui| {
+        text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
+    });
+}
+
+fn line(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+    entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
+        let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
+        choice(ui, &skin.say("settings_card.baud"), &mut form.baud, bauds);
+        parity(ui, skin, &mut form.parity);
+    });
+    entry(ui, skin, &skin.say("connect.address"), |ui| {
+        text_entry(ui, &mut form.address, 96.0, &skin.say("connect.address"), "40");
+    });
+}
+
+/// What is rarely needed.
+fn more(ui: &mut Ui, skin: &Skin, form: &mut LinkForm, open: &mut bool) {
+    if !unfolded(ui, skin, open) {
+        return;
+    }
+    echo(ui, skin, &mut form.echo);
+    entry(ui, skin, &skin.say("settings_card.timeout"), |ui| {
+        let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
+        let times = times.map(|(long, id)| (long, skin.say(id)));
+        choice(ui, &skin.say("settings_card.timeout"), &mut form.long_timeout, times);
+    });
+    margin(ui, skin, &mut form.margin);
+    entry(ui, skin, &skin.say("connect.periods"), |ui| {
+        text_entry(ui, &mut form.periods, 72.0, &skin.say("connect.periods"), "128");
+        ui.label(skin.label(skin.say("connect.turns")));
+        text_entry(ui, &mut form.turns, 72.0, &skin.say("connect.turns"), "4096");
+    });
+}
+
+fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, actions: &mut Vec<Action>) {
+    let running = dialog.search.as_ref().is_some_and(Search::is_running);
+    skin.card().show(ui, |ui| {
+        fill(ui);
+        ui.label(skin.heading(skin.say("find.title")));
+        paragraph(ui, skin.label(skin.say("find.words")));
+        ui.add_enabled_ui(!running, |ui| {
+            ui.checkbox(&mut view.one_encoder, skin.say("find.one_encoder"));
+            ui.add_enabled_ui(view.one_encoder, |ui| {
+                ui.checkbox(&mut view.power_cycle, skin.say("find.power_cycle"));
+            });
+        });
+        ui.horizontal(|ui| {
+            if running {
+                if button(ui, icons::X, &skin.say("find.stop")).clicked() {
+                    actions.push(Action::Connect(Connect::StopSearch));
+                }
+                spinner(ui, skin);
+            } else if allowed_button(
+                ui,
+                skin,
+                &dialog.url().map(drop),
+                icons::MAGNIFYING_GLASS,
+                &skin.say("find.start"),
+            )
+            .clicked()
+            {
+                let power_cycle = (view.one_encoder && view.power_cycle).then_some(POWER_CYCLE);
+                let options = FindOptions { one_encoder: view.one_encoder, power_cycle };
+                actions.push(Action::Connect(Connect::Search(options)));
+            }
+            if let Some(progress) = dialog.search.as_ref().and_then(Search::progress) {
+                let part = progress.done as f32 / progress.total.max(1) as f32;
+                ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
+                ui.label(skin.mono(skin.words(&words::doing(&progress.what))).color(skin.palette.muted));
+            }
+        });
+        if let Some(search) = &dialog.search {
+            found(ui, skin, search, actions);
+        }
+    });
+}
+
+fn found(ui: &mut Ui, skin: &Skin, search: &Search, actions: &mut Vec<Action>) {
+    for (at, found) in search.found.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let word = Text::new("find.choose").with("address", format!("{:02X}h", found.address));
+            if button(ui, icons::PLUGS_CONNECTED, &skin.words(&word)).clicked() {
+                actions.push(Action::Connect(Connect::Choose(at)));
+            }
+            let talking = Text::new("find.talking").with("format", found.format);
+            let stored = Text::new("find.stored").with_text("settings", words::line_settings(found.label.settings));
+            ui.label(skin.words(&talking));
+            ui.label(skin.label(skin.words(&stored)));
+        });
+    }
+    if let Some(end) = &search.end {
+        paragraph(ui, skin.words(end));
+    }
+}

@@ -1,0 +1,328 @@
+//! The encoder's memory: the map of its data fields, what can be done with each, the bytes of the one that is selected,
+//! what they mean, and the way to write the edits.
+
+use egui::{RichText, Ui};
+
+use crate::app::session::Phase;
+use crate::app::{Action, AnyDevice, Studio, Text};
+use crate::devices::hiperface::jobs::Change;
+use crate::devices::hiperface::profile::{FieldImage, FieldRange};
+use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
+use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::{Action as Hiperface, Encoder, Staged, forms, rules};
+use crate::ui::controls::{allowed_button, choice, empty, name, paragraph};
+use crate::ui::widgets::{
+    FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, typed_view,
+};
+use crate::ui::{Skin, foot, icons};
+
+/// Selection and text buffers of the page.
+pub(super) struct View {
+    field: u8,
+    free: bool,
+    hex: HexView,
+    size: FieldSize,
+    code: CodeNumber,
+    code_required: bool,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        let size = FieldSize::all().next();
+        View {
+            field: 0,
+            free: false,
+            hex: HexView::default(),
+            size: size.unwrap_or(DataFieldStatus::from_byte(0).size()),
+            code: CodeNumber::ZERO,
+            code_required: true,
+        }
+    }
+}
+
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let wanted = encoder.staged.wanted();
+    let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
+    if encoder.identity.is_none() {
+        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
+        if empty(ui, skin, &skin.say("memory.nothing"), Some((read.0, &read.1, read.2))) {
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Read));
+        }
+        return;
+    }
+    egui::Panel::bottom("memory_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
+        foot::foot_ui(ui, skin, studio, device, actions);
+    });
+    map(ui, skin, encoder, &wanted, memory, view, actions);
+    ui.add_space(skin.space.between);
+    let selected = wanted.iter().find(|field| field.number == view.field).filter(|_| !view.free);
+    match (selected, memory) {
+        (Some(field), _) => field_ui(ui, skin, encoder, field, memory, view, actions),
+        (None, Some(memory)) => create(ui, skin, encoder, memory, view, actions),
+        (None, None) => {
+            ui.label(skin.label(skin.say("memory.no_fields")));
+        }
+    }
+}
+
+fn map(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    wanted: &[FieldImage],
+    memory: Option<FreeMemory>,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let fields: Vec<MapField> = wanted
+        .iter()
+        .map(|field| {
+            let status = skin.words(&words::field_status(field.status));
+            let label = Text::new("memory.field").with("number", field.number);
+            MapField {
+                number: field.number,
+                blocks: usize::from(field.status.size().blocks()),
+                label: skin.words(&label),
+                caption: format!("{} B", field.status.size().bytes()),
+                colour: usize::from(field.number),
+                locked: !field.status.is_writable(),
+                unreadable: field.bytes.is_none(),
+                edited: encoder.staged.edits().any(|(number, ..)| number == field.number),
+                tooltip: format!("{}\n{status}", skin.words(&label)),
+            }
+        })
+        .collect();
+    let free_blocks = memory.map_or(0, |memory| usize::from(memory.blocks));
+    // What is free counts; how many blocks of it are drawn does not. A field can grow to eight.
+    let taken: usize = fields.iter().map(|field| field.blocks).sum();
+    let a_line = (ui.available_width() / 48.0) as usize;
+    let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
+    let selected = (!view.free).then_some(view.field);
+    let free = skin.words(&Text::new("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
+    let last = wanted.last().filter(|_| encoder.session.is_ready());
+    let resize = last.zip(memory).map(|(last, memory)| {
+        let largest = rules::largest(memory, last);
+        1..=usize::from(largest.blocks())
+    });
+    let model = FieldMap {
+        fields: &fields,
+        free_blocks: shown_free,
+        selected,
+        free_label: &free,
+        free_tooltip: &skin.say("memory.free_hint"),
+        block_bytes: FieldSize::BLOCK,
+        resize,
+    };
+    let event = field_map(ui, skin, &model);
+    let sizes = fields.iter().map(|field| field.blocks * FieldSize::BLOCK).sum::<usize>();
+    let id = if fields.len() == 1 { "memory.used_one" } else { "memory.used" };
+    let used = Text::new(id).with("fields", fields.len()).with("used", sizes);
+    let words = if memory.is_some() { format!("{} · {free}", skin.words(&used)) } else { skin.words(&used) };
+    ui.label(skin.caption(words));
+    match event {
+        Some(MapEvent::Select(number)) => {
+            if number != view.field {
+                view.hex = HexView::default();
+            }
+            view.field = number;
+            view.free = false;
+        }
+        Some(MapEvent::SelectFree) => view.free = true,
+        Some(MapEvent::ResizeLast { blocks }) => {
+            let size = u8::try_from(blocks).ok().and_then(FieldSize::from_blocks);
+            if let (Some(size), Some(last)) = (size, wanted.last()) {
+                let change = Change::ResizeField { number: last.number, size };
+                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
+            }
+        }
+        None => {}
+    }
+}
+
+fn field_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    field: &FieldImage,
+    memory: Option<FreeMemory>,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    field_head(ui, skin, encoder, field, memory, actions);
+    let Some(bytes) = &field.bytes else {
+        ui.add_space(skin.space.between);
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icons::KEY).color(skin.palette.warn));
+            let why = encoder.why_not_edited(field);
+            paragraph(ui, why.map(|why| skin.words(&why)).unwrap_or_default());
+        });
+        return;
+    };
+    let read_only = match encoder.session.phase {
+        Phase::Offline => None,
+        _ if encoder.session.is_writing() => Some(Text::new("session.busy")),
+        _ => encoder.why_not_edited(field),
+    };
+    let device = encoder.field(field.number).and_then(|own| own.bytes.clone()).unwrap_or_default();
+    let mounting = encoder.mounting(field.number);
+    let marks: Vec<HexMark> = mounting.iter().map(|(range, words)| HexMark { range: range.clone(), words }).collect();
+    let beside = ui.available_width() >= 820.0;
+    let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
+    let model = HexModel { device: &device, wanted: bytes, marks: &marks, read_only: read_only.as_ref(), lines };
+    let label = skin.words(&Text::new("memory.bytes").with("number", field.number));
+    let mut edits = Vec::new();
+    if beside {
+        ui.horizontal_top(|ui| {
+            ui.vertical(|ui| edits = hex_editor(ui, skin, &label, &model, &mut view.hex));
+            ui.add_space(skin.space.between);
+            ui.vertical(|ui| typed_view(ui, skin, view.hex.to_read(bytes)));
+        });
+    } else {
+        egui::ScrollArea::vertical().id_salt("field").auto_shrink(false).show(ui, |ui| {
+            // Room for the ring around what has the keyboard.
+            ui.add_space(skin.space.inside);
+            edits = hex_editor(ui, skin, &label, &model, &mut view.hex);
+            if let [mark, ..] = marks.as_slice() {
+                let text = Text::new("memory.mounting").with("what", mark.words);
+                ui.label(skin.caption(skin.words(&text)));
+            }
+            ui.add_space(skin.space.between);
+            typed_view(ui, skin, view.hex.to_read(bytes));
+        });
+    }
+    // The buttons at the foot undo as well as the keys do.
+    if actions.iter().any(|own| matches!(own, Action::Hiperface(_, Hiperface::Undo | Hiperface::Redo))) {
+        view.hex.follow(bytes);
+    }
+    let number = field.number;
+    actions.extend(edits.into_iter().map(|edit| {
+        Action::Hiperface(
+            encoder.session.id,
+            match edit {
+                HexEdit::Put { address, bytes } => Hiperface::Put { field: number, address, bytes },
+                HexEdit::Undo => Hiperface::Undo,
+                HexEdit::Redo => Hiperface::Redo,
+                HexEdit::Revert { range } => Hiperface::Revert(FieldRange::new(number, range.start, range.len())),
+            },
+        )
+    }));
+}
+
+/// What the selected field is, and what can be done with it; what cannot says why.
+fn field_head(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    field: &FieldImage,
+    memory: Option<FreeMemory>,
+    actions: &mut Vec<Action>,
+) {
+    let mut change = None;
+    ui.horizontal(|ui| {
+        ui.label(skin.heading(skin.words(&Text::new("memory.field").with("number", field.number))));
+        ui.label(skin.label(skin.words(&words::field_status(field.status))));
+    });
+    let Some(memory) = memory else { return };
+    ui.horizontal_wrapped(|ui| {
+        let ready = || if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
+        let lock = field.status.is_writable();
+        let (icon, word) =
+            if lock { (icons::LOCK_SIMPLE, "memory.lock") } else { (icons::LOCK_SIMPLE_OPEN, "memory.unlock") };
+        if allowed_button(ui, skin, &ready().and_then(|()| rules::status(field)), icon, &skin.say(word)).clicked() {
+            change = Some(Change::LockField { number: field.number, lock });
+        }
+        code_menu(ui, skin, &ready().and_then(|()| rules::status(field)), field, &mut change);
+        let resizable = ready().and_then(|()| rules::resizable(memory, field));
+        size_menu(ui, skin, &resizable, memory, (field, &encoder.staged), &mut change);
+        let deletable = ready().and_then(|()| rules::delete(memory, field, &encoder.staged));
+        if allowed_button(ui, skin, &deletable, icons::TRASH, &skin.say("memory.delete")).clicked() {
+            change = Some(Change::DeleteField { number: field.number });
+        }
+    });
+    actions.extend(change.map(|change| Action::Hiperface(encoder.session.id, Hiperface::Plan(change))));
+}
+
+fn code_menu(ui: &mut Ui, skin: &Skin, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
+    let word = skin.say("memory.code");
+    ui.add_enabled_ui(allowed.is_ok(), |ui| {
+        let menu = ui.menu_button(format!("{}  {word}", icons::KEY), |ui| {
+            for code in CodeNumber::all() {
+                for required in [true, false] {
+                    let id = if required { "memory.code_required" } else { "memory.code_free" };
+                    let words = skin.words(&Text::new(id).with("number", code));
+                    let is_own = field.status.code() == code && field.status.code_required() == required;
+                    if ui.selectable_label(is_own, words).clicked() {
+                        let status = field.status.with_code(code, required);
+                        *change = Some(Change::Redefine { number: field.number, status });
+                        ui.close();
+                    }
+                }
+            }
+        });
+        name(menu.response, allowed.is_ok(), &word);
+    });
+}
+
+fn size_menu(
+    ui: &mut Ui,
+    skin: &Skin,
+    allowed: &rules::Allowed,
+    memory: FreeMemory,
+    (field, staged): (&FieldImage, &Staged),
+    change: &mut Option<Change>,
+) {
+    let word = skin.say("memory.resize");
+    if allowed.is_err() {
+        allowed_button(ui, skin, allowed, icons::ARROWS_OUT_LINE_HORIZONTAL, &word);
+        return;
+    }
+    let menu = ui.menu_button(format!("{}  {word}", icons::ARROWS_OUT_LINE_HORIZONTAL), |ui| {
+        for size in FieldSize::all() {
+            let allowed = rules::resize(memory, field, size, staged);
+            let own = egui::Button::selectable(size == field.status.size(), format!("{} B", size.bytes()));
+            let response = ui.add_enabled(allowed.is_ok(), own);
+            let response = match &allowed {
+                Ok(()) => response,
+                Err(why) => response.on_disabled_hover_text(skin.words(why)),
+            };
+            if response.clicked() {
+                *change = Some(Change::ResizeField { number: field.number, size });
+                ui.close();
+            }
+        }
+    });
+    name(menu.response, true, &word);
+}
+
+/// A new field in the free memory.
+fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view: &mut View, actions: &mut Vec<Action>) {
+    ui.label(skin.heading(skin.words(&Text::new("memory.create_title").with("number", memory.fields))));
+    ui.label(skin.label(skin.say("memory.create_words")));
+    ui.add_space(skin.space.inside);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(skin.label(skin.say("memory.size")));
+        let sizes = FieldSize::all().map(|size| (size, format!("{} B", size.bytes())));
+        choice(ui, &skin.say("memory.size"), &mut view.size, sizes);
+        ui.label(skin.label(skin.say("memory.code")));
+        let codes = CodeNumber::all().map(|code| (code, code.to_string()));
+        choice(ui, &skin.say("memory.code"), &mut view.code, codes);
+        ui.checkbox(&mut view.code_required, skin.say("memory.required"));
+        let allowed = if encoder.session.is_ready() {
+            rules::create(memory, view.size, view.code, view.code_required)
+        } else {
+            Err(Text::new("session.not_ready"))
+        };
+        if allowed_button(ui, skin, &allowed, icons::PLUS, &skin.say("memory.create")).clicked() {
+            let status = forms::new_field(view.size, view.code, view.code_required);
+            let change = Change::CreateField { number: memory.fields, status };
+            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
+        }
+    });
+}

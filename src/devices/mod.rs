@@ -1,0 +1,3 @@
+//! The devices: one folder each, which holds all that the program knows about it.
+
+pub mod hiperface;
