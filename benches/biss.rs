@@ -11,7 +11,7 @@ use std::time::Instant;
 use encoder_studio::analysis::history::{History, Kind, Part};
 use encoder_studio::analysis::{Time, Unwrap};
 use encoder_studio::buses::bridge::protocol::{BissData, BissStatus, Continuity, Data, Gap, Message, Receiver};
-use encoder_studio::protocol::biss::{Crc, FrameError, Layout, Reading};
+use encoder_studio::devices::biss::protocol::{Crc, FrameError, Layout, Reading};
 
 /// Frames in a batch, and how often it is decoded in one measurement.
 const FRAMES: usize = 1 << 16;

@@ -79,8 +79,8 @@ const STREAMED: Duration = Duration::from_secs(15);
 /// The whole window with the position of a virtual BiSS encoder behind the virtual adapter in its plot, as it is drawn
 /// when the adapter streams 20 000 frames a second.
 fn stream() {
-    use encoder_studio::app::biss::Action as Biss;
     use encoder_studio::app::{Action, Look, Studio, Tab, World};
+    use encoder_studio::devices::biss::state::Action as Biss;
     use encoder_studio::kinds::FORMATS;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};

@@ -1,7 +1,7 @@
 //! The kinds of devices that this program knows: the one file that names them all.
 
+use crate::devices::biss::profile::BissProfile;
 use crate::devices::hiperface::profile::HiperfaceProfile;
-use crate::profile::biss::BissProfile;
 use crate::profile::hiperdrive::HiperdriveProfile;
 use crate::profile::interbus::InterbusProfile;
 use crate::profile::ssi::SsiProfile;

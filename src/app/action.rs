@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::biss;
 use super::connect;
 use super::diverged::{Diverged, Resolve};
 use super::hiperdrive;
@@ -16,16 +15,17 @@ use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::{Language, Picture, Settings, Text, Theme};
+use crate::devices::biss::jobs::Biss;
+use crate::devices::biss::protocol::Descriptions;
+use crate::devices::biss::state as biss;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::state as hiperface;
 use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
-use crate::protocol::biss::Descriptions;
 use crate::protocol::ssi::Families;
 use crate::signals::state as signals;
 use crate::store::{DeviceKey, FileError, StoreError};
-use crate::worker::biss::Biss;
 use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::interbus::Interbus;
 use crate::worker::ssi::Ssi;

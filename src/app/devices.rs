@@ -11,7 +11,6 @@ pub(super) use shown::Shown;
 pub use wish::Wish;
 
 use super::action::{Known, ReadError, ReviewAction};
-use super::biss;
 use super::closing::MUCH;
 use super::hiperdrive;
 use super::interbus;
@@ -26,6 +25,7 @@ use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::trace::TraceLog;
+use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state as hiperface;
 use crate::link::LinkUrl;
 use crate::profile::Document;
@@ -97,7 +97,7 @@ impl AnyDevice {
                 let types = services.encoder_types(known.hiperface);
                 AnyDevice::Hiperface(Box::new(hiperface::Encoder::in_file(id, file, document, &types, services)))
             }
-            crate::protocol::biss::KIND => {
+            crate::devices::biss::protocol::KIND => {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
             crate::protocol::ssi::KIND => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),

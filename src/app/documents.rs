@@ -8,9 +8,9 @@ use super::action::{Action, Done, Known, ReadError};
 use super::session::{DraftDone, ProfileFile, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
+use crate::devices::biss::protocol::Descriptions;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::profile::{Body, Document, Formats, ProfileError};
-use crate::protocol::biss::Descriptions;
 use crate::store::{Store, read_file};
 
 impl Studio {

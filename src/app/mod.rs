@@ -2,7 +2,6 @@
 //! for a person, the look as data.
 
 pub(crate) mod action;
-pub mod biss;
 mod brakes;
 pub mod check;
 mod closing;

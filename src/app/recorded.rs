@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use super::session::Kind;
 use super::{Settings, Tab};
+use crate::devices::biss::jobs::Biss;
 use crate::devices::hiperface::jobs::Hiperface;
-use crate::worker::biss::Biss;
 use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::interbus::Interbus;
 use crate::worker::ssi::Ssi;

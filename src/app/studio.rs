@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::action::{Action, Done, FileQuestion, Waited};
-use super::biss;
 use super::connect::Connect;
 use super::devices::{AnyDevice, Shown};
 use super::diverged::Diverged;
@@ -15,10 +14,11 @@ use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
+use crate::devices::biss::jobs::Change;
+use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state::{self as hiperface, Encoder};
 use crate::link::LinkUrl;
 use crate::signals::state::{self as signals, Signals};
-use crate::worker::biss::Change;
 
 /// A session's number, from the start of the program on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,12 +1,13 @@
 //! The tabs of the window.
 
-use super::biss::BissForm;
 use super::hiperdrive::HiperdriveForm;
 use super::interbus::InterbusForm;
 use super::ssi::SsiForm;
+use crate::devices::biss::jobs as biss;
+use crate::devices::biss::state::BissForm;
 use crate::devices::hiperface::jobs as hiperface;
 use crate::link::LinkUrl;
-use crate::worker::{OpenError, biss, hiperdrive, interbus, ssi};
+use crate::worker::{OpenError, hiperdrive, interbus, ssi};
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]

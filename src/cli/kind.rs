@@ -4,8 +4,9 @@
 use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
 use super::simulate::Simulated;
-use super::{Failure, Result, biss, hiperdrive, interbus, ssi};
+use super::{Failure, Result, hiperdrive, interbus, ssi};
 use crate::app::Text;
+use crate::devices::biss::commands as biss;
 use crate::devices::hiperface::commands as hiperface;
 use crate::profile::{Body, Comparison, ProfileError};
 

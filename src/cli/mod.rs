@@ -3,7 +3,6 @@
 
 mod analyse;
 pub(crate) mod args;
-mod biss;
 pub(crate) mod check;
 pub(crate) mod consent;
 pub(crate) mod decode;

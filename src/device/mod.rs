@@ -1,6 +1,5 @@
 //! What one does with a device: procedures that read like the manuals' step tables.
 
-pub mod biss;
 pub mod check;
 pub mod hiperdrive;
 pub mod interbus;

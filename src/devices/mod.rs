@@ -1,3 +1,4 @@
 //! The devices: one folder each, which holds all that the program knows about it.
 
+pub mod biss;
 pub mod hiperface;

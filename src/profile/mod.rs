@@ -1,7 +1,6 @@
 //! What is saved, what differs, and what a write would do: profiles, differences and plans. Pure; files are opened by
 //! `store`, devices are read and written by `device`.
 
-pub mod biss;
 mod body;
 mod cause;
 pub(crate) mod difference;

@@ -1,6 +1,5 @@
 //! Bytes ↔ meaning. Pure functions and tables: no socket, port, clock, thread, channel or file.
 
-pub mod biss;
 pub mod hiperdrive;
 pub mod interbus;
 pub mod ssi;

@@ -1,7 +1,8 @@
 //! The virtual encoders that hang on the virtual adapter, a line each.
 
-use super::{biss, ssi};
+use super::ssi;
 use crate::buses::bridge::sim::Attachable;
+use crate::devices::biss::sim as biss;
 use crate::devices::hiperface::sim as hiperface;
 
 /// Which encoders there are. The settings of the last one are named last.

@@ -5,7 +5,6 @@
 //! the tables of `protocol/` are shared with the host's side.
 
 mod at_adapter;
-pub mod biss;
 mod fault;
 pub mod hiperdrive;
 pub mod interbus;

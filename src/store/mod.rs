@@ -28,8 +28,8 @@ pub use folders::Folders;
 pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome, StatusEntry};
 
+use crate::devices::biss::protocol::{DescriptionError, Descriptions};
 use crate::devices::hiperface::protocol::{EncoderTypes, TypeTableError};
-use crate::protocol::biss::{DescriptionError, Descriptions};
 use crate::protocol::ssi::{Families, FamilyError};
 
 /// Where the program keeps what outlives it.

@@ -2,7 +2,6 @@
 //! actions; it never does I/O, decodes, sorts or blocks.
 
 pub(crate) mod backups;
-mod biss;
 pub(crate) mod check;
 pub(crate) mod controls;
 pub(crate) mod dialogs;
@@ -29,6 +28,7 @@ mod window;
 pub(crate) mod wires;
 mod workspace;
 
+use crate::devices::biss::views as biss;
 use crate::devices::hiperface::views as hiperface;
 use crate::signals::views as signals;
 pub use run::run;

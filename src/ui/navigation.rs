@@ -4,8 +4,9 @@ use egui::Ui;
 
 use super::controls::{icon_button, name};
 use super::docks::Docks;
-use super::{Skin, Views, biss, hiperdrive, icons, interbus, ssi};
+use super::{Skin, Views, hiperdrive, icons, interbus, ssi};
 use crate::app::{Action, Studio, Tab};
+use crate::devices::biss::views as biss;
 use crate::devices::hiperface::views as hiperface;
 use crate::signals::views as signals;
 

@@ -11,8 +11,9 @@ use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Skin, biss, header, hiperdrive, interbus, review, ssi, stopping};
+use super::{Skin, header, hiperdrive, interbus, review, ssi, stopping};
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
+use crate::devices::biss::views as biss;
 use crate::devices::hiperface::state::Encoder;
 use crate::devices::hiperface::views as hiperface;
 use crate::signals::views as signals;
@@ -52,7 +53,7 @@ impl Views {
     }
 
     /// The BiSS tab of a session.
-    pub(super) fn biss(&mut self, encoder: &crate::app::biss::Encoder) -> &mut biss::View {
+    pub(super) fn biss(&mut self, encoder: &crate::devices::biss::state::Encoder) -> &mut biss::View {
         let view = self.biss.entry(encoder.session.id).or_default();
         view.follow(encoder);
         view

@@ -8,7 +8,6 @@
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
 mod agenda;
-pub mod biss;
 pub(crate) mod commit;
 pub mod hiperdrive;
 pub mod interbus;

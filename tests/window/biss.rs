@@ -1,12 +1,12 @@
 //! A BiSS encoder in the window: the virtual kit encoder, over its pin and over the virtual adapter.
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::biss::{Action as Biss, Mark};
-use encoder_studio::app::biss::{BissForm, BissWay};
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Tab};
-use encoder_studio::protocol::biss::Role;
+use encoder_studio::devices::biss::protocol::Role;
+use encoder_studio::devices::biss::state::{Action as Biss, Mark};
+use encoder_studio::devices::biss::state::{BissForm, BissWay};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;

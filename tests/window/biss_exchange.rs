@@ -1,8 +1,8 @@
 //! A BiSS encoder that is another one all at once, and a wire that two want.
 
 use encoder_studio::app::Severity;
-use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::session::Phase;
+use encoder_studio::devices::biss::state::Action as Biss;
 use encoder_studio::signals::state::{Action as Signals, SourceAction};
 
 use crate::biss_support::{ask, connect, encoder, is_read};

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use encoder_studio::analysis::history::Flags;
-use encoder_studio::app::biss::{Action as Biss, Encoder};
 use encoder_studio::app::{Action, Severity, Studio, Tab};
+use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
 use encoder_studio::ui::pages;
 
 use crate::biss_support::is_read;

@@ -1,8 +1,8 @@
 //! A desk with a BiSS encoder on it.
 
-use encoder_studio::app::biss::{Action as Biss, Encoder};
 use encoder_studio::app::{Action, Studio, Tab};
-use encoder_studio::protocol::biss::RegisterAddress;
+use encoder_studio::devices::biss::protocol::RegisterAddress;
+use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
 
 use crate::support::Desk;
 

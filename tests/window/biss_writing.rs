@@ -2,13 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::biss::{Action as Biss, Encoder, End, Reached, ReviewState};
-use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, explain};
-use encoder_studio::device::biss::procedure::{Answer, Outcome, Task};
+use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab};
 use encoder_studio::device::check::Verdict;
-use encoder_studio::profile::biss::{MotorSource, MountingRun, Op, PresetParts};
-use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
-use encoder_studio::worker::biss::Change;
+use encoder_studio::devices::biss::jobs::Change;
+use encoder_studio::devices::biss::procedures::procedure::{Answer, Outcome, Task};
+use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, Op, PresetParts};
+use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
+use encoder_studio::devices::biss::state::{Action as Biss, Encoder, End, Reached, ReviewState};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
@@ -155,7 +155,7 @@ fn stopping_a_procedure_leads_the_encoder_back() {
     assert_eq!((status.mode, status.protection), (Some(DeviceMode::OPERATION), Some(0)));
     let guide = encoder(&desk).guide.as_ref().unwrap();
     let End::Failed { texts, may_lead_back, .. } = guide.end.clone().unwrap() else { panic!() };
-    let weights: Vec<Severity> = texts.iter().map(explain::biss::weight).collect();
+    let weights: Vec<Severity> = texts.iter().map(encoder_studio::devices::biss::state::explain::weight).collect();
     assert_eq!(weights, [Severity::Warning, Severity::Note, Severity::Good, Severity::Note]);
     assert_eq!(texts.last().unwrap().id(), "write.backup_calibration");
     assert!(!may_lead_back, "it is in operation");

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use encoder_studio::app::biss::{BissForm, BissWay};
 use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, is_missing};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, FileQuestion, Language, Tab};
+use encoder_studio::devices::biss::state::{BissForm, BissWay};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::devices::hiperface::state::{LinkForm, LinkKind, Search};

@@ -3,17 +3,17 @@
 
 use std::path::Path;
 
-use encoder_studio::app::biss::Action as Biss;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as Set};
 use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
+use encoder_studio::devices::biss::profile::BissProfile;
+use encoder_studio::devices::biss::state::Action as Biss;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::kinds::FORMATS;
-use encoder_studio::profile::biss::BissProfile;
 use encoder_studio::profile::hiperdrive::HiperdriveProfile;
 use encoder_studio::profile::interbus::InterbusProfile;
 use encoder_studio::profile::{self, Body, Comparison, Document, PlanId, Profile};
@@ -186,7 +186,7 @@ fn compared(one: Body, other: Body) -> Comparison {
         Some((one.get::<P>()?.clone(), other.get::<P>().unwrap().clone()))
     }
     if let Some((one, other)) = pair::<BissProfile>(&one, &other) {
-        encoder_studio::profile::biss::compare(&one, &other)
+        encoder_studio::devices::biss::profile::compare(&one, &other)
     } else if let Some((one, other)) = pair::<InterbusProfile>(&one, &other) {
         encoder_studio::profile::interbus::compare(&one, &other)
     } else if let Some((one, other)) = pair::<HiperdriveProfile>(&one, &other) {

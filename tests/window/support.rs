@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, World, connect};
-use encoder_studio::device::biss::Way;
 use encoder_studio::device::hiperdrive::Found;
+use encoder_studio::devices::biss::jobs as biss;
+use encoder_studio::devices::biss::procedures::Way;
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
@@ -18,7 +19,7 @@ use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder, Re
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::store::{Folders, Store};
-use encoder_studio::worker::{Session, biss, hiperdrive, interbus};
+use encoder_studio::worker::{Session, hiperdrive, interbus};
 
 use crate::texts;
 use crate::wire::{TestLink, Wire};
@@ -100,7 +101,7 @@ impl Outside {
             open_biss: Arc::new(move |url, store| {
                 let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
                 let way = if url.scheme == Scheme::Bridge { Way::Adapter } else { Way::ConfigPin };
-                let station = encoder_studio::device::biss::Station::from_query(&url.query, way, MARGIN)?;
+                let station = encoder_studio::devices::biss::procedures::Station::from_query(&url.query, way, MARGIN)?;
                 let link = Box::new(TestLink::plug_into(wire)?);
                 Ok(Session::over(link, wire.clock(), station, store, None))
             }),

@@ -3,13 +3,14 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
 use encoder_studio::buses::bridge::sim::Adapter;
+use encoder_studio::devices::biss::sim as biss;
+use encoder_studio::devices::biss::sim::Port;
 use encoder_studio::devices::hiperface::sim as hiperface;
 use encoder_studio::devices::hiperface::sim::Bus;
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
-use encoder_studio::sim::biss::Port;
 use encoder_studio::sim::hiperdrive::Target;
 use encoder_studio::sim::interbus::Gateway;
-use encoder_studio::sim::{AT_ADAPTER, ByteDevice, biss, hiperdrive, interbus};
+use encoder_studio::sim::{AT_ADAPTER, ByteDevice, hiperdrive, interbus};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;

@@ -11,7 +11,6 @@ pub use target::is_missing;
 
 use std::path::PathBuf;
 
-use super::biss::BissForm;
 use super::hiperdrive::{Discovery, HiperdriveForm};
 use super::interbus::InterbusForm;
 use super::services::Services;
@@ -19,6 +18,7 @@ use super::ssi::SsiForm;
 use super::tab::Tab;
 use super::{Text, explain};
 use crate::app::action::Done;
+use crate::devices::biss::state::BissForm;
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::state::{LinkForm, Search};
 use crate::link::LinkUrl;

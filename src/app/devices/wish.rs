@@ -6,7 +6,8 @@ use std::time::Duration;
 use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
-use crate::app::{biss, hiperdrive, interbus, ssi};
+use crate::app::{hiperdrive, interbus, ssi};
+use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state as hiperface;
 
 /// What can be wished of every device.

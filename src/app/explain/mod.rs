@@ -1,7 +1,6 @@
 //! Errors in words for a person: what happened, and what to do. The one place where it is done; what concerns one kind of
 //! device stands in a module of its own.
 
-pub mod biss;
 mod detail;
 pub mod hiperdrive;
 pub mod interbus;

@@ -7,13 +7,14 @@ use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::connect::{Action as Connect, Connect as Dialog, is_missing};
 use crate::app::{Action, Studio, Tab, Text};
+use crate::devices::biss::views as biss;
 use crate::devices::hiperface::state::Search;
 use crate::devices::hiperface::views as hiperface;
 use crate::link::LinkUrl;
 use crate::ui::controls::{
     at_the_right, button, entry, icon_button, modal, mono_entry, name, paragraph, primary, problem,
 };
-use crate::ui::{Skin, biss, hiperdrive, icons, interbus, ssi};
+use crate::ui::{Skin, hiperdrive, icons, interbus, ssi};
 
 /// What the dialog remembers.
 #[derive(Default)]

@@ -7,10 +7,11 @@ use egui::{RichText, Ui};
 use super::nothing;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Desk, Rgb, Studio, Text, Wish};
+use crate::devices::biss::views as biss;
 use crate::devices::hiperface::views as hiperface;
 use crate::ui::controls::{choice, enabled_button, icon_button};
 use crate::ui::page::apart;
-use crate::ui::{Skin, Views, biss, hiperdrive, icons, interbus, plot, ssi};
+use crate::ui::{Skin, Views, hiperdrive, icons, interbus, plot, ssi};
 
 /// Microseconds from one reading of the position to the next; back to back first.
 const RATES: [(u64, &str); 4] =

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::Operation;
-use encoder_studio::device::biss::{Error, Supply};
-use encoder_studio::protocol::biss::{Crc, Layout};
-use encoder_studio::sim::biss::Encoder;
+use encoder_studio::devices::biss::procedures::{Error, Supply};
+use encoder_studio::devices::biss::protocol::{Crc, Layout};
+use encoder_studio::devices::biss::sim::Encoder;
 use encoder_studio::units::Moment;
 
 use super::support::{Bus, at};

@@ -2,13 +2,13 @@
 //! end there: what is told of the encoder's state is the state that it is in, the way back leads to operation with the
 //! password cleared, and the procedure can then be carried out.
 
-use encoder_studio::device::biss::Error;
-use encoder_studio::device::biss::procedure::{Activity, Failure, Run, Step, steps_of};
-use encoder_studio::device::biss::write::{Interrupted, Left};
+use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
+use encoder_studio::devices::biss::procedures::Error;
+use encoder_studio::devices::biss::procedures::procedure::{Activity, Failure, Run, Step, steps_of};
+use encoder_studio::devices::biss::procedures::write::{Interrupted, Left};
+use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, PresetParts};
+use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::link::{Cancel, Direction};
-use encoder_studio::profile::biss::{Bank, MotorSource, MountingRun, PresetParts};
-use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
-use encoder_studio::worker::biss::{Change, JobError, Prepared};
 
 use super::hands::{Hands, IN_OPERATION, assert_told, calibration, data, exchanges, filter, preset, wiegand_test};
 use super::support::{Bench, Way};

@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use encoder_studio::bits::ByteOrder;
 use encoder_studio::buses::bridge::procedures::AdapterError;
-use encoder_studio::device::biss::{Echo, Error, Survey};
+use encoder_studio::devices::biss::jobs::{BissJob, BissOutput, JobError, open};
+use encoder_studio::devices::biss::procedures::{Echo, Error, Survey};
 use encoder_studio::link::{Cancel, LinkUrl, TraceEntry, write_entry, write_header};
 use encoder_studio::store::Store;
-use encoder_studio::worker::biss::{BissJob, BissOutput, JobError, open};
 
 use super::support::{Bench, Way};
 

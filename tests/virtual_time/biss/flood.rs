@@ -3,11 +3,11 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::biss::Station;
+use encoder_studio::devices::biss::jobs::{Biss, BissJob};
+use encoder_studio::devices::biss::procedures::Station;
 use encoder_studio::link::{ByteLink, Clock, LinkError, VirtualClock};
 use encoder_studio::store::Store;
 use encoder_studio::units::{CharacterFormat, Moment};
-use encoder_studio::worker::biss::{Biss, BissJob};
 use encoder_studio::worker::{Event, JobId, Session};
 
 use super::support::Way;

@@ -3,13 +3,17 @@
 
 use std::time::Duration;
 
-use encoder_studio::device::biss::procedure::{Answer, Demand, Detail, News, Seat, Step, Task, Unattended};
-use encoder_studio::device::biss::write::{Interrupted, Left};
+use encoder_studio::devices::biss::jobs::{
+    Attendance, BissJob, BissOutput, Change, Commit, Committed, JobError, Prepared,
+};
+use encoder_studio::devices::biss::procedures::procedure::{
+    Answer, Demand, Detail, News, Seat, Step, Task, Unattended,
+};
+use encoder_studio::devices::biss::procedures::write::{Interrupted, Left};
+use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
+use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::profile::Consent;
-use encoder_studio::profile::biss::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
-use encoder_studio::protocol::biss::{DeviceMode, Filter, PresetValue};
 use encoder_studio::sim::Motor;
-use encoder_studio::worker::biss::{Attendance, BissJob, BissOutput, Change, Commit, Committed, JobError, Prepared};
 
 use super::support::{Bench, at};
 

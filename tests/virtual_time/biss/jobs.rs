@@ -3,14 +3,18 @@
 use std::fs;
 use std::time::Duration;
 
-use encoder_studio::device::biss::{self as device, Error, FrameSource, PositionReading, Sample, Status, Survey};
-use encoder_studio::link::{Cancel, LinkUrl};
-use encoder_studio::profile::biss::BissProfile;
-use encoder_studio::protocol::biss::{Descriptions, DeviceMode, ErrorRegister, Filter, Firmware, WiegandResult};
-use encoder_studio::store::Store;
-use encoder_studio::worker::biss::{
+use encoder_studio::devices::biss::jobs::{
     Biss, BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, device_key, open,
 };
+use encoder_studio::devices::biss::procedures::{
+    self as device, Error, FrameSource, PositionReading, Sample, Status, Survey,
+};
+use encoder_studio::devices::biss::profile::BissProfile;
+use encoder_studio::devices::biss::protocol::{
+    Descriptions, DeviceMode, ErrorRegister, Filter, Firmware, WiegandResult,
+};
+use encoder_studio::link::{Cancel, LinkUrl};
+use encoder_studio::store::Store;
 use encoder_studio::worker::{Event, JobId, OpenError, Session, Watched};
 
 use super::support::{Bench, Pin, Way, at};

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use encoder_studio::bits::ByteOrder;
-use encoder_studio::device::biss::{Damage, Echo, Error};
+use encoder_studio::devices::biss::procedures::{Damage, Echo, Error};
 use encoder_studio::link::{Cancel, Clock, Direction};
 
 use super::support::{Pin, at};

@@ -4,17 +4,17 @@
 use std::time::Duration;
 
 use encoder_studio::app::Text;
-use encoder_studio::app::explain::biss::job;
-use encoder_studio::device::biss::Error;
-use encoder_studio::device::biss::procedure::{
+use encoder_studio::devices::biss::jobs::{Change, JobError};
+use encoder_studio::devices::biss::procedures::Error;
+use encoder_studio::devices::biss::procedures::procedure::{
     Advice, Answer, Blocker, Detail, Failure, Outcome, Run, Step, Task, WiegandReport, steps_of,
 };
-use encoder_studio::device::biss::write::Left;
-use encoder_studio::profile::biss::{MotorSource, MountingRun, PlanError, PresetParts};
-use encoder_studio::protocol::biss::{
+use encoder_studio::devices::biss::procedures::write::Left;
+use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, PlanError, PresetParts};
+use encoder_studio::devices::biss::protocol::{
     CalibrationStatus, DeviceMode, Filter, PresetValue, ProcedureKind, WiegandResult, WiegandStatus,
 };
-use encoder_studio::worker::biss::{Change, JobError};
+use encoder_studio::devices::biss::state::explain::job;
 
 use super::hands::{Hands, IN_OPERATION, calibration, data, filter, interrupted, preset, wiegand_test};
 use super::support::{Bench, Way, at};
@@ -90,7 +90,7 @@ fn a_wiegand_test_gives_its_results_and_saves_them_where_that_is_wished() {
             assert_eq!(bench.mode_and_password(), IN_OPERATION);
             // It shows after a restart.
             bench.encoder(|encoder, now| encoder.power_cycle(now));
-            bench.run(encoder_studio::worker::biss::BissJob::LeadBack).unwrap();
+            bench.run(encoder_studio::devices::biss::jobs::BissJob::LeadBack).unwrap();
             assert_eq!(bench.encoder_reads(at("0x00:0x12")), Some(if save { 58 } else { 0 }));
         }
     }
@@ -169,7 +169,7 @@ fn a_preset_is_stored_and_carried_out_with_two_restarts() {
 fn a_mounting_is_one_run_with_a_report() {
     let mut bench = Bench::new(Way::ConfigPin, "temperature=33");
     let mut wanted = bench.save();
-    let listed = encoder_studio::profile::biss::Bank { number: 0x24, bytes: [7; 64] };
+    let listed = encoder_studio::devices::biss::profile::Bank { number: 0x24, bytes: [7; 64] };
     wanted.data[1].listed.push(listed.into());
     let run = MountingRun {
         calibrate: true,
@@ -316,7 +316,8 @@ fn a_calibration_that_fails_says_why() {
         let error = bench
             .run_watched(commit, &mut |news| {
                 told.hear(news);
-                let lasts = matches!(news.detail, encoder_studio::device::biss::procedure::Detail::Lasts { .. });
+                let lasts =
+                    matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::Detail::Lasts { .. });
                 if let (Some(rpm), true) = (disturbed, lasts && news.step == Step::Run(run)) {
                     seat.set_rpm(rpm);
                 }
@@ -341,7 +342,7 @@ fn a_calibration_that_fails_says_why() {
 /// What the encoder itself finds wrong although it was measured otherwise a moment before.
 #[test]
 fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
-    type Spoil = fn(&mut encoder_studio::sim::biss::Encoder, encoder_studio::units::Moment);
+    type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
     let cases: [(Spoil, CalibrationStatus); 3] = [
         (|encoder, now| encoder.set_rpm(now, 500.0), CalibrationStatus::WrongDirection),
         (|encoder, now| encoder.set_rpm(now, -900.0), CalibrationStatus::Speed),
@@ -357,7 +358,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
             .run_watched(commit, &mut |news| {
                 hands.hear(news);
                 if hands.steps.last() == Some(&(0, Step::Run(Run::CalibrationCounterclockwise)))
-                    && matches!(news.detail, encoder_studio::device::biss::procedure::Detail::Begins)
+                    && matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::Detail::Begins)
                 {
                     encoder.with(spoil);
                 }

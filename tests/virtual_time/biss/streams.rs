@@ -6,14 +6,14 @@ use std::time::Duration;
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
-use encoder_studio::device::biss::{Error, FrameRun, Sample, Station, Supply};
+use encoder_studio::devices::biss::jobs::{Biss, BissJob, JobError};
+use encoder_studio::devices::biss::procedures::{Error, FrameRun, Sample, Station, Supply};
+use encoder_studio::devices::biss::profile::RegisterRange;
 use encoder_studio::link::{Clock, VirtualClock};
-use encoder_studio::profile::biss::RegisterRange;
 use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
-use encoder_studio::worker::biss::{Biss, BissJob, JobError};
 use encoder_studio::worker::{Session, Watched};
 
 use super::support::{Way, at, pairs};

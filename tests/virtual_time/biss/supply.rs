@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use encoder_studio::buses::bridge::procedures::SupplyAfter::{AsFound, Off, On};
-use encoder_studio::device::biss::write::Left;
+use encoder_studio::devices::biss::jobs::{BissJob, JobError};
+use encoder_studio::devices::biss::procedures::write::Left;
 use encoder_studio::units::SupplyVoltage;
-use encoder_studio::worker::biss::{BissJob, JobError};
 
 use super::hands::{Hands, data};
 use super::support::{Bench, at};

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use encoder_studio::buses::bridge::protocol::{
     BissStatus, Capabilities, ErrorCode, Hello, Message, Receiver, Reply, Request,
 };
-use encoder_studio::device::biss::{self as device, Error, FrameSource, Station};
-use encoder_studio::protocol::biss::{Crc, Descriptions, Layout, Reading};
+use encoder_studio::devices::biss::procedures::{self as device, Error, FrameSource, Station};
+use encoder_studio::devices::biss::protocol::{Crc, Descriptions, Layout, Reading};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::{CharacterFormat, Moment};
 

@@ -3,16 +3,16 @@
 
 use std::time::Duration;
 
-use encoder_studio::device::biss::Error;
-use encoder_studio::device::biss::procedure::{Failure, Outcome};
-use encoder_studio::device::biss::write::Left;
+use encoder_studio::devices::biss::jobs::{Attendance, BissJob, Change, Commit, JobError, WEAR_LIMIT, device_key};
+use encoder_studio::devices::biss::procedures::Error;
+use encoder_studio::devices::biss::procedures::procedure::{Failure, Outcome};
+use encoder_studio::devices::biss::procedures::write::Left;
+use encoder_studio::devices::biss::profile::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
+use encoder_studio::devices::biss::protocol::{Filter, PresetValue};
 use encoder_studio::kinds::FORMATS;
-use encoder_studio::profile::biss::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
 use encoder_studio::profile::{Consent, Document};
-use encoder_studio::protocol::biss::{Filter, PresetValue};
 use encoder_studio::store::{Entry, Logbook, Outcome as Noted, read_text};
 use encoder_studio::worker::NotBegun;
-use encoder_studio::worker::biss::{Attendance, BissJob, Change, Commit, JobError, WEAR_LIMIT, device_key};
 use jiff::Timestamp;
 
 use super::hands::{
@@ -184,8 +184,9 @@ fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
     assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { .. })), "{error}");
     assert_eq!((seen, bench.flash_cycles()), (None, before));
     let consent = Consent::to(prepared.plan.id());
-    let attendance =
-        Attendance::Nobody(encoder_studio::device::biss::procedure::Unattended { patience: Duration::ZERO });
+    let attendance = Attendance::Nobody(encoder_studio::devices::biss::procedures::procedure::Unattended {
+        patience: Duration::ZERO,
+    });
     bench.run(BissJob::Commit(Box::new(Commit { prepared, consent, force_wear: true, attendance }))).unwrap();
     assert_eq!(bench.flash_cycles() - before, 1);
 }
@@ -210,8 +211,9 @@ fn a_worn_encoder_is_written_only_where_that_is_wished() {
     bench.commit_alone(&one, Duration::ZERO).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     let consent = Consent::to(prepared.plan.id());
-    let attendance =
-        Attendance::Nobody(encoder_studio::device::biss::procedure::Unattended { patience: Duration::ZERO });
+    let attendance = Attendance::Nobody(encoder_studio::devices::biss::procedures::procedure::Unattended {
+        patience: Duration::ZERO,
+    });
     bench.run(BissJob::Commit(Box::new(Commit { prepared, consent, force_wear: true, attendance }))).unwrap();
     assert_eq!(bench.flash_cycles() - before, 3);
 }
@@ -273,7 +275,7 @@ fn what_cannot_be_read_back_is_unclear() {
         let error = bench
             .run_watched(commit, &mut |news| {
                 hands.hear(news);
-                if news.step == encoder_studio::device::biss::procedure::Step::Save {
+                if news.step == encoder_studio::devices::biss::procedures::procedure::Step::Save {
                     let next = Some(counter());
                     match lost {
                         "answer" => tap.lock().unwrap().swallow_reply = next,

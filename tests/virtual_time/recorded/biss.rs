@@ -1,11 +1,11 @@
 //! Writes to a BiSS encoder, at its configuration pin and behind an adapter.
 
-use encoder_studio::device::biss::Error;
-use encoder_studio::device::biss::procedure::Failure;
-use encoder_studio::device::biss::write::Left;
-use encoder_studio::profile::biss::{Bank, MotorSource, MountingRun, PresetParts};
-use encoder_studio::protocol::biss::PresetValue;
-use encoder_studio::worker::biss::{Change, JobError};
+use encoder_studio::devices::biss::jobs::{Change, JobError};
+use encoder_studio::devices::biss::procedures::Error;
+use encoder_studio::devices::biss::procedures::procedure::Failure;
+use encoder_studio::devices::biss::procedures::write::Left;
+use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, PresetParts};
+use encoder_studio::devices::biss::protocol::PresetValue;
 
 use super::{Ready, compare, listen};
 use crate::biss::hands::{Hands, calibration, data, exchanges, filter, preset, restore_of, wiegand_test};

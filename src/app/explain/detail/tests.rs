@@ -4,13 +4,14 @@ use super::*;
 use std::time::Duration;
 
 use crate::app::Language::{English, German};
-use crate::device::{biss, ssi};
+use crate::device::ssi;
+use crate::devices::biss::procedures as biss;
+use crate::devices::biss::profile::BissProfile;
 use crate::devices::hiperface::procedures::Station;
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::sim::Config;
 use crate::link::{LinkUrl, Query, read_trace};
-use crate::profile::biss::BissProfile;
 use crate::profile::interbus::InterbusProfile;
 use crate::profile::ssi::SsiProfile;
 use crate::profile::{Document, Profile};

@@ -1,5 +1,5 @@
 //! What a host asks and an encoder answers (manual 5.2). Registers have one number each: see
-//! [`RegisterAddress::global`](crate::protocol::biss::RegisterAddress::global).
+//! [`RegisterAddress::global`](crate::devices::biss::protocol::RegisterAddress::global).
 
 use super::frame::{Frame, NODE};
 use super::position::PositionWord;

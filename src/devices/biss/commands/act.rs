@@ -1,0 +1,240 @@
+//! `do`: filter, preset, and the procedures that a person at the motor leads. Without a terminal nobody can be asked what
+//! turns the motor: then --yes says that it does not need this encoder.
+
+use std::path::Path;
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
+use super::run::{Runner, registers};
+use crate::app::{Text, explain};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::check;
+use crate::cli::consent::{answer, ask, can_ask, require_consent};
+use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::output::Output;
+use crate::cli::profiles::{load_to_write, show_done};
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Done, Failure, Result};
+use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
+use crate::devices::biss::procedures::procedure::Outcome;
+use crate::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RegisterRange};
+use crate::devices::biss::protocol::{Filter, KIND, PresetValue};
+use crate::devices::biss::state::explain as words;
+
+/// How long a person may take to turn the motor as it is needed.
+const PERSON: Duration = Duration::from_secs(300);
+
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+    let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    if let Some((_, option)) = [(act.exact, "--exact"), (act.kit, "--kit")].into_iter().find(|(given, _)| *given) {
+        return Err(no_option(option, KIND));
+    }
+    let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
+    match (act.action, words.as_slice()) {
+        (Action::Check, []) => check_device(common, output),
+        (Action::LeadBack, []) => lead_back(common, output, act),
+        (Action::Calibrate, []) => {
+            guided(common, output, act, MountingRun { calibrate: true, ..MountingRun::default() })
+        }
+        (Action::WiegandTest, [] | ["save"]) => {
+            let run = MountingRun { wiegand: Some(!words.is_empty()), ..MountingRun::default() };
+            guided(common, output, act, run)
+        }
+        (Action::Mounting, words) => guided(common, output, act, mounting(output, words)?),
+        (Action::Filter, [name]) => {
+            let filter = match *name {
+                "balanced" => Filter::Balanced,
+                "dynamic" => Filter::Dynamic,
+                _ => return Err(takes("balanced or dynamic")),
+            };
+            change(common, output, act, |_| Ok(Change::SelectFilter(filter)))
+        }
+        (Action::Preset, words) => {
+            let wish = Wish::read(words)?;
+            change(common, output, act, |runner| wish.change(runner))
+        }
+        (Action::Check | Action::LeadBack | Action::Calibrate, _) => Err(takes("no argument")),
+        (Action::WiegandTest, _) => Err(takes("nothing or \"save\"")),
+        (Action::Filter, _) => Err(takes("balanced or dynamic")),
+        (other, _) => {
+            Err(no_action(other, KIND, "check, calibrate, wiegand-test, filter, preset, lead-back and mounting"))
+        }
+    }
+}
+
+fn check_device(common: &Common, output: &Output) -> Result {
+    match Runner::open(common)?.run(BissJob::Check)? {
+        BissOutput::Check(lines) => check::show(output, &words::check(&lines)),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
+    // Nothing is stored by it, so that it needs no consent without a terminal; somebody who sits there may have entered
+    // what it discards.
+    if !act.consent.yes && can_ask() && !ask("Values that were entered and not saved will be lost. Lead back? [y/N] ") {
+        return Err(Failure::Failed(vec!["Not confirmed; the encoder is left as it is.".to_owned()]));
+    }
+    match Runner::open(common)?.run(BissJob::LeadBack)? {
+        BissOutput::LedBack(mode) => {
+            let text = format!("in operation, password cleared; it was in mode {mode}\n");
+            output.show(&json!({"done": "lead-back", "mode": mode.byte()}), &text)?;
+            Ok(Done::Well)
+        }
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// A run that somebody at the motor leads, or the measurement alone.
+fn guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Result {
+    require_consent(&act.consent)?;
+    let motor = if run.needs_motor() { motor(output, act)? } else { MotorSource::Other };
+    if act.consent.yes && run.calibrate {
+        output.remark(&format!("Calibration: {CALIBRATION}."));
+    }
+    change(common, output, act, |_| Ok(Change::Guided { run, motor }))
+}
+
+fn motor(output: &Output, act: &Do) -> Result<MotorSource> {
+    if act.consent.yes || !can_ask() {
+        output.remark(
+            "--yes: what turns the motor does not need this encoder. A run starts when direction and speed fit.",
+        );
+        return Ok(MotorSource::Other);
+    }
+    let question = "What turns the motor?\n  1  something that does not need this encoder: another motor, an open loop\n  \
+                    2  a drive that closes its loop on this encoder\n1 or 2: ";
+    match answer(question).as_str() {
+        "1" => Ok(MotorSource::Other),
+        "2" => Ok(MotorSource::ThisEncoder),
+        _ => Err(Failure::Failed(vec!["Not answered; nothing was done.".to_owned()])),
+    }
+}
+
+fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
+    require_consent(&act.consent)?;
+    let mut runner = Runner::open(common)?;
+    let change = change(&mut runner)?;
+    let prepared = prepare(&mut runner, change)?;
+    let operations = operations(&prepared.plan);
+    let usual = if can_ask() { PERSON } else { super::PATIENCE };
+    let patience = act.timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
+    let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
+    let name = action_name(act.action);
+    let done = show_done(output, &name, &operations, &spent, &results(&outcomes), &results_text(&outcomes))?;
+    if outcomes.iter().all(passes) {
+        Ok(done)
+    } else {
+        Err(failed(&Text::new("biss_cli.not_passed").with("what", name)))
+    }
+}
+
+/// An operation that is done, with a result that is good where it has one.
+fn passes(outcome: &Outcome) -> bool {
+    match outcome {
+        Outcome::Tested(report) => report.result.passes(),
+        Outcome::Skipped { .. } => false,
+        Outcome::Stored { .. }
+        | Outcome::PresetStored { .. }
+        | Outcome::PresetFired { .. }
+        | Outcome::FilterSelected(_)
+        | Outcome::Calibrated(_) => true,
+    }
+}
+
+/// What is asked of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. With neither calibration nor
+/// test named, both are meant.
+fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
+    let mut run = MountingRun::default();
+    let (mut tests, mut saves) = (false, false);
+    for word in words {
+        match (*word, word.split_once('=')) {
+            ("calibrate", _) => run.calibrate = true,
+            ("wiegand-test", _) => tests = true,
+            ("save", _) => saves = true,
+            (_, Some(("preset", value))) => run.preset = Some((place(value)?, PresetParts::Both)),
+            (_, Some(("data", file))) => run.data = Some(Box::new(profile(output, Path::new(file))?)),
+            _ => {
+                let form = "calibrate, wiegand-test, save, preset=ST,MT and data=FILE, as many as wanted";
+                return Err(Failure::Usage(format!("{word:?} is no part of a mounting; it takes {form}")));
+            }
+        }
+    }
+    if !run.calibrate && !tests {
+        (run.calibrate, tests) = (true, true);
+    }
+    run.wiegand = tests.then_some(saves);
+    Ok(run)
+}
+
+fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
+    load_to_write(output, file)?.into_profile().map_err(|error| failed(&explain::profile(file, &error)))
+}
+
+fn place(text: &str) -> Result<PresetValue> {
+    let numbers: Vec<&str> = text.split(',').collect();
+    match numbers.as_slice() {
+        [singleturn] => value(singleturn, "0"),
+        [singleturn, multiturn] => value(singleturn, multiturn),
+        _ => Err(Failure::Usage(format!("{text:?} is not a place, as 98304 or 98304,0"))),
+    }
+}
+
+/// What the registers can hold; the encoder's widths may allow less.
+fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
+    let part = |name: &str, text: &str| {
+        let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{name}: {text:?} is not a number")))?;
+        u32::try_from(number).ok().filter(|part| *part < 1 << 24).ok_or_else(|| out_of_range(name, text, 0, 0xFF_FFFF))
+    };
+    let (steps, turns) = (part("singleturn", singleturn)?, part("multiturn", multiturn)?);
+    PresetValue::new(steps, turns).ok_or_else(|| out_of_range("singleturn", singleturn, 0, 0xFF_FFFF))
+}
+
+/// `[ST [MT]] [singleturn|multiturn]`.
+struct Wish<'a> {
+    singleturn: Option<&'a str>,
+    multiturn: Option<&'a str>,
+    parts: PresetParts,
+}
+
+impl<'a> Wish<'a> {
+    fn read(words: &[&'a str]) -> Result<Self> {
+        let (numbers, parts) = match words {
+            [numbers @ .., "singleturn"] => (numbers, PresetParts::Singleturn),
+            [numbers @ .., "multiturn"] => (numbers, PresetParts::Multiturn),
+            numbers => (numbers, PresetParts::Both),
+        };
+        let (singleturn, multiturn) = match (numbers, parts) {
+            ([], _) => (None, None),
+            ([singleturn], PresetParts::Both | PresetParts::Singleturn) => (Some(*singleturn), None),
+            ([singleturn, multiturn], _) => (Some(*singleturn), Some(*multiturn)),
+            _ => {
+                let form = "the action takes [ST [MT]], then nothing, singleturn or (behind both numbers) multiturn";
+                return Err(Failure::Usage(form.to_owned()));
+            }
+        };
+        // Whatever is no number is found before the link is opened.
+        value(singleturn.unwrap_or("0"), multiturn.unwrap_or("0"))?;
+        Ok(Wish { singleturn, multiturn, parts })
+    }
+
+    /// A multiturn that is not given is 0; where it is not preset, the stored one stays.
+    fn change(&self, runner: &mut Runner) -> Result<Change> {
+        let stored = |runner: &mut Runner| -> Result<String> {
+            let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };
+            let bytes = registers(runner, range)?;
+            Ok(<[u8; 6]>::try_from(bytes).map_or(0, |bytes| PresetValue::parse(bytes).multiturn()).to_string())
+        };
+        let value = match (self.singleturn, self.multiturn) {
+            (None, _) => None,
+            (Some(singleturn), Some(multiturn)) => Some(value(singleturn, multiturn)?),
+            (Some(singleturn), None) if self.parts == PresetParts::Singleturn => {
+                Some(value(singleturn, &stored(runner)?)?)
+            }
+            (Some(singleturn), None) => Some(value(singleturn, "0")?),
+        };
+        Ok(Change::Preset { value, parts: Some(self.parts) })
+    }
+}

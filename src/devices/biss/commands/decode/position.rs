@@ -1,0 +1,77 @@
+//! A position frame of the kit encoder: 16 bits of turns, 17 of steps, error, warning, CRC-6. A position word is its turns
+//! and steps alone.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::form;
+use crate::bits::{hex, hex_compact};
+use crate::buses::ubicom::protocol::PositionWord;
+use crate::cli::decode::Explained;
+use crate::devices::biss::protocol::{FrameError, Layout, Reading};
+
+/// Bytes that hold a frame, right-justified.
+pub(super) const BYTES: usize = 6;
+
+/// Hexadecimal digits of a position word as `position` and the window write it: 33 bits.
+pub(super) const WORD_DIGITS: usize = 9;
+
+/// As many bytes as a frame needs; `None` where they are more or have other bits than it.
+pub(super) fn of_bytes(bytes: &[u8]) -> Option<Explained> {
+    let raw = bytes.iter().fold(0, |raw: u64, byte| raw << 8 | u64::from(*byte));
+    let fits = bytes.len() == BYTES && raw >> Layout::default().bits() == 0;
+    fits.then(|| Explained { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })
+}
+
+/// What the bits say that were written like this.
+pub(super) fn explain(raw: u64, shown: String) -> Explained {
+    let mut more = form("position frame");
+    let meaning = meaning(raw, &mut more);
+    Explained { compact: shown.clone(), shown, meaning, more }
+}
+
+/// What a position word says.
+pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
+    let layout = Layout::default();
+    let mut more = form("position word");
+    let bits = layout.multiturn_bits() + layout.singleturn_bits();
+    let meaning = match PositionWord::new(raw).and_then(|word| layout.reading_of(word)) {
+        Some(reading) => Ok(vec![place(&layout, &reading, raw, &mut more)]),
+        None => Err(format!("the position word of this encoder has {bits} bits, this one more")),
+    };
+    Explained { compact: shown.clone(), shown, meaning, more }
+}
+
+/// Turns, steps and angle, for a person and for a script.
+fn place(layout: &Layout, reading: &Reading, raw: u64, more: &mut Map<String, Json>) -> String {
+    let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees(reading));
+    let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];
+    more.extend(pairs.map(|(key, value)| (key.to_owned(), value)));
+    format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
+}
+
+/// A line each; or why they are no frame.
+pub(super) fn meaning(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
+    let layout = Layout::default();
+    match layout.parse(raw) {
+        Ok(reading) => {
+            let word = layout.steps(&reading);
+            let mut lines = vec![place(&layout, &reading, word, more)];
+            let flags = [("error", reading.error), ("warning", reading.warning)];
+            more.extend(flags.map(|(key, value)| (key.to_owned(), json!(value))));
+            lines.push(match (reading.error, reading.warning) {
+                (true, true) => "error and warning bit: the position is invalid".to_owned(),
+                (true, false) => "error bit: the position is invalid".to_owned(),
+                (false, true) => "warning bit: the position is valid".to_owned(),
+                (false, false) => "no error, no warning".to_owned(),
+            });
+            Ok(lines)
+        }
+        Err(FrameError::Crc { expected, got }) => {
+            let bits = layout.crc_bits();
+            Err(format!("CRC-{bits} of the position frame is {got:02X} where {expected:02X} was expected"))
+        }
+        Err(FrameError::StuckLow) => Err("all bits are 0: the line stays low".to_owned()),
+        Err(FrameError::StuckHigh) => Err("all bits are 1: the line stays high".to_owned()),
+        Err(FrameError::Long { bits }) => Err(format!("the position frame of this encoder has {bits} bits")),
+    }
+}

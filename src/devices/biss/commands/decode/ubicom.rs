@@ -1,0 +1,102 @@
+//! Frames of UBICOM, one behind the other. Register numbers are taken low byte first.
+
+use super::form;
+use crate::bits::ByteOrder;
+use crate::bits::{hex, hex_compact};
+use crate::buses::ubicom::protocol::{Frame, NODE, PositionWord, Reply, Request, Written};
+use crate::cli::decode::Explained;
+use crate::devices::biss::commands::words;
+use crate::devices::biss::protocol::{Layout, RegisterAddress};
+
+/// What the frames say. `asked` is the request before them, and the last of theirs afterwards.
+pub(super) fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explained> {
+    let mut explained = Vec::new();
+    let mut request = *asked;
+    let mut rest = bytes;
+    while !rest.is_empty() {
+        let (own, more) = rest.split_at_checked(length(rest)).unwrap_or((rest, &[]));
+        rest = more;
+        let meaning = match Frame::parse(own) {
+            Ok(frame) => meaning(&frame, &mut request),
+            Err(error) => Err(format!("no UBICOM frame: {error}")),
+        };
+        explained.push(Explained { shown: hex(own), compact: hex_compact(own), meaning, more: form("UBICOM") });
+    }
+    if explained.iter().all(|one| one.meaning.is_ok()) {
+        *asked = request;
+    }
+    explained
+}
+
+/// Of the frame that begins these bytes, as its header says.
+fn length(bytes: &[u8]) -> usize {
+    match bytes {
+        [_, _, _, low, high, ..] => usize::from(u16::from_le_bytes([*low, *high])) + Frame::OVERHEAD,
+        _ => bytes.len(),
+    }
+}
+
+fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<String>, String> {
+    let mut lines = Vec::new();
+    if frame.address != NODE {
+        lines.push(format!("of node 0x{:02X}, which no encoder has", frame.address));
+    }
+    if let Ok(asked) = Request::parse(frame, ByteOrder::LowFirst) {
+        lines.push(match asked {
+            Request::Read { register } => format!("read register {}", register_words(register)),
+            Request::Write { register, value } => {
+                format!("write 0x{value:02X} to register {}", register_words(register))
+            }
+            Request::Position { argument: 0x01 } => "read the position".to_owned(),
+            Request::Position { argument } => format!("read the position, with the argument 0x{argument:02X}"),
+        });
+        *request = Some(asked);
+        return Ok(lines);
+    }
+    let unknown = |error: &dyn std::fmt::Display| format!("a UBICOM frame that is neither request nor reply: {error}");
+    let command = crate::buses::ubicom::protocol::Command::from_byte(frame.command)
+        .ok_or_else(|| unknown(&format!("0x{:02X} is not a command", frame.command)))?;
+    let own = Frame { address: NODE, ..*frame };
+    lines.push(match Reply::parse(&own, command).map_err(|error| unknown(&error))? {
+        Reply::Value(value) => match request.take() {
+            Some(Request::Read { register }) => value_words(register, value),
+            _ => format!("value 0x{value:02X}"),
+        },
+        Reply::Written(Written::Acknowledged) => "written".to_owned(),
+        Reply::Written(Written::Refused) => "refused: not written".to_owned(),
+        Reply::Written(Written::Unknown(byte)) => format!("neither acknowledged nor refused: 0x{byte:02X}"),
+        Reply::Position(word) => position_words(word),
+    });
+    *request = None;
+    Ok(lines)
+}
+
+/// The place, and its name where the kit encoder has one there.
+fn register_words(register: u16) -> String {
+    match RegisterAddress::from_global(register) {
+        None => format!("0x{register:04X}, which is behind the last"),
+        Some(address) => match words::name(address) {
+            Some(name) => format!("{address} ({name})"),
+            None => address.to_string(),
+        },
+    }
+}
+
+fn value_words(register: u16, value: u8) -> String {
+    let Some(address) = RegisterAddress::from_global(register) else { return format!("value 0x{value:02X}") };
+    match words::said(address, &[value]) {
+        Some(said) => format!("register {} is 0x{value:02X}: {said}", register_words(register)),
+        None => format!("register {} is 0x{value:02X}", register_words(register)),
+    }
+}
+
+fn position_words(word: PositionWord) -> String {
+    let layout = Layout::default();
+    match layout.reading_of(word) {
+        None => format!("position 0x{:X}, which has more than 33 bits", word.word()),
+        Some(reading) => {
+            let (turns, steps) = (reading.multiturn, reading.singleturn);
+            format!("position: turn {turns}, step {steps} of 131072, {:.6}°", layout.degrees(&reading))
+        }
+    }
+}

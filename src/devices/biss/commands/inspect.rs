@@ -1,0 +1,266 @@
+//! Commands that only look: `identify`, `status`, `position`, `read`.
+
+use std::time::{Duration, Instant};
+
+use serde_json::{Value as Json, json};
+
+use super::run::{Runner, crc_errors, identity, read_registers, registers};
+use super::words;
+use crate::bits::{hex, hex_compact};
+use crate::cli::args::{Common, Position};
+use crate::cli::output::{Lines, Output, say};
+use crate::cli::positions::readings;
+use crate::cli::runner::{Ended, unexpected};
+use crate::cli::{Done, Result};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
+use crate::devices::biss::procedures::{Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Way};
+use crate::devices::biss::profile::RegisterRange;
+use crate::devices::biss::protocol::{KIND, Name, Role};
+use crate::devices::biss::state::explain as explained;
+
+/// Without a good frame for so long, nothing but noise comes.
+const NOISE: Duration = Duration::from_secs(5);
+
+pub(super) fn identify(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let identity = identity(&mut runner)?;
+    let celsius = temperature(&mut runner, &identity)?;
+    let json = json!({
+        "device": KIND,
+        "name": identity.description.name(),
+        "profile_id": format!("{:04X}", identity.kind.profile.word()),
+        "serial_number": identity.serial_number,
+        "firmware": identity.firmware.map(|firmware| firmware.to_string()),
+        "device_id": hex_compact(&identity.kind.device_id),
+        "manufacturer": manufacturer(&identity),
+        "multiturn_bits": identity.multiturn_bits(),
+        "singleturn_bits": identity.singleturn_bits(),
+        "temperature_c": celsius,
+        "adapter": identity.adapter.as_ref().map(|hello| &hello.name),
+    });
+    output.show(&json, &identity_text(&identity, celsius))?;
+    Ok(Done::Well)
+}
+
+/// Two letters, as all manufacturers have; else their bytes.
+fn manufacturer(identity: &Identity) -> String {
+    let bytes = &identity.kind.manufacturer;
+    let text = std::str::from_utf8(bytes).ok().filter(|text| text.chars().all(|c| c.is_ascii_graphic()));
+    text.map_or_else(|| hex_compact(bytes), str::to_owned)
+}
+
+/// Degrees Celsius, where the encoder has a register for them.
+fn temperature(runner: &mut Runner, identity: &Identity) -> Result<Option<f64>> {
+    let Some(register) = identity.description.with_role(Role::Temperature) else { return Ok(None) };
+    let Some(range) = RegisterRange::new(register.address, register.width) else { return Ok(None) };
+    Ok(words::quantity(register, &registers(runner, range)?))
+}
+
+fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
+    let unknown = || "not told by this encoder".to_owned();
+    let kind = &identity.kind;
+    let frame = match identity.source {
+        FrameSource::DataSheet => "as its data sheet says",
+        FrameSource::Description => "as its description says",
+        FrameSource::Given => "as the link says",
+        FrameSource::Checksum => "found by its checksum: how many bits are turns is not known",
+        FrameSource::Assumed => "taken for granted: nothing tells it",
+    };
+    let (multiturn, singleturn) = (identity.layout.multiturn_bits(), identity.layout.singleturn_bits());
+    let mut lines = Lines::default();
+    lines
+        .add("encoder", identity.description.name())
+        .add("profile", format!("0x{:04X}", kind.profile.word()))
+        .add("manufacturer", manufacturer(identity))
+        .add("device ID", hex(&kind.device_id))
+        .add("serial number", if identity.serial_bytes.is_empty() { unknown() } else { serial(identity) })
+        .add("firmware", identity.firmware.map_or_else(unknown, |firmware| firmware.to_string()))
+        .add("position", format!("{multiturn} bits of turns, {singleturn} of steps, {frame}"))
+        .add("temperature", celsius.map_or_else(unknown, |celsius| format!("{celsius} °C")));
+    if let Some(mismatch) = &identity.mismatch {
+        lines.add("note", mismatch);
+    }
+    if let Some(hello) = &identity.adapter {
+        lines.add("adapter", format!("{}, serial number {}, firmware {}", hello.name, hello.serial, hello.firmware));
+    }
+    lines.text()
+}
+
+/// The number, and its bytes: which of them is the highest no manual says.
+fn serial(identity: &Identity) -> String {
+    format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
+}
+
+pub(super) fn status(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let status = match runner.run(BissJob::Status)? {
+        BissOutput::Status(status) => *status,
+        other => return Err(unexpected(&other)),
+    };
+    let position_error = status.position.and_then(|reading| reading.error);
+    let errors = status.errors.as_ref().map_or_else(Vec::new, list);
+    let json = json!({
+        "ok": errors.is_empty() && position_error != Some(true),
+        "errors": errors,
+        "warnings": status.warnings.as_ref().map_or_else(Vec::new, list),
+        "position_error": position_error,
+        "position_warning": status.position.and_then(|reading| reading.warning),
+        "mode": status.mode.map(|mode| mode.byte()),
+        "temperature_c": status.celsius,
+        "filter": status.filter.map(words::filter),
+    });
+    output.show(&json, &status_text(&status))?;
+    Ok(Done::Well)
+}
+
+fn list(bits: &Bits) -> Vec<Json> {
+    bits.set
+        .iter()
+        .map(|(bit, name)| json!({"code": bit, "text": bit_words(*bit, name.as_ref().map(Name::english))}))
+        .collect()
+}
+
+fn bit_words(bit: u8, name: Option<&str>) -> String {
+    name.map_or_else(|| format!("bit {bit}, which is not described"), str::to_owned)
+}
+
+fn status_text(status: &Status) -> String {
+    let mut lines = Lines::default();
+    for (label, bits) in [("errors", &status.errors), ("warnings", &status.warnings)] {
+        match bits {
+            None => lines.add(label, "not told by this encoder"),
+            Some(bits) if bits.set.is_empty() => lines.add(label, "none"),
+            Some(bits) => {
+                let named = bits.set.iter().map(|(bit, name)| bit_words(*bit, name.as_ref().map(Name::english)));
+                lines.add(label, named.collect::<Vec<_>>().join(", "))
+            }
+        };
+    }
+    if let Some(mode) = status.mode {
+        lines.add("mode", mode);
+    }
+    if let Some(celsius) = status.celsius {
+        lines.add("temperature", format!("{celsius} °C"));
+    }
+    if let Some(filter) = status.filter {
+        lines.add("filter", words::filter(filter));
+    }
+    match &status.position {
+        None => lines.add("position", "none that can be read"),
+        Some(reading) => lines.add("position", format!("{}{}", place(reading), flags(reading))),
+    };
+    lines.text()
+}
+
+pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+    let mut runner = Runner::open(common)?;
+    let over_biss = runner.kept == Way::Adapter;
+    if position.csv {
+        output.print("t_s,raw,turns,steps,degrees,valid,warning\n")?;
+    }
+    let (mut wrong, mut good_at) = (0, Instant::now());
+    let ended = readings(
+        &mut runner,
+        position,
+        || BissJob::Position,
+        |runner, came| {
+            wrong += crc_errors(runner);
+            let reading = match came {
+                Ok(BissOutput::Position(reading)) => reading,
+                Ok(other) => return Err(unexpected(&other)),
+                // No line, and the next frame may be a good one.
+                Err(error) if is_noise(&error) && good_at.elapsed() < NOISE => return Ok(false),
+                Err(error) => {
+                    if let JobError::Device(Error::WrongWidths { frames, .. }) = &*error {
+                        wrong += u64::from(*frames);
+                    }
+                    return Err(Ended::<Biss>::Job(error).into_failure());
+                }
+            };
+            (wrong, good_at) = (wrong + u64::from(reading.crc_errors), Instant::now());
+            if position.csv {
+                output.print(&row(&reading))?
+            } else {
+                show(output, &reading)?
+            }
+            Ok(true)
+        },
+    );
+    if over_biss && (ended.is_ok() || wrong > 0) {
+        say(&format!("crc errors: {wrong}\n"));
+    }
+    ended
+}
+
+/// A frame came, and its checksum was wrong each time.
+fn is_noise(error: &JobError) -> bool {
+    matches!(error, JobError::Device(Error::Damaged { cause: Damage::Frame(_), .. }))
+}
+
+fn show(output: &Output, reading: &PositionReading) -> Result<()> {
+    let t = reading.at.since_start().as_secs_f64();
+    let json = json!({
+        "t_s": t,
+        "raw": reading.raw().value,
+        "frame": reading.frame.map(|frame| frame.to_string()),
+        "turns": reading.is_split_known.then_some(reading.turns),
+        "steps": reading.is_split_known.then_some(reading.steps),
+        "degrees": reading.angle(),
+        "valid": reading.is_valid(),
+        "warning": reading.warning,
+    });
+    let frame = reading.frame.map_or_else(String::new, |frame| format!("  frame {frame}"));
+    output.show(&json, &format!("{t:10.3} s  0x{}  {}{}{frame}\n", reading.raw(), place(reading), flags(reading)))
+}
+
+fn place(reading: &PositionReading) -> String {
+    if !reading.is_split_known {
+        return format!("{} (turns and steps are not known: mt= and st= in the link give them)", reading.position());
+    }
+    let steps = 1u64 << reading.singleturn_bits;
+    format!("turn {}, step {} of {steps}, {:.6}°", reading.turns, reading.steps, reading.degrees())
+}
+
+fn flags(reading: &PositionReading) -> &'static str {
+    match (reading.is_valid(), reading.warning) {
+        (false, _) => "  not valid",
+        (true, Some(true)) => "  warning",
+        (true, _) => "",
+    }
+}
+
+fn row(reading: &PositionReading) -> String {
+    let known = |words: String| if reading.is_split_known { words } else { String::new() };
+    format!(
+        "{:.6},{},{},{},{},{},{}\n",
+        reading.at.since_start().as_secs_f64(),
+        reading.raw().value,
+        known(reading.turns.to_string()),
+        known(reading.steps.to_string()),
+        known(reading.degrees().to_string()),
+        reading.is_valid(),
+        reading.warning.map_or_else(String::new, |warning| warning.to_string()),
+    )
+}
+
+pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
+    let range = super::item(item)?;
+    let mut runner = Runner::open(common)?;
+    let identity = identity(&mut runner)?;
+    let ReadRegisters { bytes, unsaved, .. } = read_registers(&mut runner, range)?;
+    if let Some(mode) = unsaved {
+        output.remark(&explained::unsaved(mode).terminal());
+    }
+    let said = identity.description.at(range.start()).and_then(|register| words::of_run(register, range, &bytes));
+    let (value, shown) = match bytes.as_slice() {
+        [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),
+        bytes => (json!(hex_compact(bytes)), hex(bytes)),
+    };
+    let mut json = json!({"item": range.to_string(), "value": value});
+    if let (Some(said), Some(keys)) = (&said, json.as_object_mut()) {
+        keys.insert("text".to_owned(), json!(said));
+    }
+    let text = said.map_or_else(|| format!("{shown}\n"), |said| format!("{shown}  {said}\n"));
+    output.show(&json, &text)?;
+    Ok(Done::Well)
+}

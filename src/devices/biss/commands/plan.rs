@@ -1,0 +1,164 @@
+//! A plan for a BiSS encoder: shown, agreed to, carried out; and what came of it.
+
+use std::time::Duration;
+
+use serde_json::{Value as Json, json};
+
+use super::run::Runner;
+use super::words;
+use crate::bits::hex_compact;
+use crate::cli::Result;
+use crate::cli::args::Consenting;
+use crate::cli::consent::{agree, check_wear};
+use crate::cli::output::Output;
+use crate::cli::plan::{self, Shown, Spent, Step, warn};
+use crate::cli::runner::unexpected;
+use crate::devices::biss::jobs::{Attendance, Biss, BissJob, BissOutput, Change, Commit, Prepared, WEAR_LIMIT};
+use crate::devices::biss::procedures::procedure::{Motion, Outcome, Unattended};
+use crate::devices::biss::procedures::write::Written;
+use crate::devices::biss::profile::{BissPlan, Op, PresetParts, RegisterRange};
+use crate::devices::biss::protocol::PresetValue;
+use crate::devices::biss::state::explain as explained;
+use crate::profile::{Consent, Operation as _};
+
+/// Manual 6.4.
+pub(super) const CALIBRATION: &str =
+    "counterclockwise, then clockwise; if the clockwise run fails, the table of the calibration is lost";
+
+/// Makes a plan for a change; nothing is written.
+pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
+    match runner.run(BissJob::Prepare(change))? {
+        BissOutput::Prepared(prepared) => Ok(*prepared),
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing. Nobody but the measurement
+/// says when a run may start: `patience` is how long that is waited for.
+pub(super) fn commit(
+    runner: &mut Runner,
+    output: &Output,
+    prepared: Prepared,
+    consent: &Consenting,
+    patience: Duration,
+) -> Result<(Spent, Vec<Outcome>)> {
+    if prepared.plan.is_empty() {
+        return Ok((Spent::default(), Vec::new()));
+    }
+    check_wear::<Biss>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT)?;
+    if let Some(wear) = explained::wear(&prepared) {
+        output.remark(&wear.terminal());
+    }
+    agree(output, consent, &shown(&prepared).text)?;
+    let granted = Consent::to(prepared.plan.id());
+    let attendance = Attendance::Nobody(Unattended { patience });
+    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear, attendance };
+    let committed = match runner.run(BissJob::Commit(Box::new(commit)))? {
+        BissOutput::Committed(committed) => *committed,
+        other => return Err(unexpected(&other)),
+    };
+    warn(output, committed.logbook_warning.as_ref());
+    let Written { written, verified, write_cycles, outcomes, .. } = committed.written;
+    Ok((Spent { written, verified, write_cycles, backup: committed.backup }, outcomes))
+}
+
+/// The plan for a person and for a script: each operation old → new, and what it costs.
+pub(super) fn shown(prepared: &Prepared) -> Shown {
+    let plan = &prepared.plan;
+    let lines = plan::lines(plan.ops.iter().flat_map(steps));
+    let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
+    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+}
+
+/// The operations as JSON; registers that are saved together cost nothing by themselves.
+pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
+    plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
+}
+
+fn steps(op: &Op) -> Vec<Step> {
+    let cost = op.write_cycles();
+    let step = |old: Option<String>, new: Option<String>| vec![Step { item: op.item(), old, new, write_cycles: cost }];
+    let byte = |byte: u8| format!("{byte:02X}");
+    match op {
+        Op::StoreData { area, registers } => {
+            let mut steps: Vec<Step> = op
+                .ranges()
+                .into_iter()
+                .map(|range: RegisterRange| {
+                    let own = registers.iter().filter(|change| range.contains(change.address));
+                    let (old, new): (Vec<u8>, Vec<u8>) = own.map(|change| (change.old, change.new)).unzip();
+                    let (old, new) = (Some(hex_compact(&old)), Some(hex_compact(&new)));
+                    Step { item: range.to_string(), old, new, write_cycles: 0 }
+                })
+                .collect();
+            steps.push(Step {
+                item: area.name.to_string(),
+                old: None,
+                new: Some("saved".to_owned()),
+                write_cycles: cost,
+            });
+            steps
+        }
+        Op::StorePreset { from, to } => step(Some(hex_compact(&from.emit())), Some(hex_compact(&to.emit()))),
+        Op::FirePreset { parts, value } => step(None, Some(fired(*parts, *value))),
+        Op::SelectFilter { from, to } => step(Some(byte(from.byte())), Some(byte(to.byte()))),
+        Op::Calibrate => step(None, Some(CALIBRATION.to_owned())),
+        Op::WiegandTest { save } => {
+            let end = if *save { ", saved" } else { "" };
+            step(None, Some(format!("clockwise, then counterclockwise{end}")))
+        }
+        Op::WriteRegister { old, new, .. } => step(old.map(byte), Some(byte(*new))),
+    }
+}
+
+fn fired(parts: PresetParts, value: PresetValue) -> String {
+    let (turns, steps) = (value.multiturn(), value.singleturn());
+    match parts {
+        PresetParts::Both => format!("turn {turns}, step {steps}"),
+        PresetParts::Singleturn => format!("step {steps}"),
+        PresetParts::Multiturn => format!("turn {turns}"),
+    }
+}
+
+/// What came of the operations, for a script.
+pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
+    let rpm = |motion: &Option<Motion>| motion.map(|motion| motion.rpm);
+    let one = |outcome: &Outcome| match outcome {
+        Outcome::Skipped { after } => {
+            json!({"result": "skipped", "after": after.map(|run| if run.is_clockwise() { "clockwise" } else { "counterclockwise" })})
+        }
+        Outcome::Stored { registers } => json!({"result": "stored", "registers": registers}),
+        Outcome::PresetStored { value, .. } => {
+            json!({"result": "preset stored", "singleturn": value.singleturn(), "multiturn": value.multiturn()})
+        }
+        Outcome::PresetFired { from, to, .. } => {
+            let place = |reading: &crate::devices::biss::procedures::PositionReading| json!({"turns": reading.turns, "steps": reading.steps});
+            json!({"result": "preset", "from": place(from), "to": place(to)})
+        }
+        Outcome::FilterSelected(filter) => json!({"result": "filter", "filter": words::filter(*filter)}),
+        Outcome::Calibrated(report) => json!({
+            "result": "calibrated",
+            "temperature_c": report.celsius,
+            "counterclockwise_rpm": rpm(&report.counterclockwise),
+            "clockwise_rpm": rpm(&report.clockwise),
+        }),
+        Outcome::Tested(report) => json!({
+            "result": "tested",
+            "ok": report.result.passes(),
+            "saved": report.saved,
+            "average_cw_v": report.result.average_cw.volts(),
+            "lowest_cw_v": report.result.lowest_cw.volts(),
+            "average_ccw_v": report.result.average_ccw.volts(),
+            "lowest_ccw_v": report.result.lowest_ccw.volts(),
+            "clockwise_rpm": rpm(&report.clockwise),
+            "counterclockwise_rpm": rpm(&report.counterclockwise),
+        }),
+    };
+    outcomes.iter().map(one).collect()
+}
+
+/// What came of the operations, a line each.
+pub(super) fn results_text(outcomes: &[Outcome]) -> String {
+    let texts = outcomes.iter().flat_map(explained::outcome);
+    texts.map(|text| text.terminal() + "\n").collect()
+}

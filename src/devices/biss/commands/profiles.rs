@@ -1,0 +1,93 @@
+//! What the commands about profiles do with a BiSS encoder: `save`, `restore`, and reading it for a comparison.
+
+use serde_json::json;
+
+use super::plan::{commit, prepare, shown};
+use super::run::Runner;
+use crate::app::{Text, explain};
+use crate::cli::args::{Common, Restore, Save};
+use crate::cli::consent::require_consent;
+use crate::cli::output::{Output, count};
+use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Done, Result};
+use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
+use crate::devices::biss::profile::{self, BissProfile, ProfileIdentity};
+use crate::devices::biss::protocol::DeviceMode;
+use crate::devices::biss::state::explain as words;
+use crate::profile::{Body, Comparison, ProfileError};
+
+pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+    let profile = saved(common, BissJob::Save)?;
+    let banks = profile.banks().count();
+    let (mode, unsaved) = (profile.recorded.device_mode, words::saved_unsaved(&profile));
+    keep(&save.file, Body::new(profile))?;
+    if let Some(words) = unsaved {
+        output.remark(&words.terminal());
+    }
+    let json = json!({"file": save.file, "banks": banks, "unsaved_in_mode": mode.map(DeviceMode::byte)});
+    output.show(&json, &format!("{}: {}\n", save.file.display(), count(banks, "bank")))?;
+    Ok(Done::Well)
+}
+
+/// The encoder as it is, for a comparison: refused where it shows what was never saved.
+pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
+}
+
+/// What differs between two profiles.
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
+}
+
+/// That it was read in a device mode, where it was.
+pub(super) fn remark(profile: &Body) -> Option<Text> {
+    words::profile_unsaved(profile.get()?)
+}
+
+/// That two profiles are not of the same encoder.
+pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
+    let (profile, device) = (&profile.get::<BissProfile>()?.identity, &device.get::<BissProfile>()?.identity);
+    let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());
+    (who(profile) != who(device)).then(|| {
+        let [profile, device] = [profile, device].map(|one| format!("{} ({})", one.serial_number, one.kind()));
+        format!("The profile is of {profile}, the encoder is {device}.")
+    })
+}
+
+fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
+    match Runner::open(common)?.run(job)? {
+        BissOutput::Saved(profile) => Ok(*profile),
+        other => Err(unexpected(&other)),
+    }
+}
+
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    let profile =
+        profile.into_profile::<BissProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let options = restore_options(restore)?;
+    if !restore.dry_run {
+        require_consent(&restore.consent)?;
+    }
+    let mut runner = Runner::open(common)?;
+    let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
+    if let Some(types) = &prepared.other_type {
+        output.remark(&words::other_type(types).terminal());
+    }
+    for item in &prepared.missing {
+        output.remark(&format!("{item} is left alone: the encoder does not have it"));
+    }
+    for range in &prepared.mounting_left {
+        output.remark(&format!(
+            "{range} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
+        ));
+    }
+    let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    left.warn(output);
+    if restore.dry_run {
+        return show_dry_run(output, &shown(&prepared), &left);
+    }
+    let (spent, _) = commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE)?;
+    show_restored(output, &spent, &left)
+}

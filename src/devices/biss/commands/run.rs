@@ -1,0 +1,111 @@
+//! Running jobs on a BiSS encoder, and what they give beside their results.
+
+use crate::app::Text;
+use crate::cli::args::Code;
+use crate::cli::output::say;
+use crate::cli::runner::{self, Runs, unexpected};
+use crate::cli::{Failure, Result};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, open};
+use crate::devices::biss::procedures::procedure::{Detail, News};
+use crate::devices::biss::procedures::{Identity, Way};
+use crate::devices::biss::profile::RegisterRange;
+use crate::devices::biss::state::explain as words;
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::worker::{OpenError, Session};
+
+/// A session with a BiSS encoder on its thread.
+pub(super) type Runner = runner::Runner<Biss>;
+
+impl Runs for Biss {
+    /// How the encoder is reached.
+    type Kept = Way;
+    const HAS_CODES: bool = false;
+
+    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
+        open(url, store)
+    }
+
+    /// Access codes of the environment are for other devices.
+    fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Way {
+        session.station().way
+    }
+
+    fn say(remark: &Remark) {
+        match remark {
+            // They are counted, and told at the end.
+            Remark::CrcErrors(_) => {}
+            remark => words::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal()))),
+        }
+    }
+
+    fn doing(doing: &Doing) -> String {
+        match doing {
+            Doing::Operation { news, .. } => detail(news),
+            other => other.to_string(),
+        }
+    }
+
+    /// Every step of an operation, and what a person is to do.
+    fn announce(doing: &Doing) -> Option<String> {
+        match doing {
+            Doing::Operation { item, news } => Some(format!("{item}: {}", words::step(news.step).terminal())),
+            Doing::Register(_) | Doing::Bank(_) => None,
+        }
+    }
+
+    fn failure(error: &JobError) -> Vec<Text> {
+        words::job(error)
+    }
+}
+
+/// How far a step is: what stands against a start, how long it lasts.
+fn detail(news: &News) -> String {
+    match &news.detail {
+        Detail::Begins => String::new(),
+        Detail::Count { done, total } => format!("{done} of {total}"),
+        Detail::Lasts { elapsed, expected: Some(expected) } => {
+            format!("{} of about {} s", elapsed.as_secs(), expected.as_secs())
+        }
+        Detail::Lasts { elapsed, expected: None } => format!("{} s", elapsed.as_secs()),
+        Detail::Demand(demand) => {
+            let against = demand.blockers.iter().map(|blocker| words::blocker(*blocker).terminal());
+            let turning = demand.motion.map(|motion| format!("{:.1} 1/min", motion.rpm));
+            turning.into_iter().chain(against).collect::<Vec<_>>().join("; ")
+        }
+    }
+}
+
+/// Who is there.
+pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
+    match runner.run(BissJob::Identify)? {
+        BissOutput::Identity(identity) => Ok(identity),
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// Frames with a wrong checksum that the last job met, beside those of its reading.
+pub(super) fn crc_errors(runner: &Runner) -> u64 {
+    let count = |remark: &Remark| match remark {
+        Remark::CrcErrors(count) => u64::from(*count),
+        _ => 0,
+    };
+    runner.remarks.iter().map(count).sum()
+}
+
+/// The registers of a run.
+pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec<u8>> {
+    read_registers(runner, range).map(|read| read.bytes)
+}
+
+/// The registers of a run, and whether they may show what was never saved.
+pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<ReadRegisters> {
+    match runner.run(BissJob::Read(range))? {
+        BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),
+        BissOutput::Registers(read) => {
+            let (wanted, came) = (range.count(), read.bytes.len());
+            Err(Failure::Failed(vec![format!("{range}: {came} registers came where {wanted} were asked for.")]))
+        }
+        other => Err(unexpected(&other)),
+    }
+}

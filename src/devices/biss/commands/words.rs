@@ -1,0 +1,66 @@
+//! What registers of the kit encoder are called, and what their bytes say, in words.
+
+use std::sync::LazyLock;
+
+use crate::devices::biss::profile::RegisterRange;
+use crate::devices::biss::protocol::{Decoded, Description, Descriptions, Filter, Name, Register, RegisterAddress};
+
+static KIT: LazyLock<Option<Description>> =
+    LazyLock::new(|| Descriptions::built_in().iter().find(|description| description.identity().is_some()).cloned());
+
+fn register(address: RegisterAddress) -> Option<&'static Register> {
+    KIT.as_ref()?.at(address)
+}
+
+/// What the byte at an address belongs to.
+pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
+    let area = || Some(KIT.as_ref()?.area_at(address)?.name.english());
+    register(address).map(|register| register.name.english()).or_else(area)
+}
+
+/// What the bytes from an address on say, where they are a whole register whose number has a meaning of its own.
+pub(super) fn said(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
+    let register = register(address).filter(|register| register.address == address)?;
+    words(register, bytes)
+}
+
+/// What a register of a description says, where the bytes of a run are its own.
+pub(super) fn of_run(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
+    let own = register.address == range.start() && register.width == range.count();
+    own.then(|| words(register, bytes)).flatten()
+}
+
+/// What a register says as a quantity.
+pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
+    match register.decode(bytes)? {
+        Decoded::Scaled(value) => Some(value),
+        _ => None,
+    }
+}
+
+/// The word for a filter, as `do biss filter` takes it.
+pub(super) fn filter(filter: Filter) -> String {
+    match filter {
+        Filter::Balanced => "balanced".to_owned(),
+        Filter::Dynamic => "dynamic".to_owned(),
+        Filter::Unknown(code) => format!("0x{code:02X}"),
+    }
+}
+
+/// What a register's bytes say; `None` for a code without meaning.
+fn words(register: &Register, bytes: &[u8]) -> Option<String> {
+    let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
+    Some(match register.decode(bytes)? {
+        Decoded::Number(number) => format!("{number}{unit}"),
+        Decoded::Hex(_) => return None,
+        Decoded::Scaled(value) => format!("{value}{unit}"),
+        Decoded::Bits(bits) if bits.is_empty() => "none".to_owned(),
+        Decoded::Bits(bits) => {
+            let named = |(bit, name): (u8, Option<&Name>)| name.map_or_else(|| format!("bit {bit}"), Name::to_string);
+            bits.into_iter().map(named).collect::<Vec<_>>().join(", ")
+        }
+        Decoded::Choice(_, Some(name)) => name.to_string(),
+        Decoded::Choice(value, None) => format!("unknown (0x{value:02X})"),
+        Decoded::Text(text) => text,
+    })
+}

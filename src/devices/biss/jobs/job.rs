@@ -1,0 +1,287 @@
+//! What can be asked of a BiSS encoder, and what comes of it.
+
+use std::fmt;
+
+use super::Identity;
+use crate::bits::hex_compact;
+use crate::devices::biss::procedures::check::Line;
+use crate::devices::biss::procedures::procedure::{Answer, Demand, News, Operator, Seat, Unattended};
+use crate::devices::biss::procedures::write::{Interrupted, Written};
+use crate::devices::biss::procedures::{Error, PositionReading, Status, Survey};
+use crate::devices::biss::profile::{
+    Bank, BissPlan, BissProfile, MotorSource, MountingRun, OtherType, PlanError, PresetParts, RegisterRange,
+    RestoreOptions,
+};
+use crate::devices::biss::protocol::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
+use crate::profile::Consent;
+use crate::store::{DeviceKey, StoreError};
+use crate::worker::commit::wear;
+
+/// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
+pub const WEAR_LIMIT: u64 = 1000;
+/// Persistent writes from which a person should know that they are numbered.
+pub const WEAR_WARNING: u64 = 800;
+
+/// What a session with a BiSS encoder does.
+#[derive(Debug)]
+pub enum BissJob {
+    /// Everything there is to see: for a window, after connecting.
+    Survey,
+    /// Who is there.
+    Identify,
+    /// Mode, errors, warnings, temperature, filter.
+    Status,
+    /// What it says of itself, beside its description, its data sheet and the line, with a verdict a line.
+    Check,
+    /// The position, once.
+    Position,
+    /// Registers that follow each other; those of an area of data only at standstill.
+    Read(RegisterRange),
+    /// All direct registers, 40h…7Fh.
+    ReadDirect,
+    /// All registers of a bank.
+    ReadBank(u8),
+    /// All registers of an area of data; at standstill.
+    ReadArea(Area),
+    /// Everything that can be restored; at standstill. What was never saved is marked.
+    Save,
+    /// The same for a comparison: refused where it may hold what was never saved.
+    SaveToCompare,
+    /// Makes a plan; writes nothing.
+    Prepare(Change),
+    /// Carries a plan out.
+    Commit(Box<Commit>),
+    /// Back to operation and the password cleared, whoever left the encoder otherwise.
+    LeadBack,
+}
+
+/// A change that a user wants.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Make the encoder as the profile says.
+    Restore {
+        /// The profile.
+        profile: Box<BissProfile>,
+        /// What the restore may do.
+        options: RestoreOptions,
+    },
+    /// Write registers: where, and which bytes. Those of an area of data are saved together.
+    Write(Vec<(RegisterRange, Vec<u8>)>),
+    /// Select a filter.
+    SelectFilter(Filter),
+    /// Store this preset value, where one is given; and make the shaft's place what is stored then, where parts are.
+    Preset {
+        /// The value.
+        value: Option<PresetValue>,
+        /// Which part of the position.
+        parts: Option<PresetParts>,
+    },
+    /// Procedures led by a person: one, or all of a mounting.
+    Guided {
+        /// Which.
+        run: MountingRun,
+        /// What turns the motor in them.
+        motor: MotorSource,
+    },
+}
+
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edited bytes are written: those that are not yet stay edited.
+    Bytes,
+    /// Procedures led by a person: those that are not done are begun again.
+    Guided,
+    /// The same with a calibration among them: no backup holds its table.
+    Calibration,
+    /// A Wiegand test alone: it stores nothing but its result.
+    WiegandTest,
+    /// Another filter.
+    Filter,
+    /// A preset: its value, the shaft's place, or both.
+    Preset,
+}
+
+impl Change {
+    /// Its kind.
+    pub fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Write(_) => ChangeKind::Bytes,
+            Change::Guided { run, .. } if run.calibrate => ChangeKind::Calibration,
+            Change::Guided { run, .. } if run.preset.is_none() && run.data.is_none() => ChangeKind::WiegandTest,
+            Change::Guided { .. } => ChangeKind::Guided,
+            Change::SelectFilter(_) => ChangeKind::Filter,
+            Change::Preset { .. } => ChangeKind::Preset,
+        }
+    }
+}
+
+/// A plan, ready to be looked at.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
+    /// What would be written.
+    pub plan: BissPlan,
+    /// The encoder it is for.
+    pub identity: Identity,
+    /// Persistent writes that this computer has seen the encoder take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Registers that are as they should be already.
+    pub unchanged: u64,
+    /// Settings of a profile that the encoder does not have.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<RegisterRange>,
+    /// The device mode in which the profile was read that is restored, where it may hold what was never saved.
+    pub unsaved: Option<DeviceMode>,
+    /// The profile is of another type of encoder.
+    pub other_type: Option<OtherType>,
+    /// Values of the mounting of another device that are written: they have to be set up anew.
+    pub mounting_written: Vec<RegisterRange>,
+}
+
+impl Prepared {
+    /// Write cycles that the flash will have taken at least, where a person should know that they are numbered.
+    pub fn wear(&self) -> Option<u64> {
+        wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
+    }
+}
+
+/// A plan that a person consented to.
+#[derive(Clone, Debug)]
+pub struct Commit {
+    /// The plan as it was shown.
+    pub prepared: Prepared,
+    /// The consent to it.
+    pub consent: Consent,
+    /// Write although the encoder counts as worn.
+    pub force_wear: bool,
+    /// Who stands at the motor.
+    pub attendance: Attendance,
+}
+
+/// Who stands at the motor while a plan is carried out.
+#[derive(Clone, Debug)]
+pub enum Attendance {
+    /// Somebody whose answers are left here.
+    Seat(Seat),
+    /// Nobody.
+    Nobody(Unattended),
+}
+
+impl Operator for Attendance {
+    fn begins(&mut self) {
+        match self {
+            Attendance::Seat(seat) => seat.begins(),
+            Attendance::Nobody(nobody) => nobody.begins(),
+        }
+    }
+
+    fn attend(&mut self, demand: &Demand) -> Answer {
+        match self {
+            Attendance::Seat(seat) => seat.attend(demand),
+            Attendance::Nobody(nobody) => nobody.attend(demand),
+        }
+    }
+}
+
+/// What a commit did.
+pub type Committed = crate::worker::Committed<Written>;
+
+/// Registers as they were read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadRegisters {
+    /// The first.
+    pub start: RegisterAddress,
+    /// Their values, in the order of their addresses.
+    pub bytes: Vec<u8>,
+    /// The device mode in which they were read, where they may show what was never saved.
+    pub unsaved: Option<DeviceMode>,
+}
+
+/// What a BiSS encoder says on the way, or the program about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// Frames with a wrong checksum that belong to no reading.
+    CrcErrors(u32),
+    /// Descriptions of the user's own that cannot be used.
+    Descriptions(Vec<StoreError>),
+}
+
+/// The step that a BiSS job is at. Its text is the command line's.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Doing {
+    /// A register is read.
+    Register(RegisterAddress),
+    /// A bank is read.
+    Bank(u8),
+    /// An operation of a plan is carried out.
+    Operation {
+        /// What it changes.
+        item: String,
+        /// Where it is.
+        news: Box<News>,
+    },
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Doing::Register(address) => write!(f, "{address}"),
+            Doing::Bank(bank) => write!(f, "bank:0x{bank:02X}"),
+            Doing::Operation { item, .. } => f.write_str(item),
+        }
+    }
+}
+
+/// What a BiSS job gives.
+#[derive(Debug)]
+#[expect(missing_docs, reason = "each is the result of the job of that name")]
+pub enum BissOutput {
+    Surveyed(Box<Survey>),
+    Identity(Box<Identity>),
+    Status(Box<Status>),
+    Check(Vec<Line>),
+    Position(PositionReading),
+    Registers(ReadRegisters),
+    Area {
+        banks: Vec<Bank>,
+        /// The device mode in which they were read, where they may show what was never saved.
+        unsaved: Option<DeviceMode>,
+    },
+    Saved(Box<BissProfile>),
+    Prepared(Box<Prepared>),
+    Committed(Box<Committed>),
+    /// With the mode in which it was.
+    LedBack(DeviceMode),
+}
+
+/// Why a job ended early.
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
+}
+
+/// How backups and the logbook know an encoder: serial numbers are unique within what one manufacturer calls a device.
+pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
+    let (manufacturer, device) = (hex_compact(&identity.kind.manufacturer), hex_compact(&identity.kind.device_id));
+    DeviceKey {
+        kind: KIND.to_owned(),
+        device_type: format!("{manufacturer}-{device}"),
+        serial_number: identity.serial_number.clone(),
+        is_virtual,
+    }
+}

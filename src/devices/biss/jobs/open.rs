@@ -1,0 +1,126 @@
+//! From a link URL to a session with a BiSS encoder.
+
+use std::sync::Arc;
+
+use super::Biss;
+use crate::buses::bridge::procedures::SupplyAfter;
+use crate::buses::bridge::sim::{self as bridge, Adapter};
+use crate::devices::biss::procedures::{Echo, Station, Way};
+use crate::devices::biss::sim::{Config, Port};
+use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
+use crate::sim::{AT_ADAPTER, ConfigError, Motor};
+use crate::store::Store;
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
+use crate::worker::{OpenError, Session};
+
+/// Whether an adapter is in between, where the kind of link does not tell.
+const BRIDGE: &str = "bridge";
+/// Link parameters that describe the line and nothing of the virtual device; `echo` and `order` describe both.
+const LINE_ONLY: [&str; 11] =
+    [BRIDGE, "baud", "parity", "timeout", "margin", "clock", "voltage", SupplyAfter::PARAMETER, "mt", "st", "crc"];
+
+/// Everything about a link to a BiSS encoder that can be told without opening it.
+///
+/// # Errors
+/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    read(url).map(|_| ())
+}
+
+/// Opens a link to a BiSS encoder: `serial:` and `tcp:` lead to its configuration pin, `bridge:` to an adapter on its bus,
+/// `sim:` and `replay:` to the one or, with `bridge=on`, to the other.
+///
+/// # Errors
+/// See [`OpenError`]; nothing has been sent.
+pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
+    let (station, simulated) = read(url)?;
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let mut motor = None;
+    let wire = open_bytes(url, station.format, &clock, || {
+        let (mut link, turning) = simulated.connect(&clock);
+        link.set_format(station.format)?;
+        motor = turning;
+        Ok(link)
+    })?;
+    Ok(Session::over(wire, clock, station, store, motor))
+}
+
+/// The line, and the virtual encoder, which counts for a link to it alone.
+fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
+    let way = way(url)?;
+    let is_virtual = url.scheme == Scheme::Sim;
+    if is_virtual {
+        check_virtual(&url.query, way)?;
+    } else {
+        let mut known = way.parameters().to_vec();
+        known.extend((url.scheme == Scheme::Replay).then_some(BRIDGE));
+        check_parameters(&url.query, url.scheme, &known)?;
+    }
+    let mut station = Station::from_query(&url.query, way, margin(url.scheme))?;
+    if !is_virtual {
+        return Ok((station, Simulated::new(way, &[])?));
+    }
+    // Echo and order are the virtual encoder's: they are learned as with a real one.
+    (station.line.echo, station.order) = (Echo::Unknown, None);
+    Ok((station, Simulated::new(way, &url.query.without(&LINE_ONLY))?))
+}
+
+fn way(url: &LinkUrl) -> Result<Way, OpenError> {
+    let by_word = |text: &str| match text {
+        "on" => Some(Way::Adapter),
+        "off" => Some(Way::ConfigPin),
+        _ => None,
+    };
+    match url.scheme {
+        Scheme::Bridge => Ok(Way::Adapter),
+        Scheme::Serial | Scheme::Tcp => Ok(Way::ConfigPin),
+        Scheme::Modbus | Scheme::Enip => Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
+        Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, "on or off", by_word)?.unwrap_or(Way::ConfigPin)),
+    }
+}
+
+/// Refuses what neither the line nor the virtual device has, and tells what needs an adapter in between.
+fn check_virtual(query: &Query, way: Way) -> Result<(), UrlError> {
+    let own = |way: Way| {
+        let line = way.parameters().iter().copied().filter(|name| !Config::KEYS.contains(name));
+        let device = if way == Way::Adapter { bridge::keys(&AT_ADAPTER) } else { Config::KEYS.to_vec() };
+        [BRIDGE].into_iter().chain(line).chain(device).collect::<Vec<_>>()
+    };
+    let known = own(way);
+    let Some((name, _)) = query.without(&known).into_iter().next() else { return Ok(()) };
+    let other = if way == Way::Adapter { Way::ConfigPin } else { Way::Adapter };
+    let switch = if way == Way::Adapter { "off" } else { "on" };
+    let elsewhere = own(other).into_iter().filter(|name| !known.contains(name));
+    let elsewhere = elsewhere.map(|name| format!("{name} ({BRIDGE}={switch})"));
+    let known: Vec<String> = known.iter().map(ToString::to_string).chain(elsewhere).collect();
+    Err(UrlError::Unknown { name, scheme: Scheme::Sim.word(), known: known.join(", ") })
+}
+
+/// The virtual encoder as its parameters say, at the end of either way.
+enum Simulated {
+    Pin(Box<Config>),
+    Bus(Box<Adapter>),
+}
+
+impl Simulated {
+    fn new(way: Way, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+        Ok(match way {
+            Way::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
+            Way::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, &AT_ADAPTER)?)),
+        })
+    }
+
+    fn connect(self, clock: &Arc<dyn Clock>) -> (Box<dyn ByteLink>, Option<Motor>) {
+        match self {
+            Simulated::Pin(config) => {
+                let port = Port::new(&config);
+                let motor = port.encoder().motor();
+                (inside(port, clock), Some(motor))
+            }
+            Simulated::Bus(adapter) => {
+                let motor = adapter.motor();
+                (inside(*adapter, clock), motor)
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! From a change that a user wants to a plan. Reads; writes nothing, and leaves the device mode as it is.
+
+use std::collections::BTreeSet;
+
+use super::{Biss, Change, Doing, JobError, Prepared, device_key};
+use crate::devices::biss::procedures::write::{read_bank, read_state};
+use crate::devices::biss::procedures::{Error, Identity, Master, ensure_standstill, identify, write};
+use crate::devices::biss::profile::{
+    Base, BissPlan, Place, RegisterRange, Restore, banks_needed, check_allowed, other_type, place, plan_edits,
+    plan_filter, plan_mounting, plan_preset, plan_restore,
+};
+use crate::devices::biss::protocol::{Area, RegisterAddress};
+use crate::worker::commit::cycles_seen;
+use crate::worker::{Desk, Progress};
+
+pub(super) fn prepare(
+    encoder: &mut Biss,
+    desk: &mut Desk,
+    change: &Change,
+    tell: &mut dyn FnMut(Progress<Doing>),
+) -> Result<Prepared, JobError> {
+    let types = encoder.types.clone();
+    let mut master = encoder.master(desk);
+    let identity = identify(&mut master, &types)?;
+    let description = identity.description.clone();
+    let plan = match change {
+        Change::Restore { profile, options } => {
+            // Known before the banks are read.
+            check_allowed(profile, &identity.profile(), *options)?;
+            let areas: Vec<Area> = description.areas().to_vec();
+            let state = state(&mut master, &identity, &banks_needed(profile, &areas), tell)?;
+            plan_restore(profile, &state, *options)?
+        }
+        Change::Write(edits) => only(edits_of(&mut master, &identity, edits)?),
+        Change::SelectFilter(to) => only(plan_filter(&description, &state(&mut master, &identity, &[], tell)?, *to)?),
+        Change::Preset { value, parts } => {
+            only(plan_preset(&description, &state(&mut master, &identity, &[], tell)?, *value, *parts)?)
+        }
+        Change::Guided { run, motor } => {
+            // Whoever is refused is so before anything else is read.
+            run.check(*motor)?;
+            let areas: Vec<Area> = description.areas().to_vec();
+            let banks = run.data.as_ref().map(|profile| banks_needed(profile, &areas)).unwrap_or_default();
+            let state = state(&mut master, &identity, &banks, tell)?;
+            only(plan_mounting(&description, &state, run, *motor)?)
+        }
+    };
+    let cycles_seen = cycles_seen(&desk.store, &device_key(&identity, desk.is_virtual));
+    let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
+    let (unsaved, other_type) = match change {
+        Change::Restore { profile, .. } => {
+            (profile.recorded.device_mode, other_type(&profile.identity, &identity.profile()))
+        }
+        _ => (None, None),
+    };
+    Ok(Prepared {
+        kind: change.kind(),
+        plan,
+        identity,
+        cycles_seen,
+        unchanged,
+        missing,
+        mounting_left,
+        mounting_written,
+        unsaved,
+        other_type,
+    })
+}
+
+fn only(plan: BissPlan) -> Restore {
+    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
+}
+
+fn state(
+    master: &mut Master<'_>,
+    identity: &Identity,
+    banks: &[u8],
+    tell: &mut dyn FnMut(Progress<Doing>),
+) -> Result<crate::devices::biss::profile::DeviceState, Error> {
+    let total = banks.len() as u64;
+    let told = &mut |done, bank| tell(Progress { done, total, what: Doing::Bank(bank) });
+    read_state(master, identity, banks, told)
+}
+
+/// Reads what the edits touch.
+fn edits_of(
+    master: &mut Master<'_>,
+    identity: &Identity,
+    edits: &[(RegisterRange, Vec<u8>)],
+) -> Result<BissPlan, JobError> {
+    let description = &identity.description;
+    let mut banks = BTreeSet::new();
+    let mut singles: BTreeSet<RegisterAddress> = BTreeSet::new();
+    for address in edits.iter().flat_map(|(range, _)| range.addresses()) {
+        match place(description, address)? {
+            Place::Data(_) => banks.extend(address.bank()),
+            Place::Register => {
+                singles.insert(address);
+            }
+        }
+    }
+    write::ensure_operation(master, description)?;
+    if !banks.is_empty() {
+        ensure_standstill(master)?;
+    }
+    let banks = banks.into_iter().map(|bank| read_bank(master, bank)).collect::<Result<Vec<_>, _>>()?;
+    let mut registers = Vec::new();
+    for address in singles {
+        let reads = description.access(address).is_none_or(|access| access.reads());
+        let value = match reads.then(|| master.read(address)) {
+            Some(Err(Error::NoSuchRegister { .. })) | None => None,
+            Some(value) => Some(value?),
+        };
+        registers.push((address, value));
+    }
+    if edits.is_empty() {
+        return Ok(BissPlan { base: Base::default(), ops: Vec::new() });
+    }
+    Ok(plan_edits(description, &banks, &registers, edits)?)
+}

@@ -1,0 +1,290 @@
+//! The device check: what an encoder says of itself, beside what its description, its data sheet and the line say, with a
+//! verdict a line. It writes nothing but the bank that is selected.
+
+use super::survey::{Bits, Status, survey};
+use super::{Error, Identity, Master, PositionReading, Survey, Way};
+use crate::device::check;
+use crate::devices::biss::protocol::{
+    Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, Mismatch, Name, RegisterAddress, WiegandResult,
+};
+
+pub use crate::device::check::{Verdict, Wear};
+
+/// One line of the check.
+pub type Line = check::Line<Step, Finding>;
+
+/// A step of the check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Who is there, and whether a description is for it.
+    Identity,
+    /// Errors, warnings, device mode, password.
+    Status,
+    /// The position with its bits.
+    Position,
+    /// The sums of the data sheet, and the frame that it tells.
+    DataSheet,
+    /// Temperature and supply, beside what the data sheet allows.
+    Limits,
+    /// The saved Wiegand test.
+    Wiegand,
+    /// Readings of the position, and how many came damaged.
+    Readings,
+    /// Write cycles of the flash.
+    Wear,
+}
+
+/// One fact that the check found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// The name of its description.
+    Name(String),
+    /// Its serial number.
+    SerialNumber(String),
+    /// Its firmware.
+    Firmware(Firmware),
+    /// No description is for it.
+    Mismatch(Mismatch),
+    /// An error that is set, with its name.
+    Error(u8, Option<Name>),
+    /// A warning that is set, with its name.
+    Warning(u8, Option<Name>),
+    /// It has no registers for errors and warnings, or not with this firmware.
+    NotTold,
+    /// It is in a device mode.
+    Mode(DeviceMode),
+    /// The password is set.
+    Open,
+    /// The position.
+    Position(PositionReading),
+    /// The position came with its error bit.
+    ErrorBit,
+    /// The position came with its warning bit.
+    WarningBit,
+    /// No position that can be read.
+    NoPosition,
+    /// Both sums of the data sheet fit.
+    SumsFit,
+    /// A bank of the data sheet, or both together, cannot be relied upon.
+    Sheet(EdsError),
+    /// There is no data sheet that this program knows.
+    NoSheet,
+    /// The frame of the data sheet is not that of the description: bits of turns and steps, of the one and of the other.
+    OtherFrame {
+        /// As the data sheet says.
+        sheet: (u8, u8),
+        /// As the description says.
+        description: (u8, u8),
+    },
+    /// Degrees Celsius, and what the data sheet allows.
+    Temperature {
+        /// As it is.
+        celsius: f64,
+        /// At least.
+        low: i32,
+        /// At most.
+        high: i32,
+    },
+    /// Millivolts that the adapter measured when it switched the supply on, and what the data sheet allows.
+    Supply {
+        /// As it was.
+        millivolt: u16,
+        /// At least.
+        low: u32,
+        /// At most.
+        high: u32,
+    },
+    /// Milliamperes that the adapter measured, and what the data sheet allows.
+    Current {
+        /// As it was.
+        milliampere: u16,
+        /// At most.
+        high: u32,
+    },
+    /// The Wiegand test that was saved.
+    Wiegand(WiegandResult),
+    /// None was saved.
+    NotTested,
+    /// Readings of the position that were asked for, and frames or replies that came damaged.
+    Readings {
+        /// How many were asked for.
+        asked: u32,
+        /// How many came damaged.
+        damaged: u64,
+    },
+    /// Write cycles that were seen, and what the flash stands.
+    Wear {
+        /// As many at least.
+        seen: u64,
+        /// As many it stands.
+        limit: u64,
+    },
+}
+
+/// Readings of the position that tell how good the line is.
+const READINGS: u32 = 50;
+
+/// Carries out the check. It ends early only when the line fails. `wear` is asked when it is known who is there.
+///
+/// # Errors
+/// The line, or the user's wish.
+pub fn check(
+    master: &mut Master<'_>,
+    types: &Descriptions,
+    wear: impl FnOnce(&Identity) -> Wear,
+    progress: &mut dyn FnMut(u64, u64, RegisterAddress),
+) -> Result<Vec<Line>, Error> {
+    let survey = survey(master, types, progress)?;
+    let mut lines = vec![
+        identity(&survey.identity),
+        status(&survey.status),
+        position(survey.status.position),
+        data_sheet(&survey.identity),
+    ];
+    lines.extend(limits(&survey, master.station().supply.and_then(|supply| supply.measured)));
+    lines.extend(wiegand(&survey));
+    if survey.status.position.is_some() {
+        lines.push(readings(master)?);
+    }
+    lines.extend(worn(wear(&survey.identity)));
+    Ok(lines)
+}
+
+fn identity(identity: &Identity) -> Line {
+    let mut findings = vec![(Verdict::Good, Finding::Name(identity.description.name().to_owned()))];
+    if !identity.serial_number.is_empty() {
+        findings.push((Verdict::Good, Finding::SerialNumber(identity.serial_number.clone())));
+    }
+    findings.extend(identity.firmware.map(|firmware| (Verdict::Good, Finding::Firmware(firmware))));
+    findings.extend(identity.mismatch.clone().map(|mismatch| (Verdict::Attention, Finding::Mismatch(mismatch))));
+    Line::of(Step::Identity, findings)
+}
+
+fn status(status: &Status) -> Line {
+    let set = |bits: &Option<Bits>| bits.iter().flat_map(|bits| bits.set.clone()).collect::<Vec<_>>();
+    let mut findings: Vec<(Verdict, Finding)> =
+        set(&status.errors).into_iter().map(|(bit, name)| (Verdict::Bad, Finding::Error(bit, name))).collect();
+    let warnings = set(&status.warnings).into_iter();
+    findings.extend(warnings.map(|(bit, name)| (Verdict::Attention, Finding::Warning(bit, name))));
+    if status.errors.is_none() && status.warnings.is_none() {
+        findings.push((Verdict::Attention, Finding::NotTold));
+    }
+    let mode = status.mode.filter(|mode| *mode != DeviceMode::OPERATION);
+    findings.extend(mode.map(|mode| (Verdict::Attention, Finding::Mode(mode))));
+    if status.protection.is_some_and(|password| password != 0) {
+        findings.push((Verdict::Attention, Finding::Open));
+    }
+    Line::of(Step::Status, findings)
+}
+
+fn position(reading: Option<PositionReading>) -> Line {
+    let Some(reading) = reading else { return Line::of(Step::Position, vec![(Verdict::Bad, Finding::NoPosition)]) };
+    let mut findings = vec![(Verdict::Good, Finding::Position(reading))];
+    if reading.error == Some(true) {
+        findings.push((Verdict::Bad, Finding::ErrorBit));
+    }
+    if reading.warning == Some(true) {
+        findings.push((Verdict::Attention, Finding::WarningBit));
+    }
+    Line::of(Step::Position, findings)
+}
+
+fn data_sheet(identity: &Identity) -> Line {
+    let Some(sheet) = &identity.data_sheet else {
+        return Line::of(Step::DataSheet, vec![(Verdict::Attention, Finding::NoSheet)]);
+    };
+    let wrong = [&sheet.common, &sheet.encoder].into_iter().filter_map(|bank| bank.eds.err());
+    let mut findings: Vec<(Verdict, Finding)> = wrong.map(|error| (Verdict::Bad, Finding::Sheet(error))).collect();
+    if findings.is_empty() {
+        findings.push((Verdict::Good, Finding::SumsFit));
+        match &sheet.layout {
+            Err(error) => findings.push((Verdict::Bad, Finding::Sheet(*error))),
+            Ok(told) => {
+                let widths = |layout: &crate::devices::biss::protocol::Layout| {
+                    (layout.multiturn_bits(), layout.singleturn_bits())
+                };
+                let described = identity.description.layout().map(widths).filter(|own| *own != widths(told));
+                let other = described.map(|description| Finding::OtherFrame { sheet: widths(told), description });
+                findings.extend(other.map(|finding| (Verdict::Attention, finding)));
+            }
+        }
+    }
+    Line::of(Step::DataSheet, findings)
+}
+
+/// Where the encoder's bank of the data sheet has its limits.
+mod offset {
+    pub(super) const COLDEST: u8 = 0x30;
+    pub(super) const HOTTEST: u8 = 0x32;
+    pub(super) const LEAST_VOLTAGE: u8 = 0x34;
+    pub(super) const MOST_VOLTAGE: u8 = 0x36;
+    pub(super) const MOST_CURRENT: u8 = 0x38;
+}
+
+/// What the data sheet allows, as far as it can be measured; `None` where nothing can be compared.
+fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<Line> {
+    let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
+    let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };
+    let mut findings = Vec::new();
+    let celsius = |at| value(sheet, at).and_then(EdsValue::celsius);
+    if let (Some(celsius), Some(low), Some(high)) =
+        (survey.status.celsius, celsius(offset::COLDEST), celsius(offset::HOTTEST))
+    {
+        let fits = (f64::from(low)..=f64::from(high)).contains(&celsius);
+        findings.push((judge(fits), Finding::Temperature { celsius, low, high }));
+    }
+    let number = |at| match value(sheet, at) {
+        Some(EdsValue::Number(number, _)) => Some(number),
+        _ => None,
+    };
+    if let (Some((millivolt, milliampere)), Some(low), Some(high), Some(most)) =
+        (supply, number(offset::LEAST_VOLTAGE), number(offset::MOST_VOLTAGE), number(offset::MOST_CURRENT))
+    {
+        let fits = (low..=high).contains(&millivolt.into());
+        findings.push((judge(fits), Finding::Supply { millivolt, low, high }));
+        findings.push((judge(u32::from(milliampere) <= most), Finding::Current { milliampere, high: most }));
+    }
+    (!findings.is_empty()).then(|| Line::of(Step::Limits, findings))
+}
+
+fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
+    sheet.values().find(|(field, _)| field.offset == offset).map(|(_, value)| value)
+}
+
+/// The saved test; `None` for an encoder that has none.
+fn wiegand(survey: &Survey) -> Option<Line> {
+    let saved = survey.wiegand_saved?;
+    let finding = match saved.emit() {
+        // As it leaves the factory: nothing is wrong with that, and nothing tells that the sensor is right.
+        [0, 0, 0, 0] => (Verdict::Skipped, Finding::NotTested),
+        _ if saved.passes() => (Verdict::Good, Finding::Wiegand(saved)),
+        _ => (Verdict::Bad, Finding::Wiegand(saved)),
+    };
+    Some(Line::of(Step::Wiegand, vec![finding]))
+}
+
+/// Reads the position again and again. A reading that does not come at all is damage as well.
+fn readings(master: &mut Master<'_>) -> Result<Line, Error> {
+    let before = master.station().line.damaged;
+    let told_by_line = master.station().way == Way::ConfigPin;
+    let mut damaged = 0;
+    for _ in 0..READINGS {
+        match master.position() {
+            Ok(reading) => damaged += u64::from(reading.crc_errors),
+            // Each of its tries is counted there.
+            Err(Error::Damaged { .. }) if told_by_line => {}
+            Err(Error::Damaged { .. } | Error::WrongWidths { .. } | Error::TooWide { .. }) => damaged += 1,
+            Err(error) => return Err(error),
+        }
+    }
+    if told_by_line {
+        damaged += master.station().line.damaged - before;
+    }
+    let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
+    Ok(Line::of(Step::Readings, vec![(verdict, Finding::Readings { asked: READINGS, damaged })]))
+}
+
+fn worn(wear: Wear) -> Option<Line> {
+    let (verdict, seen) = wear.judged()?;
+    Some(Line::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
+}

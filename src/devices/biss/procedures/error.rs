@@ -1,0 +1,247 @@
+//! What can go wrong with an encoder, with the facts a person needs.
+
+use std::fmt;
+
+use crate::buses::bridge::procedures::{AdapterError, Failure};
+use crate::buses::ubicom::protocol::ReplyError;
+use crate::device::line::LineError;
+use crate::devices::biss::protocol::{DeviceMode, FrameError, Identity, RegisterAddress};
+use crate::link::LinkError;
+
+/// What was asked of an encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// A register.
+    Read(RegisterAddress),
+    /// To take a value into a register.
+    Write(RegisterAddress, u8),
+    /// The position.
+    Position,
+}
+
+impl fmt::Display for Asked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Asked::Read(address) => write!(f, "reading register {address}"),
+            Asked::Write(address, value) => write!(f, "writing 0x{value:02X} to register {address}"),
+            Asked::Position => f.write_str("reading the position"),
+        }
+    }
+}
+
+/// A procedure that ended early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The wire.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// Nothing came back.
+    #[error("no reply while {asked} ({tries} tries)")]
+    NoReply {
+        /// What was asked.
+        asked: Asked,
+        /// How often.
+        tries: u32,
+        /// Our own bytes came back: the adapter echoes, so the line itself works.
+        echo_heard: bool,
+    },
+    /// Something came back and was broken every time.
+    #[error("damaged reply while {asked} ({tries} tries): {cause}")]
+    Damaged {
+        /// What was asked.
+        asked: Asked,
+        /// How often.
+        tries: u32,
+        /// What was wrong with the last one.
+        cause: Damage,
+    },
+    /// Bytes keep arriving where there should be silence.
+    #[error("the line is never silent")]
+    NeverSilent,
+    /// The adapter between us and the encoder.
+    #[error(transparent)]
+    Adapter(#[from] AdapterError),
+    /// Nobody acknowledges on the bus.
+    #[error("nobody acknowledges on the bus ({tries} tries)")]
+    NoAcknowledge {
+        /// How often it was asked.
+        tries: u32,
+        /// The adapter could supply the encoder and was not told to.
+        supply_off: bool,
+    },
+    /// The data line stays low.
+    #[error("the data line stays low ({tries} tries)")]
+    StuckLow {
+        /// How often it was asked.
+        tries: u32,
+    },
+    /// The data line stays high.
+    #[error("the data line stays high ({tries} tries)")]
+    StuckHigh {
+        /// How often it was asked.
+        tries: u32,
+    },
+    /// No frame has ever had a right checksum: the widths are not those of the encoder.
+    #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
+    WrongWidths {
+        /// How many.
+        frames: u32,
+        /// Position, error and warning bits, as they were taken.
+        data_bits: u8,
+        /// Bits of the checksum, as they were taken.
+        crc_bits: u8,
+    },
+    /// Nobody tells the widths of the frame, and no length fits.
+    #[error("no length of the frames fits their CRC")]
+    WidthsUnknown {
+        /// The frames differ: the shaft turns.
+        moving: bool,
+    },
+    /// The encoder answers, and not when it is asked for this register: it has none there.
+    #[error("the encoder has no register {address}")]
+    NoSuchRegister {
+        /// Where.
+        address: RegisterAddress,
+    },
+    /// Registers of an area of data are not watched: they are read at standstill only.
+    #[error("register {address} is data, which is not read while the shaft may turn")]
+    NotWatched {
+        /// Where.
+        address: RegisterAddress,
+    },
+    /// The encoder did not take a value.
+    #[error("the encoder refuses 0x{value:02X} for register {address}")]
+    Refused {
+        /// Where.
+        address: RegisterAddress,
+        /// What was written.
+        value: u8,
+        /// What the register gives back instead, where the way tells that.
+        reads: Option<u8>,
+    },
+    /// Whether a value was taken is not known: reading the register back does not tell, or is not possible.
+    #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
+    Unclear {
+        /// Where.
+        address: RegisterAddress,
+        /// What was written.
+        value: u8,
+        /// Why it is not known.
+        cause: Box<Error>,
+    },
+    /// The user wished an end.
+    #[error("cancelled")]
+    Cancelled,
+    /// Neither order of a register number's two bytes gives an answer that the manual knows.
+    #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
+    OrderUnknown {
+        /// What it said to the probe.
+        answer: u8,
+    },
+    /// A position with more bits than the encoder is said to have.
+    #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
+    TooWide {
+        /// As it came.
+        word: u64,
+        /// Bits of the revolutions.
+        multiturn: u8,
+        /// Bits within a revolution.
+        singleturn: u8,
+    },
+    /// Registers behind the last that can be named.
+    #[error("{count} registers from {start} on are more than there can be")]
+    OutOfRange {
+        /// The first.
+        start: RegisterAddress,
+        /// How many.
+        count: usize,
+    },
+    /// No description is for this encoder, nor for any.
+    #[error("no description fits the encoder, which says {0}")]
+    NoDescription(Identity),
+    /// What the encoder's registers are has not been asked yet.
+    #[error("the encoder was not identified")]
+    NotIdentified,
+    /// The shaft turns where it must stand still.
+    #[error("the shaft moves")]
+    Moving {
+        /// Revolutions a minute, above 0 clockwise; `None` where the encoder counts too few revolutions to tell.
+        rpm: Option<f64>,
+    },
+    /// The encoder is in a device mode, in which its registers may show what was entered and never saved.
+    #[error("the encoder is in device mode {mode}")]
+    NotInOperation {
+        /// The mode.
+        mode: DeviceMode,
+    },
+    /// What was read changed between the plan and its execution.
+    #[error("{item} has changed since the plan was made")]
+    Changed {
+        /// What changed.
+        item: String,
+    },
+    /// The encoder answers, and not as the reference says; with what it did.
+    #[error("{0}")]
+    Unexpected(String),
+}
+
+/// What was wrong with a reply.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Damage {
+    /// Bytes that are no frame.
+    #[error("bytes without a whole frame: {bytes}")]
+    NoFrame {
+        /// How many.
+        bytes: usize,
+    },
+    /// A frame that is no reply to what was asked.
+    #[error(transparent)]
+    Reply(#[from] ReplyError),
+    /// A reply came before our own bytes, or these came back changed.
+    #[error("our own bytes did not come back before the reply")]
+    Echo,
+    /// The checksum of a position frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The checksum of a control frame, as the adapter says.
+    #[error("the encoder's answer to the register access has a wrong CRC")]
+    ControlFrame,
+    /// Readings of the same thing differ.
+    #[error("two readings differ")]
+    Inconsistent,
+}
+
+impl From<LineError> for Error {
+    fn from(error: LineError) -> Self {
+        match error {
+            LineError::Cancelled => Error::Cancelled,
+            LineError::NeverSilent => Error::NeverSilent,
+            LineError::Link(error) => Error::Link(error),
+        }
+    }
+}
+
+impl From<Failure> for Error {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Adapter(error) => Error::Adapter(error),
+            Failure::Line(error) => error.into(),
+        }
+    }
+}
+
+impl Error {
+    /// The encoder can no longer be reached: trying anything else makes no sense.
+    pub fn is_lost(&self) -> bool {
+        match self {
+            Error::Link(_)
+            | Error::NoReply { .. }
+            | Error::NoAcknowledge { .. }
+            | Error::StuckLow { .. }
+            | Error::StuckHigh { .. }
+            | Error::Adapter(AdapterError::Silent) => true,
+            Error::Unclear { cause, .. } => cause.is_lost(),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What stands against a position where the position itself does not tell: over the configuration pin error and warning are
+//! in registers of their own (reference UBICOM 4), which are read beside it.
+
+use std::time::Duration;
+
+use super::{Error, Master, PositionReading};
+use crate::devices::biss::protocol::Role;
+use crate::units::Moment;
+
+/// What the registers said last.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flags {
+    error: Option<bool>,
+    warning: Option<bool>,
+    looked_at: Moment,
+    /// The errors were looked at last.
+    errors_last: bool,
+}
+
+/// While positions are polled one of the two registers is read so often: hardly any position is missing for it.
+const EVERY: Duration = Duration::from_millis(500);
+
+/// Reads the position once, with what the encoder says of it now.
+///
+/// # Errors
+/// The line.
+pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> {
+    let reading = master.position()?;
+    if reading.frame.is_some() {
+        return Ok(reading);
+    }
+    master.station().flags = None;
+    with_flags(master, reading)
+}
+
+/// The position with what the registers said last; one of them is looked at when it is time.
+pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
+    let now = master.now();
+    let flags = match master.station().flags {
+        None => Flags {
+            error: is_set(master, Role::Errors)?,
+            warning: is_set(master, Role::Warnings)?,
+            looked_at: now,
+            errors_last: false,
+        },
+        Some(flags) if now.since(flags.looked_at) < EVERY => flags,
+        Some(flags) if flags.errors_last => {
+            Flags { warning: is_set(master, Role::Warnings)?, looked_at: now, errors_last: false, ..flags }
+        }
+        Some(flags) => Flags { error: is_set(master, Role::Errors)?, looked_at: now, errors_last: true, ..flags },
+    };
+    master.station().flags = Some(flags);
+    Ok(PositionReading { error: flags.error, warning: flags.warning, ..reading })
+}
+
+/// A bit of the register is set; `None` where the encoder has no such register.
+fn is_set(master: &mut Master<'_>, role: Role) -> Result<Option<bool>, Error> {
+    let (description, firmware) = (master.station().description.clone(), master.station().firmware.unwrap_or_default());
+    let register = description.as_ref().and_then(|own| own.with_role(role)).filter(|own| firmware >= own.since);
+    let Some(register) = register else { return Ok(None) };
+    match master.read_run(register.address, register.width.into()) {
+        Ok(bytes) => Ok(Some(bytes.iter().any(|byte| *byte != 0))),
+        Err(Error::NoSuchRegister { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}

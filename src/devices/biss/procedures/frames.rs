@@ -1,0 +1,123 @@
+//! The frames of a stream, each with its checksum looked at: what a reading says, or why there is none.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::buses::bridge::procedures::Portion;
+use crate::buses::bridge::protocol::{BissData, BissStatus};
+use crate::devices::biss::protocol::{FrameError, Layout, Reading};
+use crate::units::Moment;
+
+/// Why a frame of a stream has no reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoReading {
+    /// Nobody acknowledged.
+    #[error("nobody acknowledges on the bus")]
+    NoAcknowledge,
+    /// Its bits are no frame: a wrong checksum, a line that does not move.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The adapter says something that this version does not know.
+    #[error("the adapter has no frame, status {}", .0.byte())]
+    Status(BissStatus),
+}
+
+/// A frame of a stream.
+pub type Frame = Result<Reading, NoReading>;
+
+/// Frames of a stream that follow each other at equal distances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameRun {
+    /// Number of the first, counted from the start of the stream; what is missing counts.
+    pub first: u64,
+    /// When that was taken.
+    pub at: Moment,
+    /// Nanoseconds from one to the next.
+    pub period_ns: i64,
+    /// Frames that are missing before it.
+    pub lost: u64,
+    /// The frames, one at least.
+    pub frames: Vec<Frame>,
+    /// What their bits are.
+    pub layout: Arc<Layout>,
+    /// How many bits of a position are turns is known.
+    pub is_split_known: bool,
+    /// The clock of the bus in hertz.
+    pub clock_hz: u32,
+    /// They cannot come as close to each other as was wished.
+    pub is_limited: bool,
+}
+
+impl FrameRun {
+    /// What came in a packet, of frames that were wished so many microseconds apart.
+    pub(super) fn new(
+        portion: &Portion,
+        frames: Vec<Frame>,
+        (layout, is_split_known): (Arc<Layout>, bool),
+        clock_hz: u32,
+        wished_us: u32,
+    ) -> Self {
+        let Portion { first, time, period_ns, lost, .. } = *portion;
+        let is_limited = period_ns > i64::from(wished_us) * 1000;
+        // Not before the stream began.
+        let at = Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
+        FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
+    }
+
+    /// A stream begins.
+    pub const fn begins(&self) -> bool {
+        self.first == self.lost
+    }
+
+    /// Each frame with the moment in which it was taken.
+    pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
+        let period = Duration::from_nanos(self.period_ns.unsigned_abs());
+        (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
+    }
+
+    /// Frames with a wrong checksum.
+    pub fn crc_errors(&self) -> usize {
+        let is_wrong = |frame: &&Frame| matches!(frame, Err(NoReading::Frame(FrameError::Crc { .. })));
+        self.frames.iter().filter(is_wrong).count()
+    }
+}
+
+/// What the frames of a packet say.
+pub fn frames(layout: &Layout, data: &BissData) -> Vec<Frame> {
+    data.values.iter().map(|(status, raw)| frame(layout, *status, *raw)).collect()
+}
+
+fn frame(layout: &Layout, status: BissStatus, raw: u64) -> Frame {
+    match status {
+        BissStatus::OK => Ok(layout.parse(raw)?),
+        BissStatus::NO_ACKNOWLEDGE => Err(NoReading::NoAcknowledge),
+        BissStatus::STUCK_LOW => Err(FrameError::StuckLow.into()),
+        BissStatus::STUCK_HIGH => Err(FrameError::StuckHigh.into()),
+        status => Err(NoReading::Status(status)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// BiSS reference 2: a good frame, the same with an error, the same with a flipped bit.
+    #[test]
+    fn a_frame_has_a_reading_or_says_why_not() {
+        let reading = Reading { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
+        let cases = [
+            (BissStatus::OK, 0x024_6980_00CF, Ok(reading)),
+            (BissStatus::OK, 0x000_0000_007C, Ok(Reading { error: true, ..Reading::default() })),
+            (BissStatus::OK, 0x024_6980_00CE, Err(FrameError::Crc { expected: 0x0F, got: 0x0E }.into())),
+            (BissStatus::OK, 0, Err(FrameError::StuckLow.into())),
+            (BissStatus::NO_ACKNOWLEDGE, 0x024_6980_00CF, Err(NoReading::NoAcknowledge)),
+            (BissStatus::STUCK_LOW, 0, Err(FrameError::StuckLow.into())),
+            (BissStatus::STUCK_HIGH, (1 << 41) - 1, Err(FrameError::StuckHigh.into())),
+            (BissStatus::new(9), 0x024_6980_00CF, Err(NoReading::Status(BissStatus::new(9)))),
+        ];
+        let values = cases.iter().map(|(status, raw, _)| (*status, *raw)).collect();
+        let data = BissData { first_index: 0, t0_us: 0, period_us: 50, lost: 0, width: 6, values };
+        let expected: Vec<Frame> = cases.into_iter().map(|(.., frame)| frame).collect();
+        assert_eq!(frames(&Layout::default(), &data), expected);
+    }
+}

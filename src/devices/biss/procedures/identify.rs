@@ -1,0 +1,267 @@
+//! Who is there: the direct registers that every BiSS C encoder has, the description that fits them, and the data sheet,
+//! which tells the frame.
+
+use std::sync::Arc;
+
+use super::registers::Registers;
+use super::widths::find_widths;
+use super::{Error, Master, Station, Way};
+use crate::bits::ByteOrder;
+use crate::buses::bridge::protocol::Hello;
+use crate::devices::biss::profile::ProfileIdentity;
+use crate::devices::biss::protocol::{
+    Description, Descriptions, Eds, EdsBank, EdsError, Firmware, Identity as Kind, Layout, Mismatch, ProfileId,
+    RegisterAddress, Role, eds_layout,
+};
+use crate::profile::Unknown;
+
+/// An encoder as it says who it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identity {
+    /// What kind of encoder it says to be.
+    pub kind: Kind,
+    /// The serial number, high byte first (`U`), as a decimal number; empty where there is no register for it.
+    pub serial_number: String,
+    /// Its bytes as they came.
+    pub serial_bytes: Vec<u8>,
+    /// Its firmware; `None` where its registers do not tell.
+    pub firmware: Option<Firmware>,
+    /// What its registers are.
+    pub description: Arc<Description>,
+    /// A description of the same manufacturer is for another device ID.
+    pub mismatch: Option<Mismatch>,
+    /// Its data sheet; `None` where it has none that this program knows.
+    pub data_sheet: Option<DataSheet>,
+    /// The frame of its position.
+    pub layout: Layout,
+    /// Who told that frame.
+    pub source: FrameSource,
+    /// The adapter, over that way.
+    pub adapter: Option<Hello>,
+    /// Which byte of a register's number comes first over the configuration pin.
+    pub order: Option<ByteOrder>,
+}
+
+/// Who told the frame of a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameSource {
+    /// The encoder's data sheet.
+    DataSheet,
+    /// The encoder's description.
+    Description,
+    /// The user, in the link.
+    Given,
+    /// The checksum of its frames, while the shaft turned: how many bits are turns is not known.
+    Checksum,
+    /// Nobody: it is taken for that of the kit encoder.
+    Assumed,
+}
+
+impl FrameSource {
+    /// It tells how many bits of a position are turns.
+    pub const fn is_told(self) -> bool {
+        match self {
+            FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
+            FrameSource::Checksum | FrameSource::Assumed => false,
+        }
+    }
+}
+
+/// The data sheet: two banks of registers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DataSheet {
+    /// What every BiSS device says.
+    pub common: Sheet,
+    /// What an encoder says.
+    pub encoder: Sheet,
+    /// The frame that both tell, or why they do not.
+    pub layout: Result<Layout, EdsError>,
+}
+
+/// A bank of the data sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// Its number.
+    pub bank: u8,
+    /// Its registers, as they came.
+    pub bytes: [u8; 64],
+    /// What it says, where its sum fits.
+    pub eds: Result<Eds, EdsError>,
+}
+
+impl Identity {
+    /// As it stands in a profile.
+    pub fn profile(&self) -> ProfileIdentity {
+        ProfileIdentity {
+            serial_number: self.serial_number.clone(),
+            profile_id: self.kind.profile,
+            device_id: self.kind.device_id,
+            manufacturer: self.kind.manufacturer,
+            firmware: self.firmware,
+            description: self.description.name().to_owned(),
+            multiturn_bits: self.multiturn_bits(),
+            singleturn_bits: self.singleturn_bits(),
+            unknown: Unknown::new(),
+        }
+    }
+
+    /// Bits of the revolutions; `None` where nobody tells.
+    pub fn multiturn_bits(&self) -> Option<u8> {
+        self.is_told().then_some(self.layout.multiturn_bits())
+    }
+
+    /// Bits within a revolution; `None` where nobody tells.
+    pub fn singleturn_bits(&self) -> Option<u8> {
+        self.is_told().then_some(self.layout.singleturn_bits())
+    }
+
+    fn is_told(&self) -> bool {
+        self.source.is_told()
+    }
+}
+
+/// In the common bank: where the bank about the encoder is.
+const ENCODER_BANK: usize = 0x14;
+
+/// Asks who is there, and how its position comes; both are known from then on.
+///
+/// # Errors
+/// The line.
+pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identity, Error> {
+    identify_with(master, types, &mut Registers::default())
+}
+
+/// As [`identify`]; all that was read is kept.
+pub(super) fn identify_with(
+    master: &mut Master<'_>,
+    types: &Descriptions,
+    registers: &mut Registers,
+) -> Result<Identity, Error> {
+    let kind = read_kind(master, registers)?;
+    let description = types.find(&kind).cloned().map(Arc::new).ok_or_else(|| Error::NoDescription(kind.clone()))?;
+    registers.read_roles(master, &description, None, &[Role::SerialNumber, Role::Firmware])?;
+    let serial_bytes =
+        description.with_role(Role::SerialNumber).and_then(|register| registers.bytes(register)).unwrap_or_default();
+    let serial_number =
+        registers.number(&description, Role::SerialNumber).map(|number| number.to_string()).unwrap_or_default();
+    let firmware = firmware_of(&description, registers);
+    let data_sheet = read_data_sheet(master, kind.profile, registers)?;
+    let told = data_sheet.as_ref().and_then(|sheet| sheet.layout.clone().ok());
+    let station: &mut Station = master.station();
+    station.description = Some(description.clone());
+    station.firmware = firmware;
+    let source = match (&told, description.layout()) {
+        (Some(_), _) => FrameSource::DataSheet,
+        (None, Some(_)) => FrameSource::Description,
+        (None, None) if station.given.is_some() => FrameSource::Given,
+        (None, None) => FrameSource::Assumed,
+    };
+    if station.given.is_some() && source != FrameSource::Given {
+        tracing::warn!("mt, st and crc of the link are not used: the encoder tells its frame itself");
+    }
+    station.layout = told.or_else(|| station.given.clone().filter(|_| source == FrameSource::Given));
+    let source = if source == FrameSource::Assumed { look_at_frames(master)? } else { source };
+    let station = master.station();
+    station.source = Some(source);
+    Ok(Identity {
+        mismatch: near_miss(types, &kind).filter(|_| description.identity().is_none()),
+        layout: station.frame(),
+        adapter: station.adapter.hello().cloned(),
+        order: station.order,
+        kind,
+        serial_number,
+        serial_bytes,
+        firmware,
+        description,
+        data_sheet,
+        source,
+    })
+}
+
+/// Nobody tells the frame: that of the kit encoder is right where its checksum fits, and else one is looked for. Over the
+/// configuration pin nothing can be seen of it.
+fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
+    if master.station().way == Way::ConfigPin {
+        return Ok(FrameSource::Assumed);
+    }
+    match master.position() {
+        Err(Error::WrongWidths { .. }) => {}
+        Ok(_) | Err(Error::Damaged { .. }) => return Ok(FrameSource::Assumed),
+        Err(error) => return Err(error),
+    }
+    match find_widths(master) {
+        Ok(layout) => {
+            master.station().layout = Some(layout);
+            Ok(FrameSource::Checksum)
+        }
+        Err(Error::WidthsUnknown { .. }) => Ok(FrameSource::Assumed),
+        Err(error) => Err(error),
+    }
+}
+
+fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind, Error> {
+    let profile = registers.read(master, RegisterAddress::PROFILE, 2)?;
+    let device = registers.read(master, RegisterAddress::DEVICE_ID, 8)?;
+    let short = || Error::Unexpected("the identification is too short".to_owned());
+    let profile: [u8; 2] = profile.try_into().map_err(|_| short())?;
+    let device: [u8; 8] = device.try_into().map_err(|_| short())?;
+    let [d0, d1, d2, d3, d4, d5, m0, m1] = device;
+    Ok(Kind {
+        profile: ProfileId::new(u16::from_be_bytes(profile)),
+        manufacturer: [m0, m1],
+        device_id: [d0, d1, d2, d3, d4, d5],
+    })
+}
+
+/// A description of the same manufacturer and profile that is for another device.
+fn near_miss(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
+    let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
+    types
+        .iter()
+        .filter(|description| description.identity().is_some_and(is_near))
+        .find_map(|near| near.check(kind).err())
+}
+
+fn firmware_of(description: &Description, registers: &Registers) -> Option<Firmware> {
+    let bytes = registers.bytes(description.with_role(Role::Firmware)?)?;
+    match bytes.as_slice() {
+        [major, minor, patch] => Some(Firmware::new(*major, *minor, *patch)),
+        _ => None,
+    }
+}
+
+/// The two banks, where the profile is the one whose data sheet this program knows.
+fn read_data_sheet(
+    master: &mut Master<'_>,
+    profile: ProfileId,
+    registers: &mut Registers,
+) -> Result<Option<DataSheet>, Error> {
+    if !profile.is_standard_encoder() {
+        return Ok(None);
+    }
+    let first = registers.read(master, RegisterAddress::EDS_BANK, 1)?.first().copied().unwrap_or(0);
+    let Some(common) = read_sheet(master, EdsBank::Common, first, registers)? else { return Ok(None) };
+    let second = common.bytes.get(ENCODER_BANK).copied().unwrap_or(0);
+    let Some(encoder) = read_sheet(master, EdsBank::Encoder, second, registers)? else { return Ok(None) };
+    let layout = match (&common.eds, &encoder.eds) {
+        (Ok(common), Ok(encoder)) => eds_layout(common, encoder),
+        (Err(error), _) | (_, Err(error)) => Err(*error),
+    };
+    Ok(Some(DataSheet { common, encoder, layout }))
+}
+
+/// `None` where there is no such bank.
+fn read_sheet(
+    master: &mut Master<'_>,
+    which: EdsBank,
+    bank: u8,
+    registers: &mut Registers,
+) -> Result<Option<Sheet>, Error> {
+    let bytes = match registers.read(master, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE) {
+        Ok(bytes) => bytes,
+        Err(Error::NoSuchRegister { .. }) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let Ok(bytes) = <[u8; 64]>::try_from(bytes) else { return Ok(None) };
+    Ok(Some(Sheet { bank, bytes, eds: Eds::parse(which, bytes) }))
+}

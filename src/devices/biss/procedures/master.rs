@@ -1,0 +1,336 @@
+//! The host's side of the line: what is asked again, what is read back, and what is asked twice. One exchange is in
+//! [`ubicom`] or [`bus`].
+//!
+//! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
+
+mod bus;
+mod stream;
+mod supply;
+mod ubicom;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::error::{Asked, Damage};
+use super::position::PositionReading;
+use super::{Error, Station, Way};
+use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
+use crate::device::line::{Line, TRIES};
+use crate::devices::biss::protocol::{Description, RegisterAddress};
+use crate::link::Ctx;
+use crate::units::Moment;
+use bus::NoFrame;
+
+/// So often a register is silent beside one that answers before it counts as missing: a bad line loses single answers.
+const SILENCES: u32 = 3;
+
+/// The host's side of the line to a BiSS encoder, over either way.
+pub struct Master<'a> {
+    line: Line<'a>,
+    station: &'a mut Station,
+}
+
+/// An exchange that gave no answer.
+enum Trouble {
+    /// Nothing came back but, maybe, our own bytes.
+    Silence {
+        /// Our own bytes came back.
+        echo_heard: bool,
+    },
+    /// Something came back and is broken.
+    Damage(Damage),
+    /// The bus has no frame.
+    NoFrame(NoFrame),
+}
+
+/// How one exchange ended. The outer error ends everything; the inner one may be tried again.
+type Attempt<T> = Result<Result<T, Trouble>, Error>;
+
+/// What an encoder did with a value.
+enum Taken {
+    /// It has it.
+    Yes,
+    /// It refused; with what the register gives back, where the way tells that.
+    No(Option<u8>),
+}
+
+impl<'a> Master<'a> {
+    /// A master on this line, for one job: it has its patience before it.
+    pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        station.line.begin_job();
+        // Who knows what happened to the encoder since the last one.
+        station.bank = None;
+        Master { line: Line::new(ctx), station }
+    }
+
+    /// What is known about the line and the encoder.
+    pub fn station(&mut self) -> &mut Station {
+        self.station
+    }
+
+    /// What the encoder's registers are.
+    ///
+    /// # Errors
+    /// [`Error::NotIdentified`] before that is known.
+    pub fn description(&self) -> Result<Arc<Description>, Error> {
+        self.station.description.clone().ok_or(Error::NotIdentified)
+    }
+
+    /// Now.
+    pub fn now(&self) -> Moment {
+        self.line.now()
+    }
+
+    /// Waits; ends early when the user wishes.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        Ok(self.line.wait(duration)?)
+    }
+
+    /// Does what leads back to a safe state: in it, a wish to end is not heard.
+    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.shield(true);
+        let result = work(self);
+        self.shield(before);
+        result
+    }
+
+    /// From now on a wish to end is heard, or is not; gives back whether it was not.
+    pub(super) fn shield(&mut self, shielded: bool) -> bool {
+        self.line.shield(shielded)
+    }
+
+    /// Does what an encoder may leave without an answer for so long: in it, reading is repeated until then, however often.
+    pub fn with_patience<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.patience.replace(patience);
+        let result = work(self);
+        self.line.patience = before;
+        result
+    }
+
+    /// Does what reads something that is to be kept: in it, every register has to come twice.
+    pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.station.thorough, true);
+        let result = work(self);
+        self.station.thorough = before;
+        result
+    }
+
+    /// Reads a register. Where the line has damaged something in this session, its value has to come twice.
+    ///
+    /// # Errors
+    /// When every try failed, when there is no such register, or when the user wished an end.
+    pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
+        self.be_ready()?;
+        let asked = Asked::Read(address);
+        match self.read_confirmed(asked, |master| master.read_once(address)) {
+            Err(Error::NoReply { .. }) if self.is_silent_only_there(address)? => Err(Error::NoSuchRegister { address }),
+            Err(failed) if self.station.way == Way::Adapter => Err(self.diagnose(failed)),
+            result => result,
+        }
+    }
+
+    /// Reads registers one after the other, by their global addresses: behind a bank comes the next.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read); [`Error::OutOfRange`] behind the last that there can be.
+    pub fn read_run(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
+        let none = || Error::OutOfRange { start, count };
+        let count_16 = u16::try_from(count).map_err(|_| none())?;
+        let end = start.global().checked_add(count_16).ok_or_else(none)?;
+        let place = |global| RegisterAddress::from_global(global).ok_or_else(none);
+        let places = (start.global()..end).map(place).collect::<Result<Vec<_>, _>>()?;
+        places.into_iter().map(|address| self.read(address)).collect()
+    }
+
+    /// Writes a register. Where no answer tells whether it was taken, it is read back as far as that tells; only what was
+    /// not taken is sent again.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]; [`Error::Unclear`] where nothing tells whether it was taken, as with a command; or it was not
+    /// taken after five tries. With [`Error::Cancelled`] it was not.
+    pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
+        self.be_ready()?;
+        let asked = Asked::Write(address, value);
+        let unclear = |cause| Error::Unclear { address, value, cause: Box::new(cause) };
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            if self.station.way == Way::Adapter {
+                self.select_bank(address)?;
+            }
+            if address != RegisterAddress::BANK_SELECT {
+                self.station.written_at = Some(self.now());
+            }
+            let trouble = match self.write_once(address, value).map_err(|error| match error {
+                Error::Link(_) | Error::NeverSilent => unclear(error),
+                error => error,
+            })? {
+                Ok(Taken::Yes) => {
+                    self.station.line.recovered();
+                    return Ok(());
+                }
+                Ok(Taken::No(reads)) => {
+                    self.station.line.recovered();
+                    return Err(Error::Refused { address, value, reads });
+                }
+                Err(trouble) => trouble,
+            };
+            let failed = self.failed(asked, tries, &trouble);
+            let failure = self.may_try_again(tries, trouble, failed.clone());
+            if !self.station.tells_back(address) {
+                return Err(unclear(failed));
+            }
+            // From here on the line has to tell what happened, also when the user wishes an end.
+            match self.shielded(|master| master.read(address)) {
+                Ok(reads) if reads == value => return Ok(()),
+                Ok(_) => failure?,
+                Err(cause) => return Err(unclear(cause)),
+            }
+        }
+    }
+
+    /// Reads the position.
+    ///
+    /// # Errors
+    /// When every try failed, or when the user wished an end; [`Error::TooWide`] where it does not fit the widths.
+    pub fn position(&mut self) -> Result<PositionReading, Error> {
+        if self.station.way == Way::ConfigPin {
+            return self.ask(Asked::Position, |master| master.pin_position_once());
+        }
+        self.be_ready()?;
+        match self.ask(Asked::Position, |master| master.bus_position_once()) {
+            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.look_at_more_frames(failed),
+            result => result,
+        }
+    }
+
+    /// A frame of so many bits as it comes over an adapter, unchecked, right-justified.
+    pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
+        self.be_ready_for(data_bits, crc_bits)?;
+        self.ask(Asked::Position, |master| master.frame_once()).map(|(raw, _)| raw)
+    }
+
+    fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+        match self.station.way {
+            Way::ConfigPin => self.pin_read_once(address),
+            Way::Adapter => self.bus_read_once(address),
+        }
+    }
+
+    fn write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
+        match self.station.way {
+            Way::ConfigPin => self.pin_write_once(address, value),
+            Way::Adapter => self.bus_write_once(address, value),
+        }
+    }
+
+    /// What has to be done before the first register: learning the order of a register number's bytes, or setting the
+    /// bus.
+    fn be_ready(&mut self) -> Result<(), Error> {
+        match self.station.way {
+            Way::Adapter => self.be_ready_on_bus(),
+            Way::ConfigPin if self.station.order.is_some() => Ok(()),
+            Way::ConfigPin => self.probe_order(),
+        }
+    }
+
+    fn probe_order(&mut self) -> Result<(), Error> {
+        let Request::Read { register } = Request::PROBE else { return Ok(()) };
+        let asked = Asked::Read(RegisterAddress::from_global(register).unwrap_or(RegisterAddress::BANK_SELECT));
+        let answer = self.read_confirmed(asked, |master| master.probe_once())?;
+        let order = order_told_by(answer).ok_or(Error::OrderUnknown { answer })?;
+        self.station.order = Some(order);
+        Ok(())
+    }
+
+    /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
+    fn ask<T>(&mut self, asked: Asked, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            match once(self)? {
+                Ok(answer) => {
+                    self.station.line.recovered();
+                    return Ok(answer);
+                }
+                Err(trouble) => {
+                    let failed = self.failed(asked, tries, &trouble);
+                    self.may_try_again(tries, trouble, failed)?;
+                }
+            }
+        }
+    }
+
+    /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
+    fn read_confirmed(&mut self, asked: Asked, mut once: impl FnMut(&mut Self) -> Attempt<u8>) -> Result<u8, Error> {
+        let mut value = self.ask(asked, &mut once)?;
+        for _ in 0..TRIES {
+            if !self.station.reads_twice() {
+                return Ok(value);
+            }
+            let again = self.ask(asked, &mut once)?;
+            if again == value {
+                return Ok(value);
+            }
+            value = again;
+        }
+        Err(Error::Damaged { asked, tries: TRIES, cause: Damage::Inconsistent })
+    }
+
+    /// What a try that failed becomes when there is no other.
+    fn failed(&self, asked: Asked, tries: u32, trouble: &Trouble) -> Error {
+        match trouble {
+            Trouble::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
+            Trouble::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },
+            Trouble::NoFrame(cause) => self.no_frame(*cause, tries),
+        }
+    }
+
+    /// What is right about a broken line before the next try; `failed` when there is to be none.
+    fn may_try_again(&mut self, tries: u32, trouble: Trouble, failed: Error) -> Result<(), Error> {
+        self.station.noisy |= matches!(trouble, Trouble::Damage(_));
+        let quality = &mut self.station.line.quality;
+        match trouble {
+            Trouble::Silence { .. } => quality.silent += 1,
+            Trouble::Damage(_) | Trouble::NoFrame(_) => quality.damaged += 1,
+        }
+        let longest = match self.station.way {
+            Way::ConfigPin => self.longest_pin_exchange(),
+            Way::Adapter => self.longest_bus_exchange(),
+        };
+        if !self.line.may_ask_again(&mut self.station.line, tries, longest) {
+            return Err(failed);
+        }
+        match trouble {
+            // Frames come one after the other, good or bad, and late packets are told by their number.
+            Trouble::Damage(Damage::Frame(_)) => {}
+            _ if self.station.way == Way::Adapter => self.pause()?,
+            Trouble::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
+            // A frame that the encoder still waits for the end of is over after that.
+            _ => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
+        }
+        Ok(())
+    }
+
+    /// A register gave no answer: whether another one does, again and again, so that it is this one that is not there.
+    /// Who is known to be silent for long is not asked.
+    fn is_silent_only_there(&mut self, address: RegisterAddress) -> Result<bool, Error> {
+        if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
+            return Ok(false);
+        }
+        for _ in 0..SILENCES {
+            let answers = self.read_once(RegisterAddress::BANK_SELECT)?.is_ok();
+            if !answers || !matches!(self.read_once(address)?, Err(Trouble::Silence { .. })) {
+                return Ok(false);
+            }
+            match self.station.way {
+                Way::ConfigPin => self.line.hear_late(&mut self.station.line, 1, BYTE_TIME_OUT)?,
+                Way::Adapter => self.pause()?,
+            }
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,268 @@
+//! One exchange over an adapter on the bus: a frame, or a register by bank and address. The bank is remembered as long as
+//! the encoder cannot have restarted unseen, and forgotten with everything that fails.
+
+use std::time::Duration;
+
+use super::{Attempt, Master, Taken, Trouble};
+use crate::buses::bridge::procedures::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
+use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
+use crate::device::line::LineError;
+use crate::devices::biss::procedures::error::{Asked, Damage, Error};
+use crate::devices::biss::procedures::position::PositionReading;
+use crate::devices::biss::procedures::station::Bus;
+use crate::devices::biss::protocol::{FrameError, RegisterAddress};
+use crate::units::Moment;
+
+/// The encoder's number on a line with no other.
+const SLAVE: u8 = 0;
+/// An encoder that restarts is silent for longer (EDS 02:0Eh, 500 ms): who answered within this has not restarted.
+const BANK_TRUST: Duration = Duration::from_millis(200);
+/// Between two tries: the adapter says at once that nobody answers.
+const PAUSE: Duration = Duration::from_millis(20);
+/// So many frames with wrong checksums and none with a right one are no noise (`U`).
+const WRONG_FRAMES: u32 = 16;
+
+/// Why there is no frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum NoFrame {
+    NoAcknowledge,
+    StuckLow,
+    StuckHigh,
+}
+
+impl<'a> Master<'a> {
+    pub(super) fn adapter(&mut self) -> Adapter<'_, 'a> {
+        Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
+    }
+
+    /// As [`be_ready_for`](Self::be_ready_for), with the widths that are known.
+    pub(super) fn be_ready_on_bus(&mut self) -> Result<(), Error> {
+        let layout = self.station.frame();
+        self.be_ready_for(layout.data_bits(), layout.crc_bits())
+    }
+
+    /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets the bus.
+    pub(super) fn be_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
+        self.end_frames()?;
+        self.adapter().hello()?;
+        let Some(hello) = self.station.adapter.hello() else { return Err(AdapterError::Silent.into()) };
+        if !hello.capabilities.has(Capabilities::BISS) {
+            return Err(AdapterError::NoBiss { name: hello.name.clone() }.into());
+        }
+        let fastest = hello.max_clock_hz;
+        // The bus first: a frame tells whether the encoder has power already.
+        self.set_bus(fastest, data_bits, crc_bits)?;
+        self.switch_on()?;
+        self.set_bus(fastest, data_bits, crc_bits)
+    }
+
+    /// Sets clock and widths, where they are others than before.
+    fn set_bus(&mut self, fastest: u32, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
+        let bus = Bus { clock_hz: self.station.clock_hz.min(fastest), data_bits, crc_bits };
+        if self.station.bus == Some(bus) {
+            return Ok(());
+        }
+        let timeout_us = BISS_TIME_OUT_US;
+        let request = Request::BissConfig { clock_hz: bus.clock_hz, data_bits, crc_bits, timeout_us };
+        let answered = self.adapter().ask(&request)?;
+        let Reply::BissConfig { clock_hz } = answered.reply else {
+            return Err(unexpected("a setting", &answered.reply));
+        };
+        (self.station.bus, self.station.actual_clock_hz) = (Some(bus), Some(clock_hz));
+        self.station.good_frames = false;
+        Ok(())
+    }
+
+    /// Selects the bank of a register, where it is not known to be selected.
+    pub(super) fn select_bank(&mut self, address: RegisterAddress) -> Result<(), Error> {
+        let Some(bank) = address.bank() else { return Ok(()) };
+        self.ask(Asked::Write(RegisterAddress::BANK_SELECT, bank), |master| master.select_once(address))
+    }
+
+    fn select_once(&mut self, address: RegisterAddress) -> Attempt<()> {
+        let Some(bank) = address.bank() else { return Ok(Ok(())) };
+        let now = self.now();
+        let fresh = |(own, at): (u8, Moment)| own == bank && now.since(at) < BANK_TRUST;
+        if self.station.bank.is_some_and(fresh) {
+            return Ok(Ok(()));
+        }
+        Ok(match self.register_write(RegisterAddress::BANK_SELECT, bank)? {
+            Ok(reads) if reads == bank => Ok(()),
+            Ok(_) => return Err(Error::NoSuchRegister { address }),
+            Err(trouble) => Err(trouble),
+        })
+    }
+
+    pub(super) fn bus_read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+        if let Err(trouble) = self.select_once(address)? {
+            return Ok(Err(trouble));
+        }
+        let request = Request::BissRegisterRead { slave: SLAVE, address: address.address() };
+        let answered = self.adapter().ask(&request).map(Some);
+        let value = match self.register_answer(answered)? {
+            Ok(Reply::BissRegisterRead { value }) => value,
+            Ok(reply) => return Err(unexpected("a register", &reply)),
+            Err(trouble) => return Ok(Err(trouble)),
+        };
+        if address == RegisterAddress::BANK_SELECT {
+            self.station.bank = Some((value, self.now()));
+        }
+        Ok(Ok(value))
+    }
+
+    /// The bank has to be selected.
+    pub(super) fn bus_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
+        Ok(match self.register_write(address, value)? {
+            Ok(reads) if reads == value => Ok(Taken::Yes),
+            // A command may be gone as soon as it is carried out (`U`); the status tells.
+            Ok(0) if self.station.is_command(address) => Ok(Taken::Yes),
+            Ok(reads) => Ok(Taken::No(Some(reads))),
+            Err(trouble) => Err(trouble),
+        })
+    }
+
+    /// Writes, and gives what the register gives back. It is not repeated.
+    fn register_write(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
+        let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
+        let answered = self.adapter().ask_once(&request);
+        let reads = match self.register_answer(answered)? {
+            Ok(Reply::BissRegisterWrite { value }) => value,
+            Ok(reply) => return Err(unexpected("a write", &reply)),
+            Err(trouble) => return Ok(Err(trouble)),
+        };
+        if address == RegisterAddress::BANK_SELECT {
+            self.station.bank = Some((reads, self.now()));
+        }
+        Ok(Ok(reads))
+    }
+
+    /// What an answer about a register says, and what it says about the bank.
+    fn register_answer(&mut self, answered: Result<Option<Answered>, Failure>) -> Attempt<Reply> {
+        let trouble = match answered {
+            Ok(Some(answered)) => {
+                let now = self.now();
+                self.station.bank = self.station.bank.map(|(bank, _)| (bank, now));
+                return Ok(Ok(answered.reply));
+            }
+            Ok(None) => Trouble::Silence { echo_heard: false },
+            Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::NO_ANSWER, .. })) => {
+                Trouble::Silence { echo_heard: false }
+            }
+            Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::WRONG_ANSWER, .. })) => {
+                Trouble::Damage(Damage::ControlFrame)
+            }
+            Err(failure) => {
+                self.may_be_reset(&failure);
+                return Err(failure.into());
+            }
+        };
+        self.station.bank = None;
+        Ok(Err(trouble))
+    }
+
+    /// An adapter that was reset has to be set again. A wish to end says nothing of it.
+    fn may_be_reset(&mut self, failure: &Failure) {
+        if matches!(failure, Failure::Line(LineError::Cancelled)) {
+            (self.station.bank, self.station.bus) = (None, None);
+        } else {
+            self.station.forget_settings();
+        }
+    }
+
+    pub(super) fn bus_position_once(&mut self) -> Attempt<PositionReading> {
+        let layout = self.station.frame();
+        let (raw, at) = match self.frame_once()? {
+            Ok(frame) => frame,
+            Err(trouble) => return Ok(Err(trouble)),
+        };
+        Ok(match layout.parse(raw) {
+            Ok(reading) => {
+                self.station.good_frames = true;
+                let crc_errors = self.station.take_crc_errors();
+                let is_split_known = self.station.is_split_known();
+                Ok(PositionReading { crc_errors, is_split_known, ..PositionReading::in_frame(at, &reading, &layout) })
+            }
+            Err(FrameError::StuckLow) => Err(Trouble::NoFrame(NoFrame::StuckLow)),
+            Err(FrameError::StuckHigh) => Err(Trouble::NoFrame(NoFrame::StuckHigh)),
+            Err(cause) => {
+                self.station.crc_errors = self.station.crc_errors.saturating_add(1);
+                Err(Trouble::Damage(Damage::Frame(cause)))
+            }
+        })
+    }
+
+    /// A frame as it comes, unchecked, and when it was taken.
+    pub(super) fn frame_once(&mut self) -> Attempt<(u64, Moment)> {
+        let answered = self.adapter().ask(&Request::BissRead);
+        let answered = answered.inspect_err(|failure| self.may_be_reset(failure))?;
+        let Reply::BissRead { t_us, status, raw } = answered.reply else {
+            return Err(unexpected("a frame", &answered.reply));
+        };
+        let no_frame = match status {
+            BissStatus::OK => {
+                let at = self.station.adapter.moment_of(t_us, &answered);
+                return Ok(Ok((raw, at)));
+            }
+            BissStatus::NO_ACKNOWLEDGE => NoFrame::NoAcknowledge,
+            BissStatus::STUCK_LOW => NoFrame::StuckLow,
+            BissStatus::STUCK_HIGH => NoFrame::StuckHigh,
+            other => return Err(Error::Unexpected(format!("a frame with status {}", other.byte()))),
+        };
+        self.station.bank = None;
+        Ok(Err(Trouble::NoFrame(no_frame)))
+    }
+
+    /// Five frames had wrong checksums. Where none has been right yet, more are looked at: noise lets some through,
+    /// wrong widths none.
+    pub(super) fn look_at_more_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
+        if self.station.good_frames {
+            return Err(failed);
+        }
+        for _ in 0..WRONG_FRAMES {
+            match self.bus_position_once()? {
+                Ok(reading) => return Ok(reading),
+                Err(Trouble::Damage(Damage::Frame(_))) => {}
+                Err(_) => return Err(failed),
+            }
+        }
+        let layout = self.station.frame();
+        Err(Error::WrongWidths {
+            frames: self.station.take_crc_errors(),
+            data_bits: layout.data_bits(),
+            crc_bits: layout.crc_bits(),
+        })
+    }
+
+    /// Nobody answers to a register: a frame tells whether the line itself is at fault.
+    pub(super) fn diagnose(&mut self, failed: Error) -> Error {
+        let Error::NoReply { tries, .. } = failed else { return failed };
+        match self.frame_once() {
+            Ok(Err(Trouble::NoFrame(cause))) => self.no_frame(cause, tries),
+            _ => failed,
+        }
+    }
+
+    pub(super) fn no_frame(&self, cause: NoFrame, tries: u32) -> Error {
+        let can_switch = self.station.adapter.hello().is_some_and(|hello| hello.capabilities.has(Capabilities::SUPPLY));
+        match cause {
+            NoFrame::NoAcknowledge => {
+                Error::NoAcknowledge { tries, supply_off: can_switch && self.station.supply.is_none() }
+            }
+            NoFrame::StuckLow => Error::StuckLow { tries },
+            NoFrame::StuckHigh => Error::StuckHigh { tries },
+        }
+    }
+
+    pub(super) fn pause(&mut self) -> Result<(), Error> {
+        self.wait(PAUSE)
+    }
+
+    /// The time that an exchange takes at most: asked twice.
+    pub(super) fn longest_bus_exchange(&self) -> Duration {
+        2 * (REPEAT_AFTER + self.station.line.margin)
+    }
+}
+
+fn unexpected(what: &str, reply: &Reply) -> Error {
+    Error::Unexpected(format!("{what}: {reply:?}"))
+}

@@ -1,0 +1,199 @@
+//! One exchange over the configuration pin (reference UBICOM 1 and 2): request, and what comes until the reply is whole or
+//! its time is up. What is no frame is skipped, a frame that pauses for 20 ms is over; our own bytes are known by what
+//! they are, since no reply has the length of its request.
+
+use std::time::Duration;
+
+use super::{Attempt, Master, Taken, Trouble};
+use crate::bits::ByteOrder;
+use crate::bits::MaskedBytes;
+use crate::buses::ubicom::protocol::{
+    BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
+};
+use crate::device::line::MOST_KEPT;
+use crate::devices::biss::procedures::error::Damage;
+use crate::devices::biss::procedures::position::PositionReading;
+use crate::devices::biss::procedures::{Echo, Error};
+use crate::devices::biss::protocol::RegisterAddress;
+use crate::units::Moment;
+
+/// Bytes of the longest frame: the reply to 03h.
+const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
+/// Noise that goes on for so long behind the time of a reply is no reply under way.
+const NOISE: Duration = Duration::from_secs(1);
+
+/// A reply and when its first byte began.
+struct Timed {
+    reply: Reply,
+    at: Moment,
+}
+
+/// What has come so far.
+struct Heard {
+    receiver: Receiver,
+    sent: Vec<u8>,
+    /// The first of all that came, for the trace.
+    raw: Vec<u8>,
+    /// How many bytes came.
+    bytes: usize,
+    echo_heard: bool,
+    damage: Option<Damage>,
+}
+
+impl Master<'_> {
+    /// Reads a register once.
+    pub(super) fn pin_read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+        let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
+        self.register_once(Request::Read { register: address.global() }, order)
+    }
+
+    /// Asks once for what tells the order of a register number's bytes.
+    pub(super) fn probe_once(&mut self) -> Attempt<u8> {
+        self.register_once(Request::PROBE, ByteOrder::LowFirst)
+    }
+
+    fn register_once(&mut self, request: Request, order: ByteOrder) -> Attempt<u8> {
+        Ok(match self.exchange(request, order)? {
+            Ok(Timed { reply: Reply::Value(value), .. }) => Ok(value),
+            Ok(Timed { reply, .. }) => return Err(Error::Unexpected(format!("a register: {reply:?}"))),
+            Err(trouble) => Err(trouble),
+        })
+    }
+
+    /// Writes a register once.
+    pub(super) fn pin_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
+        let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
+        Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
+            Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(Taken::Yes),
+            Ok(Timed { reply: Reply::Written(Written::Refused), .. }) => Ok(Taken::No(None)),
+            Ok(Timed { reply, .. }) => return Err(Error::Unexpected(format!("a write: {reply:?}"))),
+            Err(trouble) => Err(trouble),
+        })
+    }
+
+    /// Reads the position once.
+    pub(super) fn pin_position_once(&mut self) -> Attempt<PositionReading> {
+        let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
+            Ok(Timed { reply: Reply::Position(word), at }) => (word, at),
+            Ok(Timed { reply, .. }) => return Err(Error::Unexpected(format!("a position: {reply:?}"))),
+            Err(trouble) => return Ok(Err(trouble)),
+        };
+        let layout = self.station.frame();
+        let Some(reading) = layout.reading_of(word) else {
+            let (multiturn, singleturn) = (layout.multiturn_bits(), layout.singleturn_bits());
+            return Err(Error::TooWide { word: word.word(), multiturn, singleturn });
+        };
+        let is_split_known = self.station.is_split_known();
+        Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
+    }
+
+    /// The time that an exchange takes at most.
+    pub(super) fn longest_pin_exchange(&self) -> Duration {
+        self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
+    }
+
+    /// The time of so many characters on the line.
+    fn characters(&self, count: usize) -> Duration {
+        let format = self.station.format;
+        format.baud.time_of_bits(character_bits(format) * count as u64)
+    }
+
+    fn exchange(&mut self, request: Request, order: ByteOrder) -> Attempt<Timed> {
+        self.line.begin(&mut self.station.line, BYTE_TIME_OUT)?;
+        let frame = request.emit(order);
+        let sent_at = self.now();
+        self.station.line.sent(sent_at);
+        self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
+        let deadline = sent_at + self.longest_pin_exchange();
+        let heard = Heard {
+            receiver: Receiver::new(NODE),
+            sent: frame,
+            raw: Vec::new(),
+            bytes: 0,
+            echo_heard: false,
+            damage: None,
+        };
+        self.listen(request, heard, deadline)
+    }
+
+    fn listen(&mut self, request: Request, mut heard: Heard, deadline: Moment) -> Attempt<Timed> {
+        let gap = BYTE_TIME_OUT + self.station.line.margin;
+        let mut last_at = self.now();
+        let mut portion = Vec::new();
+        loop {
+            let under_way = heard.receiver.is_waiting();
+            // A frame that has begun in time may end behind it.
+            let until = if under_way { self.now() + gap } else { deadline };
+            portion.clear();
+            self.line.receive(until, &mut portion)?;
+            if portion.is_empty() && !under_way {
+                return Ok(Err(self.give_up(heard)));
+            }
+            if self.now() > deadline + NOISE {
+                return Err(Error::NeverSilent);
+            }
+            if !portion.is_empty() {
+                last_at = self.now();
+            }
+            heard.bytes += portion.len();
+            heard.raw.extend(portion.iter().take(MOST_KEPT.saturating_sub(heard.raw.len())));
+            heard.receiver.push(&portion);
+            let next = if portion.is_empty() { Receiver::silence } else { Receiver::next_frame };
+            while let Some(frame) = next(&mut heard.receiver) {
+                if let Some(reply) = self.judge(request, &frame, &mut heard) {
+                    let at = last_at - self.characters(frame.len());
+                    self.understood(&heard, &frame, at);
+                    self.line.show(at, MaskedBytes::clear(&frame));
+                    return Ok(Ok(Timed { reply, at }));
+                }
+            }
+        }
+    }
+
+    /// The reply in a frame, where it is one.
+    fn judge(&self, request: Request, frame: &[u8], heard: &mut Heard) -> Option<Reply> {
+        if frame == heard.sent {
+            heard.echo_heard = true;
+            return None;
+        }
+        // The receiver gives whole frames only.
+        let parsed = Reply::parse(&Frame::parse(frame).ok()?, request.command());
+        match parsed {
+            // What comes before our own bytes answers an earlier request.
+            Ok(_) if self.station.line.echo == Echo::On && !heard.echo_heard => heard.damage = Some(Damage::Echo),
+            Ok(reply) => return Some(reply),
+            Err(error) => heard.damage = Some(Damage::Reply(error)),
+        }
+        None
+    }
+
+    fn understood(&mut self, heard: &Heard, reply: &[u8], at: Moment) {
+        let state = &mut self.station.line;
+        state.answered();
+        state.answer_began(at);
+        state.echo.learn(heard.echo_heard);
+        if heard.receiver.skipped() > 0 || heard.damage.is_some() {
+            // This reply is right as far as its sum tells; the line is not.
+            state.damaged += 1;
+            state.quality.damaged += 1;
+            self.station.noisy = true;
+            let before = heard.raw.windows(reply.len()).position(|window| window == reply);
+            let before = heard.raw.get(..before.unwrap_or(heard.raw.len())).unwrap_or_default();
+            self.line.show(at, MaskedBytes::clear(before.strip_prefix(&*heard.sent).unwrap_or(before)));
+        }
+    }
+
+    /// The time is up.
+    fn give_up(&mut self, heard: Heard) -> Trouble {
+        let broken = heard.raw.strip_prefix(&*heard.sent).unwrap_or(&heard.raw);
+        let echo = if heard.echo_heard { heard.sent.len() } else { 0 };
+        let bytes = heard.bytes.saturating_sub(echo);
+        let now = self.now();
+        self.line.show(now, MaskedBytes::clear(broken));
+        match heard.damage {
+            Some(damage) => Trouble::Damage(damage),
+            None if bytes > 0 => Trouble::Damage(Damage::NoFrame { bytes }),
+            None => Trouble::Silence { echo_heard: heard.echo_heard },
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! The encoder's memory: banks, whole areas of data, and all that can be restored. Areas of data are not touched while the
+//! shaft turns (manual 6.5).
+
+use std::time::Duration;
+
+use super::identify::identify_with;
+use super::registers::Registers;
+use super::survey::look_around;
+use super::write::unsaved_mode;
+use super::{Error, Master, PositionReading, Survey};
+use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, Recorded};
+use crate::devices::biss::protocol::{Area, Descriptions, DeviceMode, RegisterAddress};
+use crate::profile::Unknown;
+
+/// Positions that say whether the shaft stands still, and the time between two.
+const READINGS: usize = 3;
+const BETWEEN: Duration = Duration::from_millis(100);
+/// Bits of counted revolutions with which no motor comes round unseen in the time of the readings: at 12,000 rpm it turns
+/// forty times.
+const COUNTED: u8 = 7;
+/// A shaft that moves by no more than a revolution's 8192nd part stands still: the position trembles (`U`).
+const TREMBLE: u64 = 8192;
+
+/// What becomes of values that were entered in a device mode and never saved: the encoder shows them as if it held them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unsaved {
+    /// They are saved, and the profile says so.
+    Marked,
+    /// Nothing is read: they would be compared as the encoder's content.
+    Refused,
+}
+
+/// Where reading of memory is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A register.
+    Register(RegisterAddress),
+    /// A bank.
+    Bank(u8),
+}
+
+/// Reads the position three times, a tenth of a second apart, and gives the last when the shaft stands still.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Error> {
+    let first = master.position()?;
+    let mut readings = vec![first];
+    let mut last = first;
+    for _ in 1..READINGS {
+        master.wait(BETWEEN)?;
+        last = master.position()?;
+        readings.push(last);
+    }
+    let range = 1u64.checked_shl(first.raw().bits.into());
+    let allowed = ((1u64 << first.singleturn_bits) / TREMBLE).max(1);
+    if readings.iter().all(|reading| distance(first.position(), reading.position(), range) <= allowed) {
+        Ok(last)
+    } else {
+        Err(Error::Moving { rpm: speed(&readings) })
+    }
+}
+
+/// Revolutions a minute between the first and the last of them, above 0 clockwise; `None` where a shaft could have come
+/// round unseen between two of them.
+fn speed(readings: &[PositionReading]) -> Option<f64> {
+    let (first, last) = (readings.first()?, readings.last()?);
+    if first.multiturn_bits < COUNTED || !first.is_split_known {
+        return None;
+    }
+    let range = 1_i64.checked_shl((first.multiturn_bits + first.singleturn_bits).into())?;
+    let steps = last.position() as i64 - first.position() as i64;
+    // The short way round.
+    let steps = (steps + range / 2).rem_euclid(range) - range / 2;
+    let turns = steps as f64 / f64::powi(2.0, first.singleturn_bits.into());
+    let minutes = last.at.since(first.at).as_secs_f64() / 60.0;
+    (minutes > 0.0).then(|| turns / minutes)
+}
+
+/// Steps between two positions, the short way round: a shaft at rest may tremble across zero.
+fn distance(a: u64, b: u64, range: Option<u64>) -> u64 {
+    let straight = a.abs_diff(b);
+    range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
+}
+
+/// Reads registers that follow each other; those of an area of data only at standstill.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8) -> Result<Vec<u8>, Error> {
+    let in_area = master.station().description.as_ref().is_some_and(|own| own.area_at(start).is_some());
+    if in_area {
+        ensure_standstill(master)?;
+    }
+    certainly(master, |master| master.read_run(start, count.into()))
+}
+
+/// Reads an area of data; the shaft stands still.
+///
+/// # Errors
+/// What reading gives.
+pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
+    let mut banks = Vec::new();
+    for number in area.banks() {
+        told(number);
+        let bytes = master.read_run(RegisterAddress::start_of(number), Bank::SIZE)?;
+        let short = || Error::Unexpected(format!("bank 0x{number:02X} has not 64 registers"));
+        banks.push(Bank { number, bytes: bytes.try_into().map_err(|_| short())? });
+    }
+    Ok(banks)
+}
+
+/// Reads an area of data for itself.
+///
+/// # Errors
+/// [`Error::Moving`], or what reading gives.
+pub fn read_area_surely(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
+    ensure_standstill(master)?;
+    certainly(master, |master| read_area(master, area, told))
+}
+
+/// Reads everything that can be restored, and what identifies the encoder. It leaves the device mode as it is: leading back
+/// would discard what somebody has entered.
+///
+/// # Errors
+/// The line, [`Error::Moving`], or [`Error::NotInOperation`] where unsaved values are refused.
+pub fn save(
+    master: &mut Master<'_>,
+    types: &Descriptions,
+    unsaved: Unsaved,
+    progress: &mut dyn FnMut(u64, u64, Place),
+) -> Result<BissProfile, Error> {
+    certainly(master, |master| {
+        let mut registers = Registers::default();
+        let identity = identify_with(master, types, &mut registers)?;
+        let description = identity.description.clone();
+        let refused = |mode: &Option<DeviceMode>| mode.filter(|_| unsaved == Unsaved::Refused);
+        let before = unsaved_mode(master, &description)?;
+        if let Some(mode) = refused(&before) {
+            return Err(Error::NotInOperation { mode });
+        }
+        let areas: Vec<&Area> = description.areas().iter().filter(|area| area.access.reads()).collect();
+        let (mut done, mut total) = (0, areas.iter().map(|area| area.size() as u64).sum());
+        let in_areas = total;
+        let survey = look_around(master, identity, registers, &mut |at, of, address| {
+            (done, total) = (of, of + in_areas);
+            progress(at, total, Place::Register(address));
+        })?;
+        let mut data = Vec::new();
+        for area in areas {
+            ensure_standstill(master)?;
+            let banks = read_area(master, area, &mut |bank| {
+                progress(done, total, Place::Bank(bank));
+                done += Bank::SIZE as u64;
+            })?;
+            data.push(DataImage::of(area, banks));
+        }
+        // Another host may have entered a mode meanwhile.
+        let mode = before.or(unsaved_mode(master, &description)?);
+        match refused(&mode) {
+            Some(mode) => Err(Error::NotInOperation { mode }),
+            None => Ok(profile_of(&survey, data, mode)),
+        }
+    })
+}
+
+/// A line that has damaged something while this was read may have damaged more, unseen: then all is read again, and has
+/// to come twice.
+fn certainly<T>(
+    master: &mut Master<'_>,
+    mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
+) -> Result<T, Error> {
+    let was_sure = master.station().reads_twice();
+    let value = read(master)?;
+    if was_sure || !master.station().reads_twice() { Ok(value) } else { master.thoroughly(read) }
+}
+
+/// A profile of an encoder with these data, which were read in this device mode where that is not operation.
+pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
+    let identity = &survey.identity;
+    let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);
+    let mut profile = BissProfile {
+        identity: identity.profile(),
+        filter: survey.status.filter,
+        preset: survey.preset.map(|value| PresetSetting { value, unknown: Unknown::new() }),
+        recorded: Recorded {
+            eds: sheets.map(|sheet| ListedBank::from(Bank { number: sheet.bank, bytes: sheet.bytes })).collect(),
+            wiegand_last: survey.wiegand_last,
+            wiegand_production: survey.wiegand_production,
+            wiegand_saved: survey.wiegand_saved,
+            calibration_status: survey.calibration.map(|status| status.byte()),
+            device_mode: unsaved,
+            unknown: Unknown::new(),
+        },
+        mounting: Vec::new(),
+        data,
+    };
+    profile.mark_mounting();
+    profile
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_go_the_short_way_round() {
+        assert_eq!(distance(0, (1 << 33) - 1, Some(1 << 33)), 1);
+        assert_eq!(distance(5, 3, Some(1 << 33)), 2);
+        assert_eq!(distance(0, u64::MAX, None), u64::MAX);
+    }
+}

@@ -1,0 +1,35 @@
+//! What one does with a BiSS C encoder, over its configuration pin (UBICOM) or over an adapter on the bus. Each procedure
+//! takes a [`Master`], which asks, repeats what may be repeated and keeps the times; the manual is POSITAL's for the IXARC
+//! kit encoders.
+//!
+//! ```text
+//! read, write, position ── master: what is asked again ──┬─▶ master/ubicom: one exchange over the configuration pin
+//!                                                        └─▶ master/bus: one over an adapter (device/bridge)
+//! ```
+
+pub mod check;
+mod error;
+mod flags;
+mod frames;
+mod identify;
+mod master;
+mod memory;
+mod position;
+pub mod procedure;
+mod registers;
+mod station;
+mod survey;
+mod widths;
+pub mod write;
+
+pub use crate::device::line::Echo;
+pub use error::{Asked, Damage, Error};
+pub use flags::read_position;
+pub use frames::{Frame, FrameRun, NoReading, frames};
+pub use identify::{DataSheet, FrameSource, Identity, Sheet, identify};
+pub use master::Master;
+pub use memory::{Place, Unsaved, ensure_standstill, profile_of, read_area, read_area_surely, read_registers, save};
+pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched};
+pub use registers::Registers;
+pub use station::{PARAMETERS, Station, Supply, Way};
+pub use survey::{Bits, Status, Survey, read_status, survey};

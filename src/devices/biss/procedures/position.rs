@@ -1,0 +1,149 @@
+//! The position as a person or a plot takes it, and registers that are watched beside it.
+
+use super::flags::with_flags;
+use super::{Damage, Error, FrameRun, Master};
+use crate::bits::Word;
+use crate::devices::biss::profile::RegisterRange;
+use crate::devices::biss::protocol::{Layout, Reading};
+use crate::units::Moment;
+
+/// A position as it was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PositionReading {
+    /// When the encoder sampled it.
+    pub at: Moment,
+    /// Revolutions, as many bits as there are.
+    pub turns: u32,
+    /// Place within the revolution, in parts of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
+    pub steps: u32,
+    /// The encoder says that the position is invalid; `None` where nothing tells. Over the configuration pin its register
+    /// does, which is looked at beside the position.
+    pub error: Option<bool>,
+    /// The encoder warns; `None` where nothing tells.
+    pub warning: Option<bool>,
+    /// Frames with a wrong CRC that came before it, since the last reading.
+    pub crc_errors: u32,
+    /// Bits of the revolutions, 0…32.
+    pub multiturn_bits: u8,
+    /// Bits within a revolution, 0…32.
+    pub singleturn_bits: u8,
+    /// How many of its bits are turns is known; else turns and steps are nothing but the upper and the lower part of it.
+    pub is_split_known: bool,
+    /// The whole frame that it came in, with its flags and its CRC; `None` over the configuration pin.
+    pub frame: Option<Word>,
+}
+
+impl PositionReading {
+    /// A reading at a moment, without anything that only one way tells.
+    pub(super) fn new(at: Moment, reading: &Reading, layout: &Layout) -> Self {
+        PositionReading {
+            at,
+            turns: reading.multiturn,
+            steps: reading.singleturn,
+            error: None,
+            warning: None,
+            crc_errors: 0,
+            multiturn_bits: layout.multiturn_bits(),
+            singleturn_bits: layout.singleturn_bits(),
+            is_split_known: true,
+            frame: None,
+        }
+    }
+
+    /// A reading that came in a frame with a right checksum.
+    pub fn in_frame(at: Moment, reading: &Reading, layout: &Layout) -> Self {
+        PositionReading {
+            error: layout.has_error_bit().then_some(reading.error),
+            warning: layout.has_warning_bit().then_some(reading.warning),
+            frame: Some(Word { value: layout.emit(reading), bits: layout.bits() }),
+            ..PositionReading::new(at, reading, layout)
+        }
+    }
+
+    /// The position word as it was received: the bits of the turns above those of the steps, without flags and CRC.
+    pub const fn raw(&self) -> Word {
+        Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
+    }
+
+    /// Revolutions and place as one number of steps.
+    pub const fn position(&self) -> u64 {
+        (self.turns as u64) << self.singleturn_bits | self.steps as u64
+    }
+
+    /// Degrees within the revolution, from 0 up to 360; `None` where nothing tells what a revolution is.
+    pub fn angle(&self) -> Option<f64> {
+        self.is_split_known.then(|| self.degrees())
+    }
+
+    /// Degrees within the revolution, from 0 up to 360.
+    pub fn degrees(&self) -> f64 {
+        f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
+    }
+
+    /// Nothing says that it is wrong.
+    pub fn is_valid(&self) -> bool {
+        self.error != Some(true)
+    }
+}
+
+/// What polling gives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sample {
+    /// The position.
+    Position(PositionReading),
+    /// Frames came, and none with a right checksum.
+    Missed {
+        /// When the last one came.
+        at: Moment,
+        /// How many there were, with those before that were asked again.
+        crc_errors: u32,
+    },
+    /// Frames that an adapter streams.
+    Frames(FrameRun),
+    /// Registers that are watched beside the position.
+    Watched(WatchedReading),
+}
+
+/// Registers that are watched, as they were read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WatchedReading {
+    /// When the answer was there.
+    pub at: Moment,
+    /// Which.
+    pub what: RegisterRange,
+    /// Their values, in the order of their addresses, or why there are none: no such register, or data.
+    pub value: Result<Vec<u8>, Error>,
+}
+
+/// Reads the position once; that frames were damaged is an answer too, as long as there have been good ones.
+///
+/// # Errors
+/// The line.
+pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
+    match master.position() {
+        Ok(reading) if reading.frame.is_some() => Ok(Sample::Position(reading)),
+        Ok(reading) => with_flags(master, reading).map(Sample::Position),
+        Err(Error::Damaged { cause: Damage::Frame(_), .. }) => {
+            Ok(Sample::Missed { at: master.now(), crc_errors: master.station().take_crc_errors() })
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads watched registers once; that there are none, or that they are data, is an answer too.
+///
+/// # Errors
+/// The line.
+pub fn read_watched(master: &mut Master<'_>, what: RegisterRange) -> Result<WatchedReading, Error> {
+    let description = master.station().description.clone();
+    let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());
+    let value = match what.addresses().find(|address| of_area(*address)) {
+        // Manual 6.5: not while the shaft turns, and nobody lets it stand for this.
+        Some(address) => Err(Error::NotWatched { address }),
+        None => match master.read_run(what.start(), what.count().into()) {
+            Err(error) if !matches!(error, Error::NoSuchRegister { .. }) => return Err(error),
+            value => value,
+        },
+    };
+    Ok(WatchedReading { at: master.now(), what, value })
+}

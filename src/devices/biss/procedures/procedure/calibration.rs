@@ -1,0 +1,94 @@
+//! The calibration of the singleturn (manual 6.4): counterclockwise, then clockwise, each about five seconds in which the
+//! encoder may say nothing.
+
+use std::time::Duration;
+
+use super::guide::{Attended, Course, Guide};
+use super::{Failure, Motion, Outcome, Run, Step, Task};
+use crate::devices::biss::procedures::Error;
+use crate::devices::biss::protocol::{
+    CalibrationCommand, CalibrationStatus, Filter, Procedure, ProcedureKind, Role, Temperature,
+};
+
+/// Manual 6.4: "about 5 seconds".
+const EXPECTED: Duration = Duration::from_secs(5);
+/// A run that takes longer has no end.
+const LIMIT: Duration = Duration::from_secs(20);
+
+/// A calibration that is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CalibrationReport {
+    /// The encoder's temperature before it, where it tells.
+    pub celsius: Option<i16>,
+    /// How the motor turned before the first run.
+    pub counterclockwise: Option<Motion>,
+    /// How it turned before the second.
+    pub clockwise: Option<Motion>,
+}
+
+impl Guide<'_, '_> {
+    pub(super) fn calibrate(&mut self) -> Result<Outcome, Failure> {
+        let procedure = self.procedure(ProcedureKind::Calibration)?;
+        self.step(Step::Conditions);
+        if let Some(filter) =
+            self.role(Role::Filter).filter(|_| self.description.procedure(ProcedureKind::FilterSelection).is_some())
+        {
+            let code = self.master.read(filter)?;
+            // An old firmware has one filter and says 0.
+            if code == Filter::Dynamic.byte() {
+                return Err(Failure::NotBalanced { code });
+            }
+        }
+        let celsius = match self.role(Role::Temperature) {
+            Some(temperature) => Some(Temperature::new(self.master.read(temperature)?).celsius()),
+            None => None,
+        };
+        let first = Run::CalibrationCounterclockwise;
+        let Attended::Go(counterclockwise) = self.attend(Task::Turn(first))? else {
+            return Ok(Outcome::Skipped { after: None });
+        };
+        self.enter(&procedure)?;
+        self.calibrate_in(first, &procedure)?;
+        let second = Run::CalibrationClockwise;
+        let Attended::Go(clockwise) = self.attend(Task::Turn(second))? else {
+            return Ok(Outcome::Skipped { after: Some(first) });
+        };
+        self.calibrate_in(second, &procedure)?;
+        Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
+    }
+
+    /// One run. The second is not given up half-way when the user wishes an end: that would lose the table.
+    fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
+        self.step(Step::Run(run));
+        let was = self.master.read(procedure.status)?;
+        let (command, before, done) = if run.is_clockwise() {
+            let (before, done) = (CalibrationStatus::CounterclockwiseDone, CalibrationStatus::ClockwiseDone);
+            (CalibrationCommand::StartClockwise, before, done)
+        } else {
+            let (before, done) = (CalibrationStatus::Idle, CalibrationStatus::CounterclockwiseDone);
+            (CalibrationCommand::StartCounterclockwise, before, done)
+        };
+        let course = Course {
+            run,
+            command: command.byte(),
+            was,
+            before: before.byte(),
+            active: CalibrationStatus::Running.byte(),
+            done: done.byte(),
+            every: Duration::from_millis(100),
+            expected: EXPECTED,
+            limit: LIMIT,
+        };
+        let explain =
+            |_: &mut Self, status| Ok(Failure::Calibration { run, status: CalibrationStatus::from_byte(status) });
+        if !run.is_clockwise() {
+            return self.run(&course, procedure, explain);
+        }
+        let ended = self.shielded(|guide| guide.run(&course, procedure, explain));
+        // Its success is saved by itself, and its failure loses the table; only one that was never begun changes nothing.
+        if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
+            self.spend();
+        }
+        ended
+    }
+}

@@ -1,0 +1,47 @@
+//! Writing motor and OEM data (manual 6.5). The manual never selects the bank that is written; here the target bank is
+//! selected after the area was opened, and bank 0 before its status is looked at, which [`Master`] does by itself.
+//!
+//! [`Master`]: crate::devices::biss::procedures::Master
+
+use super::guide::{Attended, Guide};
+use super::{Activity, Detail, Failure, Outcome, Step, Task};
+use crate::devices::biss::profile::RegisterChange;
+use crate::devices::biss::protocol::{Area, DataCommand, DataStatus, Procedure, ProcedureKind};
+
+impl Guide<'_, '_> {
+    pub(super) fn store_data(&mut self, area: &Area, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
+        let procedure = self.procedure(ProcedureKind::DataWrite)?;
+        let open = area.open.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
+        // Manual 6.5: not during motor operation.
+        let Attended::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped { after: None }) };
+        self.enter(&procedure)?;
+        self.step(Step::Open);
+        self.await_status(&procedure, DataStatus::Closed.byte())?;
+        self.command(&procedure, open)?;
+        self.await_status(&procedure, DataStatus::Open.byte())?;
+        self.does(Activity::Entered);
+        self.step(Step::Write);
+        let total = registers.len() as u64;
+        for (done, change) in (0..).zip(registers) {
+            self.say(Detail::Count { done, total });
+            self.master.write(change.address, change.new)?;
+        }
+        self.await_status(&procedure, DataStatus::Open.byte())?;
+        self.step(Step::Save);
+        self.save(&procedure, DataCommand::Save.byte())?;
+        // From here on what is stored has to be told, also when the user wishes an end.
+        self.shielded(|guide| guide.finish_data(&procedure, registers))
+    }
+
+    fn finish_data(&mut self, procedure: &Procedure, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
+        self.await_status(procedure, DataStatus::Closed.byte())?;
+        self.lead_back()?;
+        self.step(Step::ReadBack);
+        let total = registers.len() as u64;
+        for (done, change) in (0..).zip(registers) {
+            self.say(Detail::Count { done, total });
+            self.read_back(change.address, change.new)?;
+        }
+        Ok(Outcome::Stored { registers: total })
+    }
+}

@@ -1,0 +1,29 @@
+//! The choice of a filter (manual 6.6), at the end of which the encoder restarts.
+
+use super::guide::Guide;
+use super::{Activity, Failure, Outcome, Step};
+use crate::devices::biss::protocol::{Filter, FilterCommand, FilterStatus, ProcedureKind, Role};
+
+impl Guide<'_, '_> {
+    pub(super) fn select_filter(&mut self, to: Filter) -> Result<Outcome, Failure> {
+        let procedure = self.procedure(ProcedureKind::FilterSelection)?;
+        let in_force = self.role(Role::Filter).ok_or(Failure::NotDescribed { kind: procedure.kind })?;
+        self.enter(&procedure)?;
+        self.step(Step::Open);
+        self.await_status(&procedure, FilterStatus::Closed.byte())?;
+        self.command(&procedure, FilterCommand::Open.byte())?;
+        self.await_status(&procedure, FilterStatus::WaitForValue.byte())?;
+        self.does(Activity::Entered);
+        self.step(Step::Write);
+        self.command(&procedure, to.byte())?;
+        self.await_status(&procedure, FilterStatus::WaitForSave.byte())?;
+        self.step(Step::Save);
+        self.save(&procedure, FilterCommand::Save.byte())?;
+        self.shielded(|guide| {
+            guide.restart()?;
+            guide.step(Step::ReadBack);
+            guide.read_back(in_force, to.byte())?;
+            Ok(Outcome::FilterSelected(to))
+        })
+    }
+}

@@ -1,0 +1,193 @@
+//! How the shaft turns, measured from positions: direction, speed, how much it wavers, and whether it stands. It reads
+//! nothing itself.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::analysis::{Time, Unwrap};
+use crate::devices::biss::procedures::PositionReading;
+
+/// Follows positions over a stretch of time.
+#[derive(Debug)]
+pub(super) struct Gauge {
+    /// Nanoseconds.
+    window: i64,
+    unwrap: Option<Unwrap>,
+    steps_per_turn: f64,
+    /// The last window and the position before it, the oldest first.
+    places: VecDeque<(Time, i64)>,
+}
+
+/// How the shaft turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Revolutions a minute, averaged over the measurement; above 0 clockwise, that is, with rising positions.
+    pub rpm: f64,
+    /// How far the speed of a quarter of the measurement lies from that at most, in revolutions a minute.
+    pub spread: f64,
+    /// Revolutions between the farthest places.
+    pub travel: f64,
+}
+
+impl Motion {
+    /// A shaft that stands may tremble by this part of a revolution (`U`).
+    const STILL: f64 = 1.0 / 8192.0;
+
+    /// The shaft stands.
+    pub fn is_still(&self) -> bool {
+        self.travel <= Self::STILL
+    }
+}
+
+impl Gauge {
+    /// Parts in which the speed is looked at by itself.
+    const PARTS: i32 = 4;
+
+    /// Measures over this stretch of time.
+    pub(super) fn over(window: Duration) -> Self {
+        let window = i64::try_from(window.as_nanos()).unwrap_or(i64::MAX).max(1);
+        Gauge { window, unwrap: None, steps_per_turn: 1.0, places: VecDeque::new() }
+    }
+
+    /// The next position.
+    pub(super) fn next(&mut self, reading: &PositionReading) {
+        let bits = u32::from(reading.raw().bits);
+        self.steps_per_turn = f64::powi(2.0, reading.singleturn_bits.into());
+        let range = 1_i64.checked_shl(bits).filter(|range| *range > 0);
+        let unwrap = self.unwrap.get_or_insert_with(|| range.and_then(Unwrap::rotary).unwrap_or_else(Unwrap::linear));
+        let word = i64::try_from(reading.position()).unwrap_or(i64::MAX);
+        let time = Time::from(reading.at);
+        let Some(place) = unwrap.next(word) else { return };
+        if place.broken || self.places.back().is_some_and(|(before, _)| time <= *before) {
+            self.places.clear();
+        }
+        self.places.push_back((time, place.steps));
+        // The one before the window is where it begins.
+        while self.places.get(1).is_some_and(|(second, _)| time.nanoseconds_since(*second) >= self.window) {
+            self.places.pop_front();
+        }
+    }
+
+    /// What was measured; `None` until there are positions for all of the window.
+    pub(super) fn motion(&self) -> Option<Motion> {
+        let ((first, _), (last, _)) = (self.places.front()?, self.places.back()?);
+        if last.nanoseconds_since(*first) < self.window {
+            return None;
+        }
+        let places: Vec<(f64, f64)> =
+            self.places.iter().map(|(time, steps)| (time.seconds_since(*first), self.turns(*steps))).collect();
+        let rpm = slope(&places)? * 60.0;
+        let part = last.seconds_since(*first) / f64::from(Self::PARTS);
+        let mut spread: f64 = 0.0;
+        for number in 0..Self::PARTS {
+            let (from, to) = (part * f64::from(number), part * f64::from(number + 1));
+            let own: Vec<(f64, f64)> = places.iter().copied().filter(|(at, _)| (from..=to).contains(at)).collect();
+            if let Some(slope) = slope(&own) {
+                spread = spread.max((slope * 60.0 - rpm).abs());
+            }
+        }
+        let turns = places.iter().map(|(_, turns)| *turns);
+        let travel = turns.clone().fold(f64::MIN, f64::max) - turns.fold(f64::MAX, f64::min);
+        Some(Motion { rpm, spread, travel })
+    }
+
+    /// Revolutions from the first place of the window; the difference is exact.
+    fn turns(&self, steps: i64) -> f64 {
+        let first = self.places.front().map_or(steps, |(_, first)| *first);
+        steps.saturating_sub(first) as f64 / self.steps_per_turn
+    }
+}
+
+/// Least squares: how fast the second number rises with the first. `None` for fewer than two moments.
+fn slope(places: &[(f64, f64)]) -> Option<f64> {
+    let count = places.len() as f64;
+    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / count;
+    let middle = mean(&mut places.iter().map(|(at, _)| *at));
+    let height = mean(&mut places.iter().map(|(_, turns)| *turns));
+    let squares: f64 = places.iter().map(|(at, _)| (at - middle) * (at - middle)).sum();
+    let products: f64 = places.iter().map(|(at, turns)| (at - middle) * (turns - height)).sum();
+    (squares > 0.0).then(|| products / squares)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Moment;
+
+    const REVOLUTION: f64 = 131_072.0;
+
+    fn reading(milliseconds: u64, turns: f64, multiturn_bits: u8) -> PositionReading {
+        let range = f64::powi(2.0, multiturn_bits.into());
+        let steps = (turns.rem_euclid(range) * REVOLUTION) as u64;
+        PositionReading {
+            at: Moment::after_start(Duration::from_millis(milliseconds)),
+            turns: (steps >> 17) as u32,
+            steps: (steps & 0x1_FFFF) as u32,
+            error: None,
+            warning: None,
+            crc_errors: 0,
+            multiturn_bits,
+            singleturn_bits: 17,
+            is_split_known: true,
+            frame: None,
+        }
+    }
+
+    /// Positions every 20 ms for 1.2 s, at a place that `turns` tells for the time in seconds.
+    fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> Motion {
+        let mut gauge = Gauge::over(Duration::from_secs(1));
+        for at in (0..=1200).step_by(20) {
+            gauge.next(&reading(at, turns(at as f64 / 1000.0), multiturn_bits));
+            assert_eq!(gauge.motion().is_some(), at >= 1000, "{at}");
+        }
+        gauge.motion().unwrap()
+    }
+
+    #[test]
+    fn a_steady_shaft_has_its_speed_and_direction() {
+        // 500 rpm are 25/3 revolutions a second, across the end of the range and without any revolutions counted.
+        for (bits, rpm) in [(16, 500.0), (16, -500.0), (16, 2000.0), (0, 700.0), (0, -300.0)] {
+            let motion = measured(bits, |seconds| 0.25 + seconds * rpm / 60.0);
+            assert!((motion.rpm - rpm).abs() < 0.01 && motion.spread < 0.02, "{bits} {rpm}: {motion:?}");
+            assert!((motion.travel - f64::abs(rpm) / 60.0).abs() < 0.001, "{motion:?}");
+            assert!(!motion.is_still());
+        }
+    }
+
+    /// From 490 to 510 rpm within the second: the quarters have 492.5, 497.5, 502.5 and 507.5 rpm.
+    #[test]
+    fn a_shaft_that_accelerates_wavers() {
+        let motion = measured(16, |seconds| {
+            let from = seconds - 0.2;
+            from * 490.0 / 60.0 + from * from * 20.0 / 120.0
+        });
+        assert!((motion.rpm - 500.0).abs() < 0.1, "{motion:?}");
+        assert!((motion.spread - 7.5).abs() < 0.1, "{motion:?}");
+    }
+
+    #[test]
+    fn a_shaft_that_stands_may_tremble() {
+        let tremble = |steps: f64| {
+            measured(16, move |seconds| 0.5 + if (seconds * 50.0) as i64 % 2 == 0 { steps / REVOLUTION } else { 0.0 })
+        };
+        assert!(tremble(16.0).is_still(), "16 steps are 1/8192 of a revolution");
+        assert!(!tremble(18.0).is_still());
+        // It crept by half a degree in the second.
+        assert!(!measured(16, |seconds| seconds / 720.0).is_still());
+    }
+
+    #[test]
+    fn a_gap_begins_anew() {
+        let mut gauge = Gauge::over(Duration::from_secs(1));
+        for at in (0..=1000).step_by(20) {
+            gauge.next(&reading(at, 0.0, 0));
+        }
+        assert!(gauge.motion().is_some());
+        // Half a revolution may have been either way.
+        gauge.next(&reading(1020, 0.5, 0));
+        assert_eq!(gauge.motion(), None);
+        // A clock that stands still tells nothing of a speed.
+        gauge.next(&reading(1020, 0.5, 0));
+        assert_eq!(gauge.motion(), None);
+    }
+}

@@ -1,0 +1,428 @@
+//! What all procedures share: device modes, commands, statuses, the person at the motor, restarts, and the way back to
+//! operation. While it works it keeps count of what the encoder may be in, so that a lost link can be told.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::gauge::Gauge;
+use super::operator::Measured;
+use super::{Activity, Answer, Demand, Detail, Failure, Motion, News, Operator, Run, Standing, Step, Task};
+use crate::devices::biss::procedures::{Error, Master};
+use crate::devices::biss::protocol::{
+    Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
+};
+
+/// Data sheet, 02:0Eh: until then an encoder that restarts hears nothing.
+const RESTART: Duration = Duration::from_millis(500);
+/// A restart that takes longer has failed.
+const RESTART_PATIENCE: Duration = Duration::from_secs(5);
+/// Manual 6.4: a calibrating encoder may not respond, for about five seconds.
+pub(super) const SILENCE: Duration = Duration::from_secs(10);
+/// Between two looks at a status register.
+const GLANCE: Duration = Duration::from_millis(100);
+/// Between two positions: at 2000 rpm without counted revolutions, the half of one takes 15 ms.
+const SAMPLING: Duration = Duration::from_millis(10);
+/// Between two questions to a person.
+const ASKING: Duration = Duration::from_millis(200);
+/// How long the speed of a motor is measured, and whether a shaft stands.
+const TURNING: Duration = Duration::from_secs(1);
+const STANDING: Duration = Duration::from_millis(250);
+/// A device mode that is not there by then was not taken.
+const MODE: Duration = Duration::from_millis(500);
+/// A status that has not come about by then does not come.
+const STATUS: Duration = Duration::from_secs(5);
+/// A calibrating encoder that says nothing for so long has begun (`U`): a damaged reply takes less.
+const BEGUN: Duration = Duration::from_secs(1);
+
+/// Leads an encoder through the operations of a plan.
+pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
+    pub(super) master: &'g mut Master<'m>,
+    pub(super) description: Arc<Description>,
+    operator: &'g mut dyn Operator,
+    tell: &'g mut dyn FnMut(News),
+    standing: Standing,
+    op: usize,
+    step: Step,
+    cycles: u64,
+}
+
+/// How a run goes.
+pub(super) struct Course {
+    pub(super) run: Run,
+    /// What starts it.
+    pub(super) command: u8,
+    /// The status that was there before the command: another run may have left it.
+    pub(super) was: u8,
+    /// The status before it, while it goes on, and when it is done.
+    pub(super) before: u8,
+    pub(super) active: u8,
+    pub(super) done: u8,
+    /// Between two looks at its status.
+    pub(super) every: Duration,
+    /// How long it takes, and when it has no end.
+    pub(super) expected: Duration,
+    pub(super) limit: Duration,
+}
+
+/// What a person answered, with what was measured then.
+pub(super) enum Attended {
+    /// Go on.
+    Go(Option<Motion>),
+    /// Leave it out.
+    Skip,
+}
+
+impl<'g, 'm> Guide<'g, 'm> {
+    pub(in crate::devices::biss::procedures) fn new(
+        master: &'g mut Master<'m>,
+        description: Arc<Description>,
+        operator: &'g mut dyn Operator,
+        tell: &'g mut dyn FnMut(News),
+        standing: Standing,
+    ) -> Self {
+        Guide { master, description, operator, tell, standing, op: 0, step: Step::LeadBack, cycles: 0 }
+    }
+
+    /// What is known of the encoder's state.
+    pub(in crate::devices::biss::procedures) fn standing(&self) -> &Standing {
+        &self.standing
+    }
+
+    /// Persistent writes that were spent, or may have been.
+    pub(in crate::devices::biss::procedures) fn cycles(&self) -> u64 {
+        self.cycles
+    }
+
+    /// The step that it is at.
+    pub(in crate::devices::biss::procedures) fn at(&self) -> Step {
+        self.step
+    }
+
+    /// The operation of that number begins.
+    pub(in crate::devices::biss::procedures) fn begin(&mut self, op: usize) {
+        self.op = op;
+    }
+
+    pub(super) fn step(&mut self, step: Step) {
+        self.step = step;
+        self.say(Detail::Begins);
+    }
+
+    pub(super) fn say(&mut self, detail: Detail) {
+        (self.tell)(News { op: self.op, step: self.step, detail });
+    }
+
+    pub(super) fn procedure(&self, kind: ProcedureKind) -> Result<Procedure, Failure> {
+        self.description.procedure(kind).copied().ok_or(Failure::NotDescribed { kind })
+    }
+
+    pub(super) fn role(&self, role: Role) -> Option<RegisterAddress> {
+        self.description.with_role(role).map(|register| register.address)
+    }
+
+    pub(super) fn spend(&mut self) {
+        self.cycles += 1;
+    }
+
+    pub(super) fn does(&mut self, activity: Activity) {
+        self.standing.activity = activity;
+    }
+
+    /// Back to operation and without the password, whatever has happened. Nothing is sent where it is so already.
+    pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
+        let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
+        self.step(Step::LeadBack);
+        let description = self.description.clone();
+        let (master, standing) = (&mut *self.master, &mut self.standing);
+        let ended = master.shielded(|master| {
+            if matches!(standing.activity, Activity::Running(run) if run.calibrates()) {
+                return master.with_patience(SILENCE, |master| lead_back(master, &description, lock, standing));
+            }
+            lead_back(master, &description, lock, standing)
+        });
+        ended.map(drop)
+    }
+
+    /// Password and device mode.
+    pub(super) fn enter(&mut self, procedure: &Procedure) -> Result<(), Failure> {
+        let mode = DeviceMode::new(procedure.mode);
+        self.step(Step::Enter(mode));
+        let Some(lock) = self.description.lock() else { return Err(Failure::NotDescribed { kind: procedure.kind }) };
+        unlock(self.master, lock, &mut self.standing)?;
+        set_mode(self.master, lock, mode, &mut self.standing)?;
+        let end = self.master.now() + MODE;
+        loop {
+            let found = DeviceMode::new(self.master.read(lock.mode_at)?);
+            if found == mode {
+                return Ok(());
+            }
+            if self.master.now() >= end {
+                return Err(Failure::Mode { wanted: mode, found });
+            }
+            self.master.wait(GLANCE)?;
+        }
+    }
+
+    /// Gives a command. Where nothing tells whether it was heard, what comes next has to: the status, or what was
+    /// written.
+    pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
+        match self.master.write(procedure.command, command) {
+            Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
+            result => result,
+        }
+    }
+
+    /// Gives the command that writes the flash: from then on that counts as done, until something tells that it was not.
+    pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
+        let before = self.standing.activity;
+        self.does(Activity::Saving);
+        let ended = self.command(procedure, command);
+        if let Err(Error::Cancelled | Error::Refused { .. }) = ended {
+            self.does(before);
+        } else {
+            self.spend();
+        }
+        ended
+    }
+
+    /// Reads a register that was written.
+    pub(super) fn read_back(&mut self, address: RegisterAddress, expected: u8) -> Result<(), Failure> {
+        let got = self.master.read(address)?;
+        if got == expected {
+            return Ok(());
+        }
+        let hex = |byte: u8| format!("{byte:02X}");
+        Err(Failure::NotVerified { item: address.to_string(), expected: hex(expected), got: hex(got) })
+    }
+
+    /// Waits until a status register says what it has to.
+    pub(super) fn await_status(&mut self, procedure: &Procedure, expected: u8) -> Result<(), Failure> {
+        let end = self.master.now() + STATUS;
+        loop {
+            let found = self.master.read(procedure.status)?;
+            if found == expected {
+                return Ok(());
+            }
+            if self.master.now() >= end {
+                return Err(Failure::Status { kind: procedure.kind, expected, found });
+            }
+            self.master.wait(GLANCE)?;
+        }
+    }
+
+    /// Does something in which a wish to end is not heard.
+    pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.master.shield(true);
+        let result = work(self);
+        self.master.shield(before);
+        result
+    }
+
+    /// Starts a run and looks at the status until it is done, telling how long it takes. `explain` is asked about any
+    /// other status. What was there before the command says nothing of this run until something else was.
+    pub(super) fn run(
+        &mut self,
+        course: &Course,
+        procedure: &Procedure,
+        explain: impl Fn(&mut Self, u8) -> Result<Failure, Error>,
+    ) -> Result<(), Failure> {
+        self.does(Activity::Running(course.run));
+        let ended = self.command(procedure, course.command);
+        if let Err(Error::Cancelled | Error::Refused { .. }) = ended {
+            self.does(Activity::Nothing);
+        }
+        ended?;
+        let started = self.master.now();
+        let mut begun = false;
+        loop {
+            let asked = self.master.now();
+            let status = self.master.with_patience(SILENCE, |master| master.read(procedure.status))?;
+            let elapsed = self.master.now().since(started);
+            begun |= status == course.active || status != course.was;
+            begun |= course.run.calibrates() && self.master.now().since(asked) >= BEGUN;
+            let waits = status == course.before || !begun;
+            if waits && elapsed < STATUS {
+                // Not begun yet.
+            } else if status == course.before || (waits && status == course.done) {
+                // The start was not heard.
+                let expected = course.active;
+                return Err(Failure::Status { kind: procedure.kind, expected, found: status });
+            } else if status == course.done {
+                break;
+            } else if status != course.active {
+                self.does(Activity::Nothing);
+                return Err(explain(self, status)?);
+            } else if elapsed >= course.limit {
+                return Err(Failure::TooLong { run: course.run, seconds: elapsed.as_secs() });
+            }
+            self.say(Detail::Lasts { elapsed, expected: Some(course.expected) });
+            self.master.wait(course.every)?;
+        }
+        self.does(Activity::Nothing);
+        Ok(())
+    }
+
+    /// The encoder restarts, or may: waits until it answers again, and looks where it is then.
+    pub(super) fn restart(&mut self) -> Result<(), Error> {
+        self.step(Step::Restart);
+        self.standing.may_have_restarted();
+        let Some(lock) = self.description.lock() else { return Ok(()) };
+        let standing = &mut self.standing;
+        // It begins with another bank.
+        self.master.station().bank = None;
+        // What was written is to be read back, also when the user wishes an end.
+        self.master.shielded(|master| {
+            master.wait(RESTART)?;
+            master.with_patience(RESTART_PATIENCE, |master| look(master, lock, standing))
+        })?;
+        Ok(())
+    }
+
+    /// Asks the person at the motor for something, measures it, and goes on when it fits and the person says so.
+    pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
+        self.step(Step::Await(task));
+        let begun = self.master.now();
+        let mut gauge = Gauge::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
+        let mut is_told = false;
+        loop {
+            let measured = self.measure(task, &mut gauge)?;
+            if !is_told {
+                // Nobody can have answered what nobody has seen.
+                self.operator.begins();
+                is_told = true;
+            }
+            let demand = Demand::new(task, measured, self.master.now().since(begun));
+            self.say(Detail::Demand(demand.clone()));
+            match self.operator.attend(&demand) {
+                Answer::Go if demand.is_ready() => return Ok(Attended::Go(demand.motion)),
+                Answer::Go | Answer::Wait => {}
+                Answer::Skip => return Ok(Attended::Skip),
+                Answer::Cancel => return Err(Error::Cancelled.into()),
+                Answer::GiveUp => return Err(Failure::NotReady { task, blockers: demand.blockers }),
+            }
+        }
+    }
+
+    /// Positions for as long as lies between two questions, and the temperature where it matters.
+    fn measure(&mut self, task: Task, gauge: &mut Gauge) -> Result<Measured, Failure> {
+        let mut measured = Measured::default();
+        let end = self.master.now() + ASKING;
+        loop {
+            // Between the runs of a calibration the encoder may still be silent.
+            let reading = match task {
+                Task::Turn(Run::CalibrationClockwise) => self.master.with_patience(SILENCE, Master::position),
+                _ => self.master.position(),
+            };
+            match reading {
+                Ok(reading) => {
+                    measured.marked |= !reading.is_valid();
+                    gauge.next(&reading);
+                }
+                Err(error) if error == Error::Cancelled || error.is_lost() => return Err(error.into()),
+                Err(_) => measured.unreadable = true,
+            }
+            if self.master.now() >= end {
+                break;
+            }
+            self.master.wait(SAMPLING)?;
+        }
+        if let (Task::Turn(run), Some(temperature)) = (task, self.role(Role::Temperature))
+            && run.calibrates()
+        {
+            measured.celsius = Some(Temperature::new(self.master.read(temperature)?).celsius());
+        }
+        measured.motion = gauge.motion();
+        Ok(measured)
+    }
+}
+
+/// Reads mode and password; gives back the mode.
+fn look(master: &mut Master<'_>, lock: Lock, standing: &mut Standing) -> Result<DeviceMode, Error> {
+    let mode = DeviceMode::new(master.read(lock.mode_at)?);
+    let password = master.read(lock.password_at)? != 0;
+    *standing = Standing {
+        mode: super::Possible::known(mode),
+        password: super::Possible::known(password),
+        activity: standing.activity,
+    };
+    if standing.is_in_operation() {
+        standing.activity = Activity::Nothing;
+    }
+    Ok(mode)
+}
+
+fn unlock(master: &mut Master<'_>, lock: Lock, standing: &mut Standing) -> Result<(), Error> {
+    let ended = master.write(lock.password_at, lock.password);
+    standing.password.becomes(true, &ended);
+    ended
+}
+
+fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mut Standing) -> Result<(), Error> {
+    let ended = master.write(lock.mode_at, mode.byte());
+    standing.mode.becomes(mode, &ended);
+    ended
+}
+
+/// From whatever mode to operation, and the password cleared. A calibration that runs is let finish: leaving it would
+/// lose the table. Gives back the mode in which it was.
+pub(super) fn lead_back(
+    master: &mut Master<'_>,
+    description: &Description,
+    lock: Lock,
+    standing: &mut Standing,
+) -> Result<DeviceMode, Error> {
+    let mode = look(master, lock, standing)?;
+    if mode != DeviceMode::OPERATION {
+        end_procedure(master, description, mode)?;
+        let ended = set_mode(master, lock, DeviceMode::OPERATION, standing);
+        if !matches!(ended, Err(Error::Refused { .. })) {
+            ended?;
+        }
+        if DeviceMode::new(master.read(lock.mode_at)?) != DeviceMode::OPERATION {
+            // It wants the password for the way back as well.
+            unlock(master, lock, standing)?;
+            set_mode(master, lock, DeviceMode::OPERATION, standing)?;
+        }
+    }
+    if standing.password.may_be(true) {
+        let ended = master.write(lock.password_at, 0);
+        standing.password.becomes(false, &ended);
+        ended?;
+    }
+    let stays = look(master, lock, standing)?;
+    if standing.is_in_operation() {
+        return Ok(mode);
+    }
+    Err(Error::Unexpected(format!("the encoder does not leave device mode {stays} or keeps its password")))
+}
+
+/// What a procedure wants to hear before its mode is left. That it does not take it is no reason to stay.
+fn end_procedure(master: &mut Master<'_>, description: &Description, mode: DeviceMode) -> Result<(), Error> {
+    use crate::devices::biss::protocol::{CalibrationStatus, DataCommand, DataStatus, WiegandCommand};
+    let Some(procedure) = description.procedures().iter().find(|own| own.mode == mode.byte()) else { return Ok(()) };
+    match procedure.kind {
+        ProcedureKind::Calibration => {
+            let end = master.now() + SILENCE;
+            while CalibrationStatus::from_byte(master.read(procedure.status)?) == CalibrationStatus::Running
+                && master.now() < end
+            {
+                master.wait(GLANCE)?;
+            }
+            Ok(())
+        }
+        ProcedureKind::WiegandTest => tolerate(master.write(procedure.command, WiegandCommand::Stop.byte())),
+        ProcedureKind::DataWrite if master.read(procedure.status)? == DataStatus::Open.byte() => {
+            tolerate(master.write(procedure.command, DataCommand::Cancel.byte()))
+        }
+        ProcedureKind::DataWrite | ProcedureKind::FilterSelection | ProcedureKind::Preset => Ok(()),
+    }
+}
+
+fn tolerate(ended: Result<(), Error>) -> Result<(), Error> {
+    match ended {
+        Err(Error::Refused { .. }) => Ok(()),
+        // Whether it was heard: what comes next tells whether the encoder still is.
+        Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
+        ended => ended,
+    }
+}

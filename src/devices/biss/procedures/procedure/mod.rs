@@ -1,0 +1,119 @@
+//! The guided procedures (manual 6.3 to 6.7), each straight-line code from entering its device mode to operation again.
+//! They speak to whoever stands at the motor through an [`Operator`], tell every [`Step`], and end in operation mode with
+//! the password cleared, whatever happens; where the encoder can no longer be reached, what is known of its [`Standing`]
+//! is told instead, and [`lead_back`] does the rest later.
+//!
+//! | file | what it is |
+//! |---|---|
+//! | `guide` | what all share: modes, commands, statuses, restarts, the person, the way back |
+//! | `gauge` | how the shaft turns |
+//! | `operator` | who stands at the motor: what is asked, why a start is not possible |
+//! | `standing` | what an encoder may be in |
+//! | `steps` | the steps of each operation |
+//! | `data`, `filter`, `preset`, `wiegand`, `calibration` | the five of the manual |
+
+mod calibration;
+mod data;
+mod failure;
+mod filter;
+mod gauge;
+mod guide;
+mod operator;
+mod preset;
+mod standing;
+mod steps;
+mod wiegand;
+
+pub use calibration::CalibrationReport;
+pub use failure::Failure;
+pub use gauge::Motion;
+pub(super) use guide::Guide;
+pub use operator::{Advice, Answer, Blocker, Demand, Operator, Run, Seat, SpeedRange, Task, Unattended};
+pub use standing::{Activity, Possible, Standing};
+pub use steps::{Detail, News, Step, steps_of};
+pub use wiegand::WiegandReport;
+
+use super::{Error, Master, PositionReading, identify};
+use crate::devices::biss::profile::{Op, PresetParts};
+use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetValue, RegisterAddress};
+
+/// What came of an operation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// The person left it out, or what comes after its first run.
+    Skipped {
+        /// The run that was done.
+        after: Option<Run>,
+    },
+    /// Registers were written, saved where that belongs to it, and read back.
+    Stored {
+        /// How many.
+        registers: u64,
+    },
+    /// A preset value was stored.
+    PresetStored {
+        /// Which.
+        value: PresetValue,
+        /// As many bits as a turn has steps.
+        singleturn_bits: u8,
+    },
+    /// A preset was carried out.
+    PresetFired {
+        /// Which part of the position.
+        parts: PresetParts,
+        /// Before.
+        from: PositionReading,
+        /// After.
+        to: PositionReading,
+    },
+    /// Another filter is in force.
+    FilterSelected(Filter),
+    /// The singleturn is calibrated.
+    Calibrated(CalibrationReport),
+    /// The Wiegand sensor was tested.
+    Tested(WiegandReport),
+}
+
+impl Guide<'_, '_> {
+    /// Carries an operation out, up to and including what was written being read back.
+    pub(super) fn perform(&mut self, op: &Op) -> Result<Outcome, Failure> {
+        match op {
+            Op::StoreData { area, registers } => self.store_data(area, registers),
+            Op::StorePreset { to, .. } => self.store_preset(*to),
+            Op::FirePreset { parts, value } => self.fire_preset(*parts, *value),
+            Op::SelectFilter { to, .. } => self.select_filter(*to),
+            Op::Calibrate => self.calibrate(),
+            Op::WiegandTest { save } => self.test_wiegand(*save),
+            Op::WriteRegister { address, old, new, cycles } => {
+                self.step(Step::Write);
+                let ended = self.master.write(*address, *new);
+                if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {
+                    (0..*cycles).for_each(|_| self.spend());
+                }
+                ended?;
+                if old.is_some() {
+                    self.step(Step::ReadBack);
+                    self.shielded(|guide| guide.read_back(*address, *new))?;
+                }
+                Ok(Outcome::Stored { registers: 1 })
+            }
+        }
+    }
+}
+
+/// Leads an encoder back to operation and clears the password, whoever left it otherwise: after a lost link, from another
+/// host. Gives back the mode in which it was. One that calibrates, and is silent, is waited for.
+///
+/// # Errors
+/// The line, or an encoder that stays where it is.
+pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
+    if master.station().description.is_none() {
+        master.with_patience(guide::SILENCE, |master| master.read(RegisterAddress::BANK_SELECT))?;
+        identify(master, types)?;
+    }
+    let description = master.description()?;
+    let Some(lock) = description.lock() else { return Ok(DeviceMode::OPERATION) };
+    let mut standing = Standing::in_operation(false);
+    let back = |master: &mut Master<'_>| guide::lead_back(master, &description, lock, &mut standing);
+    master.shielded(|master| master.with_patience(guide::SILENCE, back))
+}

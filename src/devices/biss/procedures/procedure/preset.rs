@@ -1,0 +1,121 @@
+//! The preset (manual 6.7): its value is stored, or the shaft's place becomes that value. The encoder restarts after
+//! either.
+
+use super::guide::{Attended, Guide};
+use super::{Activity, Failure, Outcome, Step, Task};
+use crate::devices::biss::procedures::PositionReading;
+use crate::devices::biss::profile::{PresetParts, RegisterRange};
+use crate::devices::biss::protocol::{
+    PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
+};
+
+/// So far the shaft may tremble around the value that it has got: 0.35°.
+const TREMBLE: u64 = 1024;
+
+impl Guide<'_, '_> {
+    pub(super) fn store_preset(&mut self, to: PresetValue) -> Result<Outcome, Failure> {
+        let procedure = self.procedure(ProcedureKind::Preset)?;
+        let registers: Vec<(RegisterAddress, u8)> = value_of(&procedure)?.addresses().zip(to.emit()).collect();
+        self.enter(&procedure)?;
+        self.step(Step::Open);
+        self.command(&procedure, PresetCommand::Edit.byte())?;
+        self.await_status(&procedure, PresetStatus::WaitForValue.byte())?;
+        self.does(Activity::Entered);
+        self.step(Step::Write);
+        for (address, byte) in &registers {
+            self.master.write(*address, *byte)?;
+        }
+        self.step(Step::Save);
+        self.save(&procedure, PresetCommand::Save.byte())?;
+        self.shielded(|guide| {
+            guide.restart()?;
+            guide.step(Step::ReadBack);
+            for (address, byte) in &registers {
+                guide.read_back(*address, *byte)?;
+            }
+            let singleturn_bits = guide.master.station().frame().singleturn_bits();
+            Ok(Outcome::PresetStored { value: to, singleturn_bits })
+        })
+    }
+
+    pub(super) fn fire_preset(&mut self, parts: PresetParts, value: PresetValue) -> Result<Outcome, Failure> {
+        let procedure = self.procedure(ProcedureKind::Preset)?;
+        let Attended::Go(_) = self.attend(Task::StandAtPlace)? else { return Ok(Outcome::Skipped { after: None }) };
+        let from = self.master.position()?;
+        self.enter(&procedure)?;
+        self.step(Step::Fire);
+        self.save(&procedure, parts.command().byte())?;
+        self.shielded(|guide| {
+            guide.restart()?;
+            guide.step(Step::ReadBack);
+            let to = guide.master.position()?;
+            let expected = preset(&from, parts, value);
+            if distance(expected, &to) > ((1_u64 << to.singleturn_bits) / TREMBLE).max(1) {
+                return Err(Failure::NotVerified {
+                    item: "position".to_owned(),
+                    expected: expected.to_string(),
+                    got: to.position().to_string(),
+                });
+            }
+            Ok(Outcome::PresetFired { parts, from, to })
+        })
+    }
+}
+
+fn value_of(procedure: &Procedure) -> Result<RegisterRange, Failure> {
+    let range = procedure.data.and_then(|first| RegisterRange::new(first, PresetValue::BYTES));
+    range.ok_or(Failure::NotDescribed { kind: procedure.kind })
+}
+
+/// Where the shaft is to be from then on, as one number of steps.
+fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64 {
+    let steps = if parts.sets_singleturn() { value.singleturn() } else { from.steps };
+    let turns = if parts.sets_multiturn() { value.multiturn() } else { from.turns };
+    u64::from(turns) << from.singleturn_bits | u64::from(steps)
+}
+
+/// Steps between two places, the shorter way round.
+fn distance(place: u64, reading: &PositionReading) -> u64 {
+    let bits = u32::from(reading.raw().bits);
+    let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);
+    let forward = place.wrapping_sub(reading.position()) & mask;
+    let backward = reading.position().wrapping_sub(place) & mask;
+    forward.min(backward)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Moment;
+
+    fn reading(turns: u32, steps: u32) -> PositionReading {
+        PositionReading {
+            at: Moment::START,
+            turns,
+            steps,
+            error: None,
+            warning: None,
+            crc_errors: 0,
+            multiturn_bits: 16,
+            singleturn_bits: 17,
+            is_split_known: true,
+            frame: None,
+        }
+    }
+
+    #[test]
+    fn a_preset_sets_its_parts() {
+        let value = PresetValue::new(0x18000, 3).unwrap();
+        let from = reading(0x1234, 0x00FF);
+        assert_eq!(preset(&from, PresetParts::Both, value), 3 << 17 | 0x18000);
+        assert_eq!(preset(&from, PresetParts::Singleturn, value), 0x1234 << 17 | 0x18000);
+        assert_eq!(preset(&from, PresetParts::Multiturn, value), 3 << 17 | 0xFF);
+    }
+
+    #[test]
+    fn the_shorter_way_counts() {
+        assert_eq!(distance(0, &reading(0xFFFF, 0x1FFFF)), 1);
+        assert_eq!(distance(1, &reading(0, 0)), 1);
+        assert_eq!(distance(1 << 32, &reading(0, 0)), 1 << 32);
+    }
+}

@@ -1,0 +1,133 @@
+//! In which state an encoder is, as far as its answers tell: what a person has to know when the link is lost in the
+//! middle of a procedure.
+
+use super::Run;
+use crate::devices::biss::procedures::Error;
+use crate::devices::biss::protocol::DeviceMode;
+
+/// What something may be: one value, or several where an answer is missing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Possible<T>(Vec<T>);
+
+/// What is known of the state of an encoder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Standing {
+    /// Its device mode.
+    pub mode: Possible<DeviceMode>,
+    /// The password is set, so that device modes can be chosen.
+    pub password: Possible<bool>,
+    /// What it was doing.
+    pub activity: Activity,
+}
+
+/// What an encoder was doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activity {
+    /// Nothing that a loss of the link would cut off.
+    Nothing,
+    /// A run of a procedure.
+    Running(Run),
+    /// Something was entered and not saved: leaving the mode, or a loss of power, forgets it.
+    Entered,
+    /// The flash was written, or was about to be: what is stored is the old or the new.
+    Saving,
+    /// It restarts, or was about to.
+    Restarting,
+}
+
+impl<T: Copy + PartialEq> Possible<T> {
+    /// This and nothing else.
+    pub fn known(value: T) -> Self {
+        Possible(vec![value])
+    }
+
+    /// All that it may be, in the order in which it would have come about.
+    pub fn values(&self) -> &[T] {
+        &self.0
+    }
+
+    /// It is this.
+    pub fn is(&self, value: T) -> bool {
+        self.0 == [value]
+    }
+
+    /// It may be this.
+    pub fn may_be(&self, value: T) -> bool {
+        self.0.contains(&value)
+    }
+
+    /// It may be this as well.
+    pub fn or(&mut self, value: T) {
+        if !self.may_be(value) {
+            self.0.push(value);
+        }
+    }
+
+    /// Something is written that makes it `after`; how that ended tells what it is then.
+    pub(super) fn becomes(&mut self, after: T, ended: &Result<(), Error>) {
+        match ended {
+            Ok(()) => *self = Possible::known(after),
+            // It was not sent, or not taken.
+            Err(Error::Cancelled | Error::Refused { .. }) => {}
+            Err(_) => self.or(after),
+        }
+    }
+}
+
+impl Standing {
+    /// In operation, with the password set or not.
+    pub fn in_operation(password: bool) -> Self {
+        Standing {
+            mode: Possible::known(DeviceMode::OPERATION),
+            password: Possible::known(password),
+            activity: Activity::Nothing,
+        }
+    }
+
+    /// It is certainly in operation, without the password.
+    pub fn is_in_operation(&self) -> bool {
+        self.mode.is(DeviceMode::OPERATION) && self.password.is(false)
+    }
+
+    /// A command was sent that restarts it, and whether it was heard is not known.
+    pub(super) fn may_have_restarted(&mut self) {
+        self.mode.or(DeviceMode::OPERATION);
+        self.password.or(false);
+        self.activity = Activity::Restarting;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::{LinkError, LinkErrorKind};
+
+    #[test]
+    fn what_is_not_answered_leaves_two_possibilities() {
+        let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
+        let mut mode = Possible::known(0);
+        mode.becomes(1, &Ok(()));
+        assert!(mode.is(1));
+        mode.becomes(0, &Err(Error::Cancelled));
+        assert!(mode.is(1), "it was not sent");
+        mode.becomes(0, &lost());
+        assert_eq!((mode.values(), mode.is(1)), (&[1, 0][..], false));
+        assert!(mode.may_be(0) && mode.may_be(1) && !mode.may_be(2));
+        mode.becomes(0, &lost());
+        assert_eq!(mode.values(), [1, 0]);
+        mode.becomes(2, &Ok(()));
+        assert!(mode.is(2));
+    }
+
+    #[test]
+    fn a_restart_that_may_have_come_leaves_operation_possible() {
+        let mut standing = Standing::in_operation(false);
+        assert!(standing.is_in_operation());
+        standing.mode = Possible::known(DeviceMode::PRESET);
+        standing.password = Possible::known(true);
+        standing.may_have_restarted();
+        assert_eq!(standing.mode.values(), [DeviceMode::PRESET, DeviceMode::OPERATION]);
+        assert_eq!(standing.password.values(), [true, false]);
+        assert!(!standing.is_in_operation());
+    }
+}

@@ -1,0 +1,125 @@
+//! The steps of each operation, in their order: what a view lists beforehand and marks as they come.
+
+use std::time::Duration;
+
+use super::{Demand, Run, Task};
+use crate::devices::biss::profile::Op;
+use crate::devices::biss::protocol::DeviceMode;
+
+/// A step of an operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Step {
+    /// What does not depend on the motor is looked at: the filter.
+    Conditions,
+    /// Somebody does something at the motor.
+    Await(Task),
+    /// Password and device mode.
+    Enter(DeviceMode),
+    /// The encoder is asked to take something.
+    Open,
+    /// Registers are written.
+    Write,
+    /// A run of a procedure.
+    Run(Run),
+    /// The results are read.
+    Results,
+    /// The flash is written.
+    Save,
+    /// The preset is carried out.
+    Fire,
+    /// The encoder restarts.
+    Restart,
+    /// Back to operation, and the password cleared.
+    LeadBack,
+    /// What was written is read.
+    ReadBack,
+}
+
+/// How far a write has come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct News {
+    /// Which operation of the plan, counted from 0.
+    pub op: usize,
+    /// Which step of it.
+    pub step: Step,
+    /// What of it.
+    pub detail: Detail,
+}
+
+/// What is told of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Detail {
+    /// It begins.
+    Begins,
+    /// So many of so many registers.
+    Count {
+        /// Done.
+        done: u64,
+        /// All.
+        total: u64,
+    },
+    /// It takes its time.
+    Lasts {
+        /// So long until now.
+        elapsed: Duration,
+        /// As long as it takes, where that can be told.
+        expected: Option<Duration>,
+    },
+    /// What is asked of a person, and what is measured.
+    Demand(Demand),
+}
+
+/// The steps of an operation. A restart of the encoder leads back by itself.
+pub fn steps_of(op: &Op) -> Vec<Step> {
+    let entered = |mode, steps: &[Step]| {
+        let mut all = vec![Step::Enter(mode)];
+        all.extend(steps);
+        all
+    };
+    match op {
+        Op::StoreData { .. } => {
+            let own = [Step::Open, Step::Write, Step::Save, Step::LeadBack, Step::ReadBack];
+            let mut steps = vec![Step::Await(Task::Stand)];
+            steps.extend(entered(DeviceMode::DATA_WRITE, &own));
+            steps
+        }
+        Op::StorePreset { .. } => {
+            entered(DeviceMode::PRESET, &[Step::Open, Step::Write, Step::Save, Step::Restart, Step::ReadBack])
+        }
+        Op::FirePreset { .. } => {
+            let mut steps = vec![Step::Await(Task::StandAtPlace)];
+            steps.extend(entered(DeviceMode::PRESET, &[Step::Fire, Step::Restart, Step::ReadBack]));
+            steps
+        }
+        Op::SelectFilter { .. } => {
+            entered(DeviceMode::FILTER, &[Step::Open, Step::Write, Step::Save, Step::Restart, Step::ReadBack])
+        }
+        Op::Calibrate => {
+            let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+            vec![
+                Step::Conditions,
+                Step::Await(Task::Turn(first)),
+                Step::Enter(DeviceMode::CALIBRATION),
+                Step::Run(first),
+                Step::Await(Task::Turn(second)),
+                Step::Run(second),
+                Step::LeadBack,
+            ]
+        }
+        Op::WiegandTest { save } => {
+            let (first, second) = (Run::WiegandClockwise, Run::WiegandCounterclockwise);
+            let mut steps = vec![
+                Step::Await(Task::Turn(first)),
+                Step::Enter(DeviceMode::WIEGAND_TEST),
+                Step::Run(first),
+                Step::Await(Task::Turn(second)),
+                Step::Run(second),
+                Step::Results,
+            ];
+            steps.extend(save.then_some(Step::Save));
+            steps.push(Step::LeadBack);
+            steps
+        }
+        Op::WriteRegister { .. } => vec![Step::Write, Step::ReadBack],
+    }
+}

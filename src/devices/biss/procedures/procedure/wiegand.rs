@@ -1,0 +1,101 @@
+//! The test of the Wiegand sensor (manual 6.3): pulses of 515 revolutions clockwise, then counterclockwise.
+
+use std::time::Duration;
+
+use super::guide::{Attended, Course, Guide};
+use super::{Activity, Failure, Motion, Outcome, Run, Step, Task};
+use crate::devices::biss::procedures::Error;
+use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
+
+/// Manual 6.3.
+const REVOLUTIONS: f64 = 515.0;
+
+/// A Wiegand test that is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WiegandReport {
+    /// What it found.
+    pub result: WiegandResult,
+    /// It is kept in the encoder; it can be seen there after a restart.
+    pub saved: bool,
+    /// How the motor turned before the first run.
+    pub clockwise: Option<Motion>,
+    /// How it turned before the second.
+    pub counterclockwise: Option<Motion>,
+}
+
+impl Guide<'_, '_> {
+    pub(super) fn test_wiegand(&mut self, save: bool) -> Result<Outcome, Failure> {
+        let procedure = self.procedure(ProcedureKind::WiegandTest)?;
+        let (first, second) = (Run::WiegandClockwise, Run::WiegandCounterclockwise);
+        let Attended::Go(clockwise) = self.attend(Task::Turn(first))? else {
+            return Ok(Outcome::Skipped { after: None });
+        };
+        self.enter(&procedure)?;
+        self.collect(first, &procedure, clockwise)?;
+        let Attended::Go(counterclockwise) = self.attend(Task::Turn(second))? else {
+            return Ok(Outcome::Skipped { after: Some(first) });
+        };
+        self.collect(second, &procedure, counterclockwise)?;
+        self.step(Step::Results);
+        let results = procedure.data.and_then(|error| error.plus(1));
+        let results = results.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
+        let bytes = self.master.read_run(results, 4)?;
+        let Ok(bytes) = <[u8; 4]>::try_from(bytes) else {
+            return Err(Failure::NotDescribed { kind: procedure.kind });
+        };
+        if save {
+            self.save_result(&procedure)?;
+        }
+        let result = WiegandResult::parse(bytes);
+        Ok(Outcome::Tested(WiegandReport { result, saved: save, clockwise, counterclockwise }))
+    }
+
+    /// One direction.
+    fn collect(&mut self, run: Run, procedure: &Procedure, motion: Option<Motion>) -> Result<(), Failure> {
+        self.step(Step::Run(run));
+        let was = self.master.read(procedure.status)?;
+        let (command, [before, active, done]) = if run.is_clockwise() {
+            let statuses = [WiegandStatus::Stopped, WiegandStatus::Clockwise, WiegandStatus::WaitForDirection];
+            (WiegandCommand::StartClockwise, statuses)
+        } else {
+            let statuses = [WiegandStatus::WaitForDirection, WiegandStatus::Counterclockwise, WiegandStatus::Complete];
+            (WiegandCommand::StartCounterclockwise, statuses)
+        };
+        // The slowest motor that is let start takes 62 s.
+        let rpm = motion.map_or(run.allowed().least, |motion| motion.rpm.abs()).max(run.allowed().least / 2.0);
+        let expected = Duration::from_secs_f64(REVOLUTIONS / rpm * 60.0);
+        let course = Course {
+            run,
+            command: command.byte(),
+            was,
+            before: before.byte(),
+            active: active.byte(),
+            done: done.byte(),
+            every: Duration::from_millis(500),
+            expected,
+            limit: expected * 2 + Duration::from_secs(10),
+        };
+        self.run(&course, procedure, |guide, status| {
+            let status = WiegandStatus::from_byte(status);
+            let code = match procedure.data {
+                Some(error) if status == WiegandStatus::Failed => guide.master.read(error)?,
+                _ => 0,
+            };
+            Ok(Failure::Wiegand { run, status, code })
+        })
+    }
+
+    /// Keeps the result. Nothing reads it back before a restart: the encoder's word is all there is.
+    fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
+        self.step(Step::Save);
+        self.does(Activity::Saving);
+        let ended = self.master.write(procedure.command, WiegandCommand::Save.byte());
+        if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {
+            self.spend();
+        }
+        if ended.as_ref().err().is_none_or(|error| !error.is_lost()) {
+            self.does(Activity::Nothing);
+        }
+        Ok(ended?)
+    }
+}

@@ -1,0 +1,165 @@
+//! Values of registers as they were read, byte for byte, and the reading of what a description names.
+
+use std::collections::BTreeMap;
+
+use super::{Error, Master};
+use crate::devices::biss::protocol::{Decoded, Description, Firmware, Register, RegisterAddress, Role};
+
+/// Values of registers, by address.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Registers(BTreeMap<RegisterAddress, u8>);
+
+impl Registers {
+    /// The value of one.
+    pub fn get(&self, address: RegisterAddress) -> Option<u8> {
+        self.0.get(&address).copied()
+    }
+
+    /// A run of them, by global address; `None` where one was not read.
+    pub fn run(&self, start: RegisterAddress, count: u8) -> Option<Vec<u8>> {
+        let first = start.global();
+        (first..first.saturating_add(count.into())).map(|at| self.get(RegisterAddress::from_global(at)?)).collect()
+    }
+
+    /// The bytes of a described register; `None` where one was not read.
+    pub fn bytes(&self, register: &Register) -> Option<Vec<u8>> {
+        self.run(register.address, register.width)
+    }
+
+    /// What the register with a role says, as a number.
+    pub fn number(&self, description: &Description, role: Role) -> Option<u64> {
+        let register = description.with_role(role)?;
+        register.number(&self.bytes(register)?)
+    }
+
+    /// What the register with a role says, as a quantity.
+    pub fn quantity(&self, description: &Description, role: Role) -> Option<f64> {
+        let register = description.with_role(role)?;
+        match register.decode(&self.bytes(register)?)? {
+            Decoded::Scaled(value) => Some(value),
+            Decoded::Number(value) | Decoded::Hex(value) => Some(value as f64),
+            Decoded::Bits(_) | Decoded::Choice(..) | Decoded::Text(_) => None,
+        }
+    }
+
+    /// All of them, by ascending address.
+    pub fn iter(&self) -> impl Iterator<Item = (RegisterAddress, u8)> {
+        self.0.iter().map(|(address, value)| (*address, *value))
+    }
+
+    /// Takes a run as it was read.
+    pub(super) fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
+        let places = (start.global()..).map_while(RegisterAddress::from_global);
+        self.0.extend(places.zip(bytes.iter().copied()));
+    }
+
+    /// Reads a run and keeps it.
+    ///
+    /// # Errors
+    /// As [`Master::read_run`].
+    pub(super) fn read(
+        &mut self,
+        master: &mut Master<'_>,
+        start: RegisterAddress,
+        count: u8,
+    ) -> Result<Vec<u8>, Error> {
+        let bytes = master.read_run(start, count.into())?;
+        self.take(start, &bytes);
+        Ok(bytes)
+    }
+
+    /// Reads a described register and keeps it.
+    pub(super) fn read_register(&mut self, master: &mut Master<'_>, register: &Register) -> Result<Vec<u8>, Error> {
+        self.read(master, register.address, register.width)
+    }
+
+    /// Reads all that a description names, that this firmware has, and that is not there yet. Gives the names' addresses
+    /// at which the encoder has nothing all the same.
+    ///
+    /// # Errors
+    /// The line.
+    pub(super) fn read_described(
+        &mut self,
+        master: &mut Master<'_>,
+        description: &Description,
+        firmware: Option<Firmware>,
+        progress: &mut dyn FnMut(u64, u64, RegisterAddress),
+    ) -> Result<Vec<RegisterAddress>, Error> {
+        let wanted: Vec<&Register> = description
+            .registers()
+            .iter()
+            .filter(|register| has(register, firmware) && self.bytes(register).is_none())
+            .collect();
+        let mut missing = Vec::new();
+        for (done, register) in (0..).zip(&wanted) {
+            progress(done, wanted.len() as u64, register.address);
+            match self.read_register(master, register) {
+                Ok(_) => {}
+                Err(Error::NoSuchRegister { .. }) => missing.push(register.address),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(missing)
+    }
+
+    /// Reads the registers with these roles, as far as the encoder has them.
+    ///
+    /// # Errors
+    /// The line.
+    pub(super) fn read_roles(
+        &mut self,
+        master: &mut Master<'_>,
+        description: &Description,
+        firmware: Option<Firmware>,
+        roles: &[Role],
+    ) -> Result<(), Error> {
+        for register in roles.iter().filter_map(|role| description.with_role(*role)) {
+            if !has(register, firmware) {
+                continue;
+            }
+            match self.read_register(master, register) {
+                Ok(_) | Err(Error::NoSuchRegister { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The register can be read of an encoder with this firmware; of one that does not tell it, only what every firmware has.
+fn has(register: &Register, firmware: Option<Firmware>) -> bool {
+    register.access.reads() && firmware.unwrap_or_default() >= register.since
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::biss::protocol::Descriptions;
+
+    fn at(text: &str) -> RegisterAddress {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn values_are_found_by_address_and_by_role() {
+        let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().unwrap();
+        let mut registers = Registers::default();
+        registers.take(at("0x44"), &[0x00, 0x12, 0xD6, 0x87]);
+        registers.take(at("0x66"), &[0x4B]);
+        assert_eq!(registers.number(&kit, Role::SerialNumber), Some(1_234_567));
+        assert_eq!(registers.quantity(&kit, Role::Temperature), Some(25.0));
+        assert_eq!(registers.number(&kit, Role::Errors), None);
+        assert_eq!(registers.run(at("0x45"), 3), Some(vec![0x12, 0xD6, 0x87]));
+        assert_eq!(registers.run(at("0x45"), 4), None);
+        assert_eq!(registers.iter().count(), 5);
+    }
+
+    #[test]
+    fn what_a_firmware_does_not_have_is_not_asked_for() {
+        let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().unwrap();
+        let errors = kit.with_role(Role::Errors).unwrap();
+        assert!(has(errors, Some(Firmware::new(1, 6, 0))));
+        assert!(!has(errors, Some(Firmware::new(1, 5, 9))) && !has(errors, None));
+        assert!(has(kit.with_role(Role::Mode).unwrap(), None));
+    }
+}

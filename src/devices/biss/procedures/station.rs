@@ -1,0 +1,416 @@
+//! What a session knows about its line and the encoder at its end, from one job to the next.
+
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::flags::Flags;
+use super::identify::FrameSource;
+use crate::analysis::Time;
+use crate::bits::ByteOrder;
+use crate::buses::bridge::procedures::flow::Flow;
+use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
+use crate::buses::ubicom::protocol::{FORMAT, REPLY_TIME_OUT};
+use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
+use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Layout, RegisterAddress};
+use crate::link::{Query, UrlError};
+use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
+
+/// Link parameters that describe the line and the encoder.
+pub const PARAMETERS: [&str; 12] = [
+    "baud",
+    "parity",
+    "order",
+    "echo",
+    "timeout",
+    "margin",
+    "clock",
+    "voltage",
+    SupplyAfter::PARAMETER,
+    "mt",
+    "st",
+    "crc",
+];
+
+/// How the encoder is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// UBICOM over its configuration pin: registers by their global address.
+    ConfigPin,
+    /// BiSS over an adapter: registers by bank and address.
+    Adapter,
+}
+
+impl Way {
+    /// Those of [`PARAMETERS`] that mean something over it.
+    pub const fn parameters(self) -> &'static [&'static str] {
+        match self {
+            Way::ConfigPin => &["baud", "parity", "order", "echo", "timeout", "margin", "mt", "st", "crc"],
+            Way::Adapter => &["margin", "clock", "voltage", SupplyAfter::PARAMETER, "mt", "st", "crc"],
+        }
+    }
+}
+
+/// What a session knows about its line and the encoder at its end.
+#[derive(Clone, Debug)]
+pub struct Station {
+    /// How the encoder is reached.
+    pub way: Way,
+    /// Speed and parity on the configuration pin. The encoder has 115200 8N1 and nothing to set; what stands between it and
+    /// us, a converter or a radio link, may have another.
+    pub format: CharacterFormat,
+    /// Silences, echo and damage: what every line has.
+    pub line: LineState,
+    /// Which byte of a register's number comes first over the configuration pin; `None` until it was probed.
+    pub order: Option<ByteOrder>,
+    /// So long a reply may take, beside the time of its bytes and the margin.
+    pub timeout: Duration,
+    /// The clock of BiSS in hertz, as wished; the adapter takes the nearest that it has.
+    pub clock_hz: u32,
+    /// The clock of BiSS in hertz as the adapter has set it; `None` before.
+    pub actual_clock_hz: Option<u32>,
+    /// The encoder's supply, where the adapter is to switch it.
+    pub supply: Option<Supply>,
+    /// The adapter, over that way.
+    pub adapter: AdapterState,
+    /// What the encoder's registers are; `None` before it was identified.
+    pub description: Option<Arc<Description>>,
+    /// The encoder's firmware, as it was identified.
+    pub firmware: Option<Firmware>,
+    /// The frame as the encoder's data sheet tells it, or what stands for that.
+    pub layout: Option<Layout>,
+    /// The frame as the user gives it, for an encoder that does not tell it.
+    pub given: Option<Layout>,
+    /// Who told the frame; `None` before the encoder was identified.
+    pub(super) source: Option<FrameSource>,
+    /// What is read is to be kept: it has to come twice, on a line that seems good as well.
+    pub(super) thorough: bool,
+    /// Replies and frames came damaged.
+    pub(super) noisy: bool,
+    /// How the adapter's bus is set.
+    pub(super) bus: Option<Bus>,
+    /// The bank that is selected over BiSS, and when it was last sure.
+    pub(super) bank: Option<(u8, Moment)>,
+    /// Frames with a wrong checksum since the last reading.
+    pub(super) crc_errors: u32,
+    /// A frame with these widths had a right checksum.
+    pub(super) good_frames: bool,
+    /// What the registers of errors and warnings said last, over the configuration pin.
+    pub(super) flags: Option<Flags>,
+    /// The stream that the adapter sends.
+    pub(super) flow: Option<Flow>,
+    /// The last frame of the streams before.
+    pub(super) streamed_until: Option<Time>,
+    /// When a register was last written.
+    pub(super) written_at: Option<Moment>,
+    /// A write ended early and could not be led back: a store, a calibration or a restart may be under way.
+    pub unfinished: bool,
+}
+
+/// The encoder's supply as an adapter gives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Supply {
+    /// Millivolts wished.
+    pub millivolt: u16,
+    /// Millivolts and milliamperes measured when it was switched on; `None` before.
+    pub measured: Option<(u16, u16)>,
+}
+
+impl Supply {
+    /// Until registers can be asked: data sheet, 02:0Eh.
+    pub(super) const POWER_UP: Duration = Duration::from_millis(500);
+    /// Millivolts that every version of the kit encoder stands (manual, chapter 2: 4.75 to 12.5 V).
+    const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
+
+    /// So many millivolts for a kit encoder.
+    pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
+        SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
+    }
+}
+
+/// How an adapter's bus is set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Bus {
+    pub(super) clock_hz: u32,
+    pub(super) data_bits: u8,
+    pub(super) crc_bits: u8,
+}
+
+impl Station {
+    /// The clock of BiSS where none is wished: slow enough for long cables.
+    pub const CLOCK_HZ: u32 = 1_000_000;
+
+    /// A line that nobody has used.
+    pub fn new(way: Way, margin: Duration) -> Self {
+        Station {
+            way,
+            format: FORMAT,
+            line: LineState::new(margin),
+            order: None,
+            timeout: REPLY_TIME_OUT,
+            clock_hz: Self::CLOCK_HZ,
+            actual_clock_hz: None,
+            supply: None,
+            adapter: AdapterState::default(),
+            description: None,
+            firmware: None,
+            layout: None,
+            given: None,
+            source: None,
+            thorough: false,
+            noisy: false,
+            bus: None,
+            bank: None,
+            crc_errors: 0,
+            good_frames: false,
+            flags: None,
+            flow: None,
+            streamed_until: None,
+            written_at: None,
+            unfinished: false,
+        }
+    }
+
+    /// A line as the parameters of its link say.
+    ///
+    /// # Errors
+    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    pub fn from_query(query: &Query, way: Way, margin: Duration) -> Result<Self, UrlError> {
+        let mut station = Station::new(way, margin);
+        if let Some(baud) = query.read("baud", "bit/s from 300 to 4000000, usually 115200", read_baud)? {
+            station.format.baud = baud;
+        }
+        if let Some(parity) = query.read("parity", "none, even or odd", Parity::from_word)? {
+            station.format.parity = parity;
+        }
+        station.order = query.read("order", "auto, low-first or high-first", read_order)?.flatten();
+        if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
+            station.line.echo = echo;
+        }
+        if let Some(timeout) = query.read("timeout", "milliseconds from 1 to 10000", read_timeout)? {
+            station.timeout = timeout;
+        }
+        if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
+            station.line.margin = margin;
+        }
+        if let Some(clock) = query.read("clock", "hertz from 80000 to 10000000", read_clock)? {
+            station.clock_hz = clock;
+        }
+        let millivolt = query.read("voltage", "volts from 4.75 to 12.5", read_voltage)?;
+        station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
+        station.given = read_frame(query)?;
+        if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
+            station.adapter.leave_supply(after);
+        }
+        Ok(station)
+    }
+
+    /// The frame of the position: as the encoder's data sheet says, else its description, else that of the kit encoder.
+    pub fn frame(&self) -> Layout {
+        let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
+        self.layout.clone().or_else(described).unwrap_or_default()
+    }
+
+    /// The adapter is asked anew who it is, and set anew.
+    pub(super) fn forget_adapter(&mut self) {
+        self.adapter.forget();
+        self.flow = None;
+        self.forget_settings();
+    }
+
+    /// An adapter that was reset has neither a setting of its bus nor the supply switched on.
+    pub(super) fn forget_settings(&mut self) {
+        (self.bank, self.bus) = (None, None);
+        if let Some(supply) = &mut self.supply {
+            supply.measured = None;
+        }
+    }
+
+    /// Takes the number of frames with a wrong checksum since the last reading.
+    pub fn take_crc_errors(&mut self) -> u32 {
+        std::mem::take(&mut self.crc_errors)
+    }
+
+    /// How many bits of a position are turns is known.
+    pub(super) fn is_split_known(&self) -> bool {
+        self.source.is_none_or(FrameSource::is_told)
+    }
+
+    /// Once is not enough: a sum lets some pairs of flipped bits through.
+    pub(super) fn reads_twice(&self) -> bool {
+        self.thorough || self.noisy
+    }
+
+    /// Whether reading a register back tells that it was written. What a command register gives back does not: the same
+    /// command may have been given before.
+    pub(super) fn tells_back(&self, address: RegisterAddress) -> bool {
+        if address == RegisterAddress::BANK_SELECT {
+            return true;
+        }
+        let Some(description) = &self.description else { return false };
+        description.access(address) == Some(Access::Rw) && !self.is_command(address)
+    }
+
+    /// What is written there is a command: of a procedure, or one that saves something.
+    pub(super) fn is_command(&self, address: RegisterAddress) -> bool {
+        self.description.as_ref().is_some_and(|description| {
+            let saves = description.at(address).is_some_and(|register| !register.saves.is_empty());
+            saves || description.procedures().iter().any(|procedure| procedure.command == address)
+        })
+    }
+}
+
+impl fmt::Display for Station {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.way {
+            Way::ConfigPin => write!(f, "UBICOM at {}", self.format),
+            Way::Adapter => write!(f, "BiSS at {} Hz", self.actual_clock_hz.unwrap_or(self.clock_hz)),
+        }
+    }
+}
+
+/// The frame as a link gives it: bits of turns and steps, and the checksum, which is the usual one where none is given.
+fn read_frame(query: &Query) -> Result<Option<Layout>, UrlError> {
+    let bits = |least: u8| move |text: &str| text.parse().ok().filter(|bits| (least..=32).contains(bits));
+    let multiturn: Option<u8> = query.read("mt", "bits from 0 to 32", bits(0))?;
+    let singleturn: Option<u8> = query.read("st", "bits from 1 to 32", bits(1))?;
+    let crc = query.read("crc", "a polynomial with all its terms such as 0x43, or none", read_crc)?;
+    let alone = |name: &str, what: &str| UrlError::Value {
+        name: name.to_owned(),
+        value: query.get(name).unwrap_or_default().to_owned(),
+        allowed: what.to_owned(),
+    };
+    let Some(singleturn) = singleturn else {
+        let other = ["mt", "crc"].into_iter().find(|name| query.get(name).is_some());
+        return other.map_or(Ok(None), |name| Err(alone(name, "only together with st")));
+    };
+    let crc = crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
+    // 32 and 32 bits leave no room for flags and checksum.
+    let layout = Layout::new(multiturn.unwrap_or(0), singleturn, true, true, crc);
+    layout
+        .map(Some)
+        .map_err(|_| alone("st", "bits that leave a frame of no more than 64 with turns, two flags and CRC"))
+}
+
+/// `Some(None)`: the frames have none.
+fn read_crc(text: &str) -> Option<Option<Crc>> {
+    if text == "none" {
+        return Some(None);
+    }
+    let polynomial = u64::from_str_radix(text.strip_prefix("0x")?, 16).ok()?;
+    Crc::new(polynomial, 0, true).ok().map(Some)
+}
+
+/// `Some(None)` is to be probed.
+fn read_order(text: &str) -> Option<Option<ByteOrder>> {
+    match text {
+        "auto" => Some(None),
+        "low-first" => Some(Some(ByteOrder::LowFirst)),
+        "high-first" => Some(Some(ByteOrder::HighFirst)),
+        _ => None,
+    }
+}
+
+/// What serial ports can be set to; the port itself may have fewer.
+fn read_baud(text: &str) -> Option<Baud> {
+    text.parse().ok().filter(|baud| (300..=4_000_000).contains(baud)).and_then(Baud::new)
+}
+
+fn read_timeout(text: &str) -> Option<Duration> {
+    text.parse().ok().filter(|ms| (1..=10_000).contains(ms)).map(Duration::from_millis)
+}
+
+fn read_clock(text: &str) -> Option<u32> {
+    text.parse().ok().filter(|hz| (80_000..=10_000_000).contains(hz))
+}
+
+/// Volts as millivolts.
+fn read_voltage(text: &str) -> Option<u16> {
+    let volts: f64 = text.parse().ok().filter(|volts: &f64| (0.0..=60.0).contains(volts))?;
+    // At most 60 000.
+    Some((volts * 1000.0).round() as u16).filter(|millivolt| Supply::RANGE.contains(millivolt))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::biss::protocol::Descriptions;
+
+    fn station(query: &str) -> Result<Station, UrlError> {
+        Station::from_query(&query.parse().unwrap(), Way::ConfigPin, Duration::from_millis(50))
+    }
+
+    #[test]
+    fn what_is_left_out_is_probed_or_usual() {
+        let station = station("").unwrap();
+        assert_eq!(station.to_string(), "UBICOM at 115200 8N1");
+        assert_eq!((station.order, station.line.echo), (None, Echo::Unknown));
+        assert_eq!((station.timeout, station.line.margin), (Duration::from_millis(100), Duration::from_millis(50)));
+        assert_eq!((station.clock_hz, station.supply, station.frame().bits()), (1_000_000, None, 41));
+    }
+
+    #[test]
+    fn a_line_is_read_from_its_parameters() {
+        let station =
+            station("baud=9600&parity=even&order=high-first&echo=on&timeout=250&margin=5&clock=80000&voltage=4.75")
+                .unwrap();
+        assert_eq!(station.to_string(), "UBICOM at 9600 8E1");
+        assert_eq!((station.order, station.line.echo), (Some(ByteOrder::HighFirst), Echo::On));
+        assert_eq!((station.timeout, station.line.margin), (Duration::from_millis(250), Duration::from_millis(5)));
+        assert_eq!(station.clock_hz, 80_000);
+        assert_eq!(station.supply, Some(Supply { millivolt: 4_750, measured: None }));
+    }
+
+    /// Issue 22.20: 12 bits of turns, 19 of steps, two flags, and CRC6 43h unless another is given.
+    #[test]
+    fn the_frame_of_an_encoder_that_does_not_tell_it_is_given() {
+        let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));
+        assert_eq!(given(""), None);
+        assert_eq!(given("mt=12&st=19"), Some((33, 6)));
+        assert_eq!(given("st=14&crc=0x13"), Some((16, 4)));
+        assert_eq!(given("mt=0&st=14&crc=none"), Some((16, 0)));
+    }
+
+    #[test]
+    fn a_value_that_cannot_be_used_names_what_can() {
+        let cases = [
+            ("baud=0", "baud=0: bit/s from 300 to 4000000, usually 115200"),
+            ("parity=mark", "parity=mark: none, even or odd"),
+            ("order=lsb", "order=lsb: auto, low-first or high-first"),
+            ("echo=yes", "echo=yes: auto, on or off"),
+            ("timeout=0", "timeout=0: milliseconds from 1 to 10000"),
+            ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
+            ("clock=10000001", "clock=10000001: hertz from 80000 to 10000000"),
+            ("clock=NaN", "clock=NaN: hertz from 80000 to 10000000"),
+            ("mt=33&st=8", "mt=33: bits from 0 to 32"),
+            ("st=0", "st=0: bits from 1 to 32"),
+            ("mt=12", "mt=12: only together with st"),
+            ("crc=0x43", "crc=0x43: only together with st"),
+            ("st=8&crc=43", "crc=43: a polynomial with all its terms such as 0x43, or none"),
+            ("mt=32&st=32", "st=32: bits that leave a frame of no more than 64 with turns, two flags and CRC"),
+            ("leave-supply=no", "leave-supply=no: as-found, on or off"),
+            ("voltage=24", "voltage=24: volts from 4.75 to 12.5"),
+            ("voltage=NaN", "voltage=NaN: volts from 4.75 to 12.5"),
+        ];
+        for (query, message) in cases {
+            assert_eq!(station(query).unwrap_err().to_string(), message);
+        }
+    }
+
+    /// Manual, appendix 9.1: bank select, mode, password and the data areas keep what they are given; the rest are
+    /// commands, cannot be written, or are not described.
+    #[test]
+    fn reading_back_tells_of_registers_that_keep_what_they_are_given() {
+        let mut station = Station::new(Way::ConfigPin, Duration::ZERO);
+        let tells = |station: &Station, text: &str| station.tells_back(text.parse().unwrap());
+        assert!(tells(&station, "0x40") && !tells(&station, "0x6B"), "nothing is known of the encoder yet");
+        station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);
+        for text in ["0x40", "0x6A", "0x6B", "0x01:0x02", "0x01:0x07", "0x04:0x00", "0x43:0x3F"] {
+            assert!(tells(&station, text), "{text}");
+        }
+        let others = ["0x00:0x00", "0x00:0x06", "0x00:0x1A", "0x00:0x24", "0x01:0x00", "0x66", "0x02:0x05", "0x50"];
+        for text in others {
+            assert!(!tells(&station, text), "{text}");
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! How an encoder is, and everything that there is to see of it, in one go.
+
+use super::identify::identify_with;
+use super::registers::Registers;
+use super::{Error, Identity, Master, PositionReading};
+use crate::devices::biss::protocol::{
+    CalibrationStatus, Decoded, Description, Descriptions, DeviceMode, Filter, Name, PresetValue, ProcedureKind,
+    RegisterAddress, Role, WiegandResult,
+};
+
+/// How an encoder is. What it has no register for, or not with this firmware, is `None`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Status {
+    /// The device mode.
+    pub mode: Option<DeviceMode>,
+    /// What stands where the password belongs.
+    pub protection: Option<u8>,
+    /// Its errors.
+    pub errors: Option<Bits>,
+    /// Its warnings.
+    pub warnings: Option<Bits>,
+    /// Degrees Celsius.
+    pub celsius: Option<f64>,
+    /// The filter of the position.
+    pub filter: Option<Filter>,
+    /// The position, with the error and warning bit where the way has them; `None` where it gave none.
+    pub position: Option<PositionReading>,
+}
+
+impl Status {
+    /// The device mode, where that is not operation: registers may show what was entered and never saved.
+    pub fn unsaved_mode(&self) -> Option<DeviceMode> {
+        self.mode.filter(|mode| *mode != DeviceMode::OPERATION)
+    }
+}
+
+/// A register of bits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bits {
+    /// All of them.
+    pub raw: u64,
+    /// Those that are set, the lowest first, with what the description says of each.
+    pub set: Vec<(u8, Option<Name>)>,
+}
+
+/// An encoder as it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// Who is there.
+    pub identity: Identity,
+    /// How it is.
+    pub status: Status,
+    /// Status of the calibration.
+    pub calibration: Option<CalibrationStatus>,
+    /// The last Wiegand test since power came.
+    pub wiegand_last: Option<WiegandResult>,
+    /// The factory's Wiegand test.
+    pub wiegand_production: Option<WiegandResult>,
+    /// The Wiegand test that was saved in the encoder, as it stood when power came.
+    pub wiegand_saved: Option<WiegandResult>,
+    /// What a preset makes of the shaft's place.
+    pub preset: Option<PresetValue>,
+    /// All that was read, byte for byte.
+    pub registers: Registers,
+    /// Registers of the description that the encoder does not have.
+    pub missing: Vec<RegisterAddress>,
+}
+
+const STATUS: [Role; 6] = [Role::Mode, Role::Password, Role::Errors, Role::Warnings, Role::Temperature, Role::Filter];
+/// Behind the error code of a Wiegand test: the last result, the factory's, the saved one.
+const WIEGAND_RESULTS: u8 = 1;
+
+/// Reads how an encoder is that was identified before.
+///
+/// # Errors
+/// The line; an encoder that was not identified.
+pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
+    let description = master.description()?;
+    let firmware = master.station().firmware;
+    let mut registers = Registers::default();
+    registers.read_roles(master, &description, firmware, &STATUS)?;
+    let position = position_if_any(master)?;
+    Ok(status_of(&description, &registers, position))
+}
+
+/// Reads all that the encoder's description names, and the position.
+///
+/// # Errors
+/// The line.
+pub fn survey(
+    master: &mut Master<'_>,
+    types: &Descriptions,
+    progress: &mut dyn FnMut(u64, u64, RegisterAddress),
+) -> Result<Survey, Error> {
+    let mut registers = Registers::default();
+    let identity = identify_with(master, types, &mut registers)?;
+    look_around(master, identity, registers, progress)
+}
+
+/// All but who is there; `registers` are those that were read for that.
+pub(super) fn look_around(
+    master: &mut Master<'_>,
+    identity: Identity,
+    mut registers: Registers,
+    progress: &mut dyn FnMut(u64, u64, RegisterAddress),
+) -> Result<Survey, Error> {
+    let description = identity.description.clone();
+    let missing = registers.read_described(master, &description, identity.firmware, progress)?;
+    let position = position_if_any(master)?;
+    let results = |number| wiegand(&description, &registers, number);
+    Ok(Survey {
+        status: status_of(&description, &registers, position),
+        calibration: calibration(&description, &registers),
+        wiegand_last: results(0),
+        wiegand_production: results(1),
+        wiegand_saved: results(2),
+        preset: preset(&description, &registers),
+        identity,
+        registers,
+        missing,
+    })
+}
+
+/// An encoder that gives no frame, or none that can be read, is looked at all the same.
+fn position_if_any(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
+    match master.position() {
+        Ok(reading) => Ok(Some(reading)),
+        Err(Error::TooWide { .. } | Error::WrongWidths { .. } | Error::Damaged { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+fn status_of(description: &Description, registers: &Registers, position: Option<PositionReading>) -> Status {
+    let byte = |role| registers.number(description, role).and_then(|number| u8::try_from(number).ok());
+    Status {
+        mode: byte(Role::Mode).map(DeviceMode::new),
+        protection: byte(Role::Password),
+        errors: bits(description, registers, Role::Errors),
+        warnings: bits(description, registers, Role::Warnings),
+        celsius: registers.quantity(description, Role::Temperature),
+        filter: byte(Role::Filter).map(Filter::from_byte),
+        position,
+    }
+}
+
+fn bits(description: &Description, registers: &Registers, role: Role) -> Option<Bits> {
+    let register = description.with_role(role)?;
+    let bytes = registers.bytes(register)?;
+    let raw = register.number(&bytes)?;
+    let set = match register.decode(&bytes)? {
+        Decoded::Bits(set) => set.into_iter().map(|(bit, name)| (bit, name.cloned())).collect(),
+        _ => (0..64).filter(|bit| raw >> bit & 1 == 1).map(|bit| (bit, None)).collect(),
+    };
+    Some(Bits { raw, set })
+}
+
+fn wiegand(description: &Description, registers: &Registers, number: u8) -> Option<WiegandResult> {
+    let error = description.procedure(ProcedureKind::WiegandTest)?.data?;
+    let bytes = registers.run(error.plus(WIEGAND_RESULTS + 4 * number)?, 4)?;
+    bytes.try_into().ok().map(WiegandResult::parse)
+}
+
+fn preset(description: &Description, registers: &Registers) -> Option<PresetValue> {
+    let bytes = registers.run(description.procedure(ProcedureKind::Preset)?.data?, 6)?;
+    bytes.try_into().ok().map(PresetValue::parse)
+}
+
+fn calibration(description: &Description, registers: &Registers) -> Option<CalibrationStatus> {
+    registers.get(description.procedure(ProcedureKind::Calibration)?.status).map(CalibrationStatus::from_byte)
+}

@@ -1,0 +1,37 @@
+//! The frame of an encoder whose widths nobody knows, found while its shaft turns.
+
+use std::time::Duration;
+
+use super::{Error, Master};
+use crate::devices::biss::protocol::{Crc, Layout, data_bits_of};
+
+/// As many bits as a frame has at most, data and checksum.
+const CLOCKED: u8 = 64;
+/// Most frames that are looked at, and the time from one to the next.
+const FRAMES: usize = 200;
+const BETWEEN: Duration = Duration::from_millis(2);
+/// Bits within a revolution at most.
+const MOST: u8 = 32;
+
+/// Looks for the frame by its checksum, while the shaft turns: CRC6 43h inverted, with an error and a warning bit behind
+/// the position, as BiSS encoders have them (`U`). How many bits are turns nobody can tell from outside: all that a word
+/// of 32 bits takes count as one turn.
+///
+/// # Errors
+/// [`Error::WidthsUnknown`] where no length fits, or the shaft stands still; the line.
+pub(super) fn find_widths(master: &mut Master<'_>) -> Result<Layout, Error> {
+    let crc = Crc::new(Crc::POSITION, 0, true).map_err(|error| Error::Unexpected(error.to_string()))?;
+    let mut frames = Vec::with_capacity(FRAMES);
+    while frames.len() < FRAMES {
+        frames.push(master.frame(CLOCKED - crc.width(), crc.width())?);
+        if let Some(bits) = data_bits_of(&frames, CLOCKED, &crc) {
+            let position = bits.saturating_sub(2);
+            let singleturn = position.min(MOST);
+            return Layout::new(position - singleturn, singleturn, true, true, Some(crc))
+                .map_err(|error| Error::Unexpected(error.to_string()));
+        }
+        master.wait(BETWEEN)?;
+    }
+    let moving = frames.windows(2).any(|pair| pair.first() != pair.last());
+    Err(Error::WidthsUnknown { moving })
+}

@@ -1,0 +1,290 @@
+//! The one way to write to an encoder: a plan, a consent to it, what was read is read again, then exactly the operations
+//! that were shown, each read back, with a person at the motor where one is needed.
+//!
+//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+
+use super::procedure::{Failure, Guide, News, Operator, Outcome, Standing, Step};
+use super::{Error, Identity, Master, ensure_standstill};
+use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
+use crate::devices::biss::protocol::{
+    Area, Description, DeviceMode, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress, Role,
+};
+use crate::profile::Consent;
+
+/// A plan that a person consented to and whose base still holds.
+pub struct Confirmed<'p> {
+    plan: &'p BissPlan,
+    /// Somebody has left the password set.
+    password: bool,
+}
+
+/// What was written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Written {
+    /// Operations carried out, of the plan's.
+    pub ops: usize,
+    /// Registers and settings changed.
+    pub written: u64,
+    /// Those of them that were read back and found as they should be.
+    pub verified: u64,
+    /// Persistent writes spent, or that may have been.
+    pub write_cycles: u64,
+    /// What came of each operation that was carried out or left out.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// A write that ended early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("after {} of the operations: {cause}", done.ops)]
+pub struct Interrupted {
+    /// What was written until then.
+    pub done: Written,
+    /// At which step of the operation that was under way.
+    pub at: Step,
+    /// Why it ended.
+    pub cause: Failure,
+    /// In which state the encoder was left.
+    pub left: Left,
+    /// A register that is written by itself, and of which is not known whether it took its value.
+    pub unclear: Option<RegisterAddress>,
+}
+
+/// In which state an encoder was left.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Left {
+    /// In operation, without the password.
+    Operation,
+    /// It could not be led back: what is known of it, unless it has lost power since, which leads back as well.
+    Unknown(Standing),
+}
+
+/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the encoder for which it
+/// was made, because two new ones have the same memory.
+///
+/// # Errors
+/// [`Error::Changed`] when anything is no longer as it was; [`Error::Moving`]; the consent is for another plan; the line.
+pub fn confirm<'p>(
+    master: &mut Master<'_>,
+    plan: &'p BissPlan,
+    consent: Consent,
+    identity: &Identity,
+) -> Result<Confirmed<'p>, Error> {
+    if !consent.covers(plan.id()) {
+        return Err(Error::Unexpected("the consent is for another plan".to_owned()));
+    }
+    let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
+    if !is_same(master, identity)? {
+        return changed("the encoder itself");
+    }
+    let description = master.description()?;
+    ensure_operation(master, &description)?;
+    let password = match description.lock() {
+        Some(lock) => master.read(lock.password_at)? != 0,
+        None => false,
+    };
+    let Base { banks, filter, preset, registers } = &plan.base;
+    if filter.is_some() && read_filter(master, &description)? != *filter {
+        return changed(BissProfile::FILTER);
+    }
+    if preset.is_some() && read_preset(master, &description)? != *preset {
+        return changed(BissProfile::PRESET);
+    }
+    for (address, value) in registers {
+        if master.read(*address)? != *value {
+            return changed(&address.to_string());
+        }
+    }
+    if !banks.is_empty() {
+        ensure_standstill(master)?;
+    }
+    for bank in banks {
+        if read_bank(master, bank.number)? != *bank {
+            return changed(&format!("bank 0x{:02X}", bank.number));
+        }
+    }
+    Ok(Confirmed { plan, password })
+}
+
+/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
+/// exchanges, but not where it would leave something half done; the encoder is led back all the same.
+///
+/// # Errors
+/// [`Interrupted`], with what was written until then and the state in which the encoder was left.
+pub fn carry_out(
+    master: &mut Master<'_>,
+    confirmed: &Confirmed<'_>,
+    operator: &mut dyn Operator,
+    tell: &mut dyn FnMut(News),
+) -> Result<Written, Box<Interrupted>> {
+    let mut done = Written::default();
+    let description = match master.description() {
+        Ok(description) => description,
+        Err(error) => {
+            let (at, cause, left) = (Step::LeadBack, Failure::Device(error), Left::Operation);
+            return Err(Box::new(Interrupted { done, at, cause, left, unclear: None }));
+        }
+    };
+    let standing = Standing::in_operation(confirmed.password);
+    let mut guide = Guide::new(master, description, operator, tell, standing);
+    for (number, op) in confirmed.plan.ops.iter().enumerate() {
+        guide.begin(number);
+        let ended = guide.perform(op);
+        done.write_cycles = guide.cycles();
+        let failed_at = guide.at();
+        let led = lead_back(&mut guide, ended.as_ref().err());
+        let (at, cause) = match (ended, led) {
+            (Ok(outcome), led) => {
+                count(&mut done, op, outcome);
+                match led {
+                    Ok(()) => continue,
+                    // It is done, and the encoder cannot be left so.
+                    Err(error) => (guide.at(), Failure::Device(error)),
+                }
+            }
+            (Err(cause), _) => (failed_at, cause),
+        };
+        let standing = guide.standing();
+        let left = if standing.is_in_operation() { Left::Operation } else { Left::Unknown(standing.clone()) };
+        let unclear = unclear(op, &cause);
+        return Err(Box::new(Interrupted { done, at, cause, left, unclear }));
+    }
+    Ok(done)
+}
+
+/// The register of an operation that may have written it. What was refused, or ended before it was sent, has not.
+fn unclear(op: &Op, cause: &Failure) -> Option<RegisterAddress> {
+    match (op, cause) {
+        (Op::WriteRegister { .. }, Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
+        (Op::WriteRegister { address, .. }, _) => Some(*address),
+        _ => None,
+    }
+}
+
+/// Back to operation, as far as there is a line to say so.
+fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
+    match cause {
+        Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),
+        _ => guide.lead_back(),
+    }
+}
+
+/// The wire itself is gone: nothing more can be sent.
+fn is_gone(error: &Error) -> bool {
+    match error {
+        Error::Link(_) => true,
+        Error::Unclear { cause, .. } => is_gone(cause),
+        _ => false,
+    }
+}
+
+fn count(done: &mut Written, op: &Op, outcome: Outcome) {
+    if !matches!(outcome, Outcome::Skipped { .. }) {
+        done.ops += 1;
+        done.written += op.weight();
+        // The encoder's word is all there is of a calibration, and of a result that shows after a restart.
+        let told = matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
+        done.verified += if told { 0 } else { op.weight() };
+    }
+    done.outcomes.push(outcome);
+}
+
+fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> {
+    let kind = &identity.kind;
+    let direct = |address| RegisterAddress::direct(address).unwrap_or(RegisterAddress::BANK_SELECT);
+    let serial = identity.description.with_role(Role::SerialNumber).map(|register| register.address);
+    let mut wanted = vec![
+        (direct(0x42), kind.profile.word().to_be_bytes().to_vec()),
+        (direct(0x78), kind.device_id.to_vec()),
+        (direct(0x7E), kind.manufacturer.to_vec()),
+    ];
+    wanted.extend(serial.map(|serial| (serial, identity.serial_bytes.clone())));
+    for (start, bytes) in wanted {
+        if master.read_run(start, bytes.len())? != bytes {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Refuses an encoder in a device mode: what was entered there and not saved would be taken for what it holds.
+///
+/// # Errors
+/// [`Error::NotInOperation`]; the line.
+pub fn ensure_operation(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
+    match unsaved_mode(master, description)? {
+        None => Ok(()),
+        Some(mode) => Err(Error::NotInOperation { mode }),
+    }
+}
+
+/// The device mode in which registers may show what was entered and never saved; `None` in operation, and for an encoder
+/// without device modes.
+///
+/// # Errors
+/// The line.
+pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Result<Option<DeviceMode>, Error> {
+    let Some(lock) = description.lock() else { return Ok(None) };
+    let mode = DeviceMode::new(master.read(lock.mode_at)?);
+    Ok((mode != DeviceMode::OPERATION).then_some(mode))
+}
+
+/// What a plan needs to know of an encoder: who it is, its settings, and these banks of it.
+///
+/// # Errors
+/// [`Error::Moving`] where banks are read; [`Error::NotInOperation`]; the line.
+pub fn read_state(
+    master: &mut Master<'_>,
+    identity: &Identity,
+    banks: &[u8],
+    told: &mut dyn FnMut(u64, u8),
+) -> Result<DeviceState, Error> {
+    let description = &identity.description;
+    ensure_operation(master, description)?;
+    let filter = read_filter(master, description)?;
+    let preset = read_preset(master, description)?;
+    if !banks.is_empty() {
+        ensure_standstill(master)?;
+    }
+    let mut read = Vec::new();
+    for (done, number) in (0..).zip(banks) {
+        told(done, *number);
+        read.push(read_bank(master, *number)?);
+    }
+    let areas: Vec<Area> = description.areas().iter().filter(|area| area.access.reads()).cloned().collect();
+    Ok(DeviceState { identity: identity.profile(), filter, preset, areas, banks: read })
+}
+
+/// Reads a bank twice, if the line has damaged anything; the shaft stands still.
+///
+/// # Errors
+/// The line.
+pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
+    let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
+    let bytes = master.read_run(start, Bank::SIZE)?;
+    let short = || Error::Unexpected(format!("bank 0x{number:02X} has not 64 registers"));
+    Ok(Bank { number, bytes: bytes.try_into().map_err(|_| short())? })
+}
+
+/// The filter in force; `None` where the firmware has no choice.
+fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<Filter>, Error> {
+    let firmware = master.station().firmware;
+    let Some(register) = description.with_role(Role::Filter) else { return Ok(None) };
+    if !has(description, firmware, ProcedureKind::FilterSelection) {
+        return Ok(None);
+    }
+    Ok(Some(Filter::from_byte(master.read(register.address)?)))
+}
+
+/// The stored preset value; `None` where the firmware has none.
+fn read_preset(master: &mut Master<'_>, description: &Description) -> Result<Option<PresetValue>, Error> {
+    let firmware = master.station().firmware;
+    let place = description.procedure(ProcedureKind::Preset).and_then(|procedure| procedure.data);
+    let Some(place) = place.filter(|_| has(description, firmware, ProcedureKind::Preset)) else { return Ok(None) };
+    let bytes = master.read_run(place, PresetValue::BYTES.into())?;
+    Ok(<[u8; 6]>::try_from(bytes).ok().map(PresetValue::parse))
+}
+
+fn has(description: &Description, firmware: Option<Firmware>, kind: ProcedureKind) -> bool {
+    let since = description.procedure(kind).map(|procedure| procedure.since);
+    since.is_some_and(|since| firmware.is_none_or(|firmware| firmware >= since))
+}

@@ -1,0 +1,262 @@
+//! Plans for single changes and for the procedures that a person leads, each with the encoder's own rules checked before
+//! anything is sent.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::restore::{check_preset, store};
+use super::{
+    Bank, Base, BissPlan, BissProfile, DeviceState, Op, PlanError, PresetParts, RegisterChange, RegisterRange,
+    plan_data,
+};
+use crate::devices::biss::protocol::{
+    Area, Description, Filter, Firmware, PresetValue, Procedure, ProcedureKind, RegisterAddress,
+};
+
+/// Manual 6.7: singleturn or multiturn alone.
+const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
+
+/// What turns the shaft in a procedure that needs it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotorSource {
+    /// Something that does not need this encoder: another motor, an open loop, another feedback.
+    Other,
+    /// A drive that closes its loop on this encoder, which gives no position meanwhile.
+    ThisEncoder,
+}
+
+/// What one run does to an encoder that is being mounted, in this order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MountingRun {
+    /// Calibrate the singleturn.
+    pub calibrate: bool,
+    /// Test the Wiegand sensor, and whether to keep the result.
+    pub wiegand: Option<bool>,
+    /// Make the shaft's place this value.
+    pub preset: Option<(PresetValue, PresetParts)>,
+    /// Write the plain data of this profile.
+    pub data: Option<Box<BissProfile>>,
+}
+
+impl MountingRun {
+    /// Some of it needs a motor.
+    pub fn needs_motor(&self) -> bool {
+        self.calibrate || self.wiegand.is_some()
+    }
+
+    /// Refuses a motor that needs this encoder where the run needs a motor.
+    ///
+    /// # Errors
+    /// [`PlanError::DrivenByThisEncoder`].
+    pub fn check(&self, motor: MotorSource) -> Result<(), PlanError> {
+        if self.needs_motor() && motor == MotorSource::ThisEncoder {
+            return Err(PlanError::DrivenByThisEncoder);
+        }
+        Ok(())
+    }
+}
+
+/// What kind of place a register is to somebody who writes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place<'d> {
+    /// In an area that is opened and saved.
+    Data(&'d Area),
+    /// For itself.
+    Register,
+}
+
+/// What a write into a register means.
+///
+/// # Errors
+/// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for what only the procedures write.
+pub fn place(description: &Description, address: RegisterAddress) -> Result<Place<'_>, PlanError> {
+    if is_guarded(description, address) {
+        return Err(PlanError::Guarded { address });
+    }
+    if description.access(address).is_some_and(|access| !access.writes()) {
+        return Err(PlanError::ReadOnly { address });
+    }
+    let area = description.area_at(address).filter(|area| area.open.is_some());
+    Ok(area.map_or(Place::Register, Place::Data))
+}
+
+/// Device mode, password, and the registers of procedures, but for the plain data itself.
+fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
+    let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
+    let leads = |procedure: &Procedure| {
+        let preset = procedure.data.filter(|_| procedure.kind == ProcedureKind::Preset);
+        let value = preset.and_then(|start| RegisterRange::new(start, PresetValue::BYTES));
+        procedure.command == address || value.is_some_and(|range| range.contains(address))
+    };
+    locks || description.procedures().iter().any(leads)
+}
+
+/// The procedure of an encoder.
+///
+/// # Errors
+/// [`PlanError::NoProcedure`], [`PlanError::FirmwareTooOld`].
+pub fn procedure(
+    description: &Description,
+    firmware: Option<Firmware>,
+    kind: ProcedureKind,
+) -> Result<&Procedure, PlanError> {
+    let name = || description.name().to_owned();
+    let procedure = description.procedure(kind).ok_or_else(|| PlanError::NoProcedure { kind, description: name() })?;
+    match firmware {
+        Some(found) if found < procedure.since => {
+            Err(PlanError::FirmwareTooOld { kind, needed: procedure.since, found })
+        }
+        _ => Ok(procedure),
+    }
+}
+
+/// Writes exactly these bytes, of two edits of the same register the later; what stands there already is left out.
+/// `banks` and `registers` are what stands there: all that the edits touch, a register with `None` where it cannot be
+/// read.
+///
+/// # Errors
+/// See [`PlanError`].
+pub fn plan_edits(
+    description: &Description,
+    banks: &[Bank],
+    registers: &[(RegisterAddress, Option<u8>)],
+    edits: &[(RegisterRange, Vec<u8>)],
+) -> Result<BissPlan, PlanError> {
+    let mut wanted: BTreeMap<RegisterAddress, u8> = BTreeMap::new();
+    for (range, bytes) in edits {
+        if usize::from(range.count()) != bytes.len() {
+            return Err(PlanError::ByteCount { range: *range, count: bytes.len() });
+        }
+        wanted.extend(range.addresses().zip(bytes.iter().copied()));
+    }
+    let mut base = Base::default();
+    let mut singles = Vec::new();
+    let mut areas: Vec<(&Area, Vec<RegisterChange>)> = Vec::new();
+    let mut touched = BTreeSet::new();
+    for (address, new) in wanted {
+        match place(description, address)? {
+            Place::Register => {
+                let old = registers.iter().find(|(own, _)| *own == address).and_then(|(_, old)| *old);
+                if old != Some(new) {
+                    base.registers.extend(old.map(|old| (address, old)));
+                    singles.push(Op::WriteRegister { address, old, new, cycles: cycles(description, address, new) });
+                }
+            }
+            Place::Data(area) => {
+                let bank = banks.iter().find(|bank| Some(bank.number) == address.bank());
+                let bank = bank.ok_or(PlanError::NoBank { bank: address.bank().unwrap_or_default() })?;
+                let old = bank.registers().find(|(own, _)| *own == address).map_or(new, |(_, old)| old);
+                if old == new {
+                    continue;
+                }
+                touched.insert(bank.number);
+                let change = RegisterChange { address, old, new };
+                match areas.iter_mut().find(|(own, _)| *own == area) {
+                    Some((_, changes)) => changes.push(change),
+                    None => areas.push((area, vec![change])),
+                }
+            }
+        }
+    }
+    base.banks.extend(banks.iter().filter(|bank| touched.contains(&bank.number)));
+    let mut ops: Vec<Op> = areas.into_iter().flat_map(|(area, changes)| store(area, changes)).collect();
+    ops.extend(singles);
+    Ok(BissPlan { base, ops })
+}
+
+/// Persistent writes that a value costs: of what is not described, at most one.
+fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
+    description.at(address).map_or(1, |register| u8::from(register.is_save(value)))
+}
+
+/// Selects a filter; nothing where it is the one in force.
+///
+/// # Errors
+/// No such filter, or the encoder has no choice.
+pub fn plan_filter(description: &Description, device: &DeviceState, to: Filter) -> Result<BissPlan, PlanError> {
+    let from = have(description, device, ProcedureKind::FilterSelection, device.filter)?;
+    if let Filter::Unknown(code) = to {
+        return Err(PlanError::UnknownFilter { code });
+    }
+    let base = Base { filter: Some(from), ..Base::default() };
+    Ok(BissPlan { base, ops: if from == to { vec![] } else { vec![Op::SelectFilter { from, to }] } })
+}
+
+/// Stores a preset value where one is given that is not stored yet; and, with `parts`, makes the shaft's place what is
+/// stored then.
+///
+/// # Errors
+/// The value is too wide, or the encoder has no preset, or none of these parts alone.
+pub fn plan_preset(
+    description: &Description,
+    device: &DeviceState,
+    value: Option<PresetValue>,
+    parts: Option<PresetParts>,
+) -> Result<BissPlan, PlanError> {
+    let kind = ProcedureKind::Preset;
+    let from = have(description, device, kind, device.preset)?;
+    if let (Some(PresetParts::Singleturn | PresetParts::Multiturn), Some(found)) = (parts, device.identity.firmware)
+        && found < PRESET_PARTS_SINCE
+    {
+        return Err(PlanError::FirmwareTooOld { kind, needed: PRESET_PARTS_SINCE, found });
+    }
+    let to = value.unwrap_or(from);
+    check_preset(to, &device.identity)?;
+    let mut ops = Vec::new();
+    if to != from {
+        ops.push(Op::StorePreset { from, to });
+    }
+    ops.extend(parts.map(|parts| Op::FirePreset { parts, value: to }));
+    Ok(BissPlan { base: Base { preset: Some(from), ..Base::default() }, ops })
+}
+
+/// A run of procedures that a person leads.
+///
+/// # Errors
+/// See [`PlanError`]; a motor that needs this encoder is refused where the run needs a motor.
+pub fn plan_mounting(
+    description: &Description,
+    device: &DeviceState,
+    run: &MountingRun,
+    motor: MotorSource,
+) -> Result<BissPlan, PlanError> {
+    let firmware = device.identity.firmware;
+    run.check(motor)?;
+    let mut plan = BissPlan { base: Base::default(), ops: Vec::new() };
+    if run.calibrate {
+        procedure(description, firmware, ProcedureKind::Calibration)?;
+        if let Some(filter) = device.filter.filter(|filter| *filter != Filter::Balanced) {
+            return Err(PlanError::NotBalanced { code: filter.byte() });
+        }
+        plan.base.filter = device.filter;
+        plan.ops.push(Op::Calibrate);
+    }
+    if let Some(save) = run.wiegand {
+        procedure(description, firmware, ProcedureKind::WiegandTest)?;
+        plan.ops.push(Op::WiegandTest { save });
+    }
+    if let Some((value, parts)) = run.preset {
+        let preset = plan_preset(description, device, Some(value), Some(parts))?;
+        plan.base.preset = preset.base.preset;
+        plan.ops.extend(preset.ops);
+    }
+    if let Some(profile) = &run.data {
+        let data = plan_data(profile, device)?.plan;
+        plan.base.banks = data.base.banks;
+        plan.ops.extend(data.ops);
+    }
+    Ok(plan)
+}
+
+/// What the encoder has of a setting; where it has none, why.
+fn have<T: Copy>(
+    description: &Description,
+    device: &DeviceState,
+    kind: ProcedureKind,
+    setting: Option<T>,
+) -> Result<T, PlanError> {
+    procedure(description, device.identity.firmware, kind)?;
+    setting.ok_or_else(|| PlanError::NoProcedure { kind, description: description.name().to_owned() })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,140 @@
+//! The names of things in an encoder: `0x66` for a direct register, `0x24:0x10` for one of a bank, `0x24:0x10+3` for a
+//! run of them.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::devices::biss::protocol::RegisterAddress;
+
+/// A run of registers that follow each other: direct ones, or within one bank.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RegisterRange {
+    start: RegisterAddress,
+    /// 1…64.
+    count: u8,
+}
+
+/// Why a text names no registers.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0:?} is not an item; items are 0x40 to 0x7F, BANK:OFFSET as 0x24:0x10, and either with +COUNT behind it")]
+pub struct ItemError(pub String);
+
+impl RegisterRange {
+    /// One register.
+    pub const fn one(start: RegisterAddress) -> Self {
+        RegisterRange { start, count: 1 }
+    }
+
+    /// `count` registers from `start` on; `None` for none of them, or for more than the bank has from there.
+    pub fn new(start: RegisterAddress, count: u8) -> Option<Self> {
+        start.plus(count.checked_sub(1)?).map(|_| RegisterRange { start, count })
+    }
+
+    /// The first.
+    pub const fn start(self) -> RegisterAddress {
+        self.start
+    }
+
+    /// How many, 1…64.
+    pub const fn count(self) -> u8 {
+        self.count
+    }
+
+    /// A register lies in it.
+    pub fn contains(self, address: RegisterAddress) -> bool {
+        // Global addresses of a bank follow each other, and a run does not leave its bank.
+        let first = self.start.global();
+        (first..first + u16::from(self.count)).contains(&address.global())
+    }
+
+    /// Every register of it.
+    pub fn addresses(self) -> impl Iterator<Item = RegisterAddress> {
+        (0..self.count).filter_map(move |at| self.start.plus(at))
+    }
+
+    /// The shortest list of runs with these registers, which are in ascending order.
+    pub fn runs(addresses: impl IntoIterator<Item = RegisterAddress>) -> Vec<Self> {
+        let mut runs: Vec<RegisterRange> = Vec::new();
+        for address in addresses {
+            match runs.last_mut() {
+                Some(run) if run.start.plus(run.count) == Some(address) => run.count += 1,
+                _ => runs.push(RegisterRange::one(address)),
+            }
+        }
+        runs
+    }
+}
+
+impl fmt::Display for RegisterRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.start.fmt(f)?;
+        if self.count > 1 { write!(f, "+{}", self.count) } else { Ok(()) }
+    }
+}
+
+impl FromStr for RegisterRange {
+    type Err = ItemError;
+
+    fn from_str(text: &str) -> Result<Self, ItemError> {
+        let read = || {
+            let (start, count) = match text.split_once('+') {
+                Some((start, count)) => (start, read_count(count)?),
+                None => (text, 1),
+            };
+            RegisterRange::new(start.parse().ok()?, count)
+        };
+        read().ok_or_else(|| ItemError(text.to_owned()))
+    }
+}
+
+fn read_count(text: &str) -> Option<u8> {
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        // from_str_radix takes a sign.
+        Some(digits) if digits.bytes().all(|c| c.is_ascii_hexdigit()) => u8::from_str_radix(digits, 16).ok(),
+        None if text.bytes().all(|c| c.is_ascii_digit()) => text.parse().ok(),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn items_are_read_and_written() {
+        for text in ["0x40", "0x7F", "0x44+4", "0x24:0x10", "0x24:0x10+3", "0x43:0x00+64", "0x01:0x02+6"] {
+            assert_eq!(text.parse::<RegisterRange>().unwrap().to_string(), text);
+        }
+        for (text, written) in [("102", "0x66"), ("36:16+0x3", "0x24:0x10+3"), ("0x24:0x10+1", "0x24:0x10")] {
+            assert_eq!(text.parse::<RegisterRange>().unwrap().to_string(), written);
+        }
+    }
+
+    #[test]
+    fn what_is_no_item_is_told() {
+        for text in
+            ["", "+", "0x24:0x10+", "0x24:0x10+0", "0x24:0x3F+2", "0x7F+2", "0x24:0x10++1", "0x24:0x10+256", "0x66+x"]
+        {
+            assert_eq!(text.parse::<RegisterRange>(), Err(ItemError(text.to_owned())), "{text}");
+        }
+    }
+
+    #[test]
+    fn runs_end_with_their_bank() {
+        let addresses = ["0x7E", "0x7F", "0x00:0x00", "0x24:0x3E", "0x24:0x3F", "0x25:0x00", "0x25:0x02"];
+        let runs = RegisterRange::runs(addresses.map(|text| text.parse().unwrap()));
+        let names: Vec<String> = runs.iter().map(ToString::to_string).collect();
+        assert_eq!(names, ["0x7E+2", "0x00:0x00", "0x24:0x3E+2", "0x25:0x00", "0x25:0x02"]);
+        let again: Vec<String> = runs.iter().flat_map(|run| run.addresses()).map(|at| at.to_string()).collect();
+        assert_eq!(again, addresses);
+        assert!(runs[3].contains("0x25:0x00".parse().unwrap()) && !runs[3].contains("0x25:0x01".parse().unwrap()));
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in ".*") {
+            let _ = text.parse::<RegisterRange>();
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Whether an encoder is of the type that a profile was read from. A type is what the encoder says it is (profile ID,
+//! manufacturer, device ID) and how wide its position is: a preset is a number of steps, which mean another angle where
+//! their bits differ.
+
+use std::fmt;
+
+use super::ProfileIdentity;
+use crate::devices::biss::protocol::Identity;
+
+/// A profile and an encoder of two types.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OtherType {
+    /// They say of themselves that they are not the same.
+    #[error("the profile is of {profile}, the encoder says {device}")]
+    Kind {
+        /// In the profile.
+        profile: Box<Identity>,
+        /// In the encoder.
+        device: Box<Identity>,
+    },
+    /// Their positions are not equally wide.
+    #[error("the profile is of an encoder with {profile} bits, the encoder has {device}")]
+    Width {
+        /// In the profile.
+        profile: Width,
+        /// In the encoder.
+        device: Width,
+    },
+}
+
+/// Bits of a position, as far as they are known: of the revolutions and within the revolution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Width {
+    /// Of the revolutions.
+    pub multiturn: Option<u8>,
+    /// Within the revolution.
+    pub singleturn: Option<u8>,
+}
+
+impl Width {
+    fn of(identity: &ProfileIdentity) -> Self {
+        Width { multiturn: identity.multiturn_bits, singleturn: identity.singleturn_bits }
+    }
+
+    /// One of both parts is known on both sides, and differs.
+    fn differs(self, other: Self) -> bool {
+        let parts = [(self.multiturn, other.multiturn), (self.singleturn, other.singleturn)];
+        parts.into_iter().any(|(one, other)| one.zip(other).is_some_and(|(one, other)| one != other))
+    }
+}
+
+impl fmt::Display for Width {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [multiturn, singleturn] =
+            [self.multiturn, self.singleturn].map(|bits| bits.map_or_else(|| "?".to_owned(), |bits| bits.to_string()));
+        write!(f, "{multiturn} + {singleturn}")
+    }
+}
+
+/// What differs between the types of a profile and of an encoder; `None` where they are the same. What one of them does not
+/// tell differs from nothing.
+pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
+    let (of_profile, of_device) = (profile.kind(), device.kind());
+    if of_profile != of_device {
+        return Some(OtherType::Kind { profile: Box::new(of_profile), device: Box::new(of_device) });
+    }
+    let (profile, device) = (Width::of(profile), Width::of(device));
+    profile.differs(device).then_some(OtherType::Width { profile, device })
+}

@@ -1,0 +1,167 @@
+//! The operations that change an encoder, what they cost, and what they rest upon.
+
+use super::{Bank, BissProfile, RegisterRange};
+use crate::devices::biss::protocol::{Area, Filter, PresetCommand, PresetValue, RegisterAddress};
+use crate::profile::{Operation, Plan};
+
+/// What a write to a BiSS encoder would do.
+pub type BissPlan = Plan<Base, Op>;
+
+/// What was read before a plan was made: all that its operations change and that can be read.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Base {
+    /// The banks of plain data that the plan touches.
+    pub banks: Vec<Bank>,
+    /// The filter in force.
+    pub filter: Option<Filter>,
+    /// The stored preset value.
+    pub preset: Option<PresetValue>,
+    /// Single registers that the plan touches.
+    pub registers: Vec<(RegisterAddress, u8)>,
+}
+
+/// One thing that is done, from entering its device mode to leaving it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// Manual 6.5: registers of one area are written and saved together.
+    StoreData {
+        /// The area; its `open` is the command that opens it.
+        area: Area,
+        /// What changes, by ascending address.
+        registers: Vec<RegisterChange>,
+    },
+    /// Manual 6.7: another preset value is stored; nothing is preset yet.
+    StorePreset {
+        /// Stored now.
+        from: PresetValue,
+        /// Stored from then on.
+        to: PresetValue,
+    },
+    /// Manual 6.7: the shaft's place becomes the stored preset value.
+    FirePreset {
+        /// Which part of the position.
+        parts: PresetParts,
+        /// The value that is stored by then.
+        value: PresetValue,
+    },
+    /// Manual 6.6.
+    SelectFilter {
+        /// In force now.
+        from: Filter,
+        /// In force from then on.
+        to: Filter,
+    },
+    /// Manual 6.4, led by a person.
+    Calibrate,
+    /// Manual 6.3, led by a person.
+    WiegandTest {
+        /// Keep the result in the encoder.
+        save: bool,
+    },
+    /// A register outside of the procedures, written as it is.
+    WriteRegister {
+        /// Where.
+        address: RegisterAddress,
+        /// What stands there; `None` where it cannot be read.
+        old: Option<u8>,
+        /// What will stand there.
+        new: u8,
+        /// Persistent writes that it costs.
+        cycles: u8,
+    },
+}
+
+/// A register with another value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RegisterChange {
+    /// Where.
+    pub address: RegisterAddress,
+    /// What stands there.
+    pub old: u8,
+    /// What will stand there.
+    pub new: u8,
+}
+
+/// Which part of the position a preset sets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PresetParts {
+    /// All of it.
+    Both,
+    /// The place within the revolution.
+    Singleturn,
+    /// The revolutions.
+    Multiturn,
+}
+
+impl PresetParts {
+    /// The command that carries it out.
+    pub const fn command(self) -> PresetCommand {
+        match self {
+            PresetParts::Both => PresetCommand::Both,
+            PresetParts::Singleturn => PresetCommand::Singleturn,
+            PresetParts::Multiturn => PresetCommand::Multiturn,
+        }
+    }
+
+    /// It sets the place within the revolution.
+    pub const fn sets_singleturn(self) -> bool {
+        matches!(self, PresetParts::Both | PresetParts::Singleturn)
+    }
+
+    /// It sets the revolutions.
+    pub const fn sets_multiturn(self) -> bool {
+        matches!(self, PresetParts::Both | PresetParts::Multiturn)
+    }
+}
+
+impl Operation for Op {
+    fn write_cycles(&self) -> u64 {
+        match self {
+            Op::StoreData { .. }
+            | Op::StorePreset { .. }
+            | Op::FirePreset { .. }
+            | Op::SelectFilter { .. }
+            | Op::Calibrate => 1,
+            Op::WiegandTest { save } => u64::from(*save),
+            Op::WriteRegister { cycles, .. } => u64::from(*cycles),
+        }
+    }
+}
+
+impl Op {
+    /// A motor turns the shaft for it.
+    pub fn turns(&self) -> bool {
+        matches!(self, Op::Calibrate | Op::WiegandTest { .. })
+    }
+
+    /// Runs of registers that it changes, as `read` takes them; empty for what changes no register that can be read.
+    pub fn ranges(&self) -> Vec<RegisterRange> {
+        let known = |text: &str| text.parse().into_iter().collect();
+        match self {
+            Op::StoreData { registers, .. } => RegisterRange::runs(registers.iter().map(|change| change.address)),
+            Op::StorePreset { .. } => known(BissProfile::PRESET),
+            Op::SelectFilter { .. } => known(BissProfile::FILTER),
+            Op::WriteRegister { address, .. } => vec![RegisterRange::one(*address)],
+            Op::FirePreset { .. } | Op::Calibrate | Op::WiegandTest { .. } => Vec::new(),
+        }
+    }
+
+    /// Names of what it changes, as `read` takes them where they can be read.
+    pub fn item(&self) -> String {
+        match self {
+            Op::FirePreset { .. } => "position".to_owned(),
+            Op::Calibrate => "calibration".to_owned(),
+            Op::WiegandTest { .. } => "Wiegand test".to_owned(),
+            op => op.ranges().iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+        }
+    }
+
+    /// Things it changes, counted as a comparison counts them: registers of an area, or one.
+    pub fn weight(&self) -> u64 {
+        match self {
+            Op::StoreData { registers, .. } => registers.len() as u64,
+            Op::WiegandTest { save: false } => 0,
+            _ => 1,
+        }
+    }
+}

@@ -1,0 +1,358 @@
+//! What restoring a profile would do: only what differs, in the fewest persistent writes, and nothing that belongs to
+//! another encoder's mounting. A preset is stored and never carried out.
+
+pub use crate::profile::RestoreOptions;
+
+use super::other_type::{OtherType, other_type};
+use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
+use crate::devices::biss::protocol::{Area, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress};
+
+/// An encoder as it is, as far as a plan needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceState {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// Its filter; `None` where its firmware has no choice.
+    pub filter: Option<Filter>,
+    /// Its stored preset value; `None` where its firmware has none.
+    pub preset: Option<PresetValue>,
+    /// Its areas of plain data.
+    pub areas: Vec<Area>,
+    /// The banks that were read: at least [`banks_needed`].
+    pub banks: Vec<Bank>,
+}
+
+/// What a restore would do.
+pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
+
+/// Why something cannot be planned.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// The profile was read from another encoder.
+    #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
+    OtherDevice {
+        /// In the profile.
+        profile: String,
+        /// In the encoder.
+        device: String,
+    },
+    /// The profile is of another type of encoder.
+    #[error(transparent)]
+    OtherType(#[from] OtherType),
+    /// The encoder has no such bank of plain data, or it cannot be written.
+    #[error("bank 0x{bank:02X} is no bank of plain data that can be written")]
+    NoBank {
+        /// The bank.
+        bank: u8,
+    },
+    /// A preset value needs more bits than the position has.
+    #[error("the preset value {value} needs more than the {bits} {part} bits that the encoder has")]
+    PresetTooWide {
+        /// `singleturn` or `multiturn`.
+        part: &'static str,
+        /// The value.
+        value: u32,
+        /// Bits of that part.
+        bits: u8,
+    },
+    /// A code that is no filter.
+    #[error("0x{code:02X} is no filter")]
+    UnknownFilter {
+        /// The code.
+        code: u8,
+    },
+    /// The encoder's description has no such procedure.
+    #[error("\"{description}\" has no such procedure")]
+    NoProcedure {
+        /// Which.
+        kind: ProcedureKind,
+        /// The description's name.
+        description: String,
+    },
+    /// The encoder's firmware is older than what is asked of it.
+    #[error("firmware {needed} is needed, the encoder has {found}")]
+    FirmwareTooOld {
+        /// What is asked.
+        kind: ProcedureKind,
+        /// The first that can do it.
+        needed: Firmware,
+        /// The encoder's.
+        found: Firmware,
+    },
+    /// A register that can only be read.
+    #[error("register {address} can only be read")]
+    ReadOnly {
+        /// Which.
+        address: RegisterAddress,
+    },
+    /// A register with which a procedure is led.
+    #[error("register {address} is written by the procedures alone")]
+    Guarded {
+        /// Which.
+        address: RegisterAddress,
+    },
+    /// As many bytes as the range has belong to it.
+    #[error("{count} bytes are given for {range}")]
+    ByteCount {
+        /// Where.
+        range: RegisterRange,
+        /// Bytes given.
+        count: usize,
+    },
+    /// A calibration needs the balanced filter.
+    #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
+    NotBalanced {
+        /// The filter's code.
+        code: u8,
+    },
+    /// The drive that turns the motor closes its loop on this encoder, which gives no position meanwhile.
+    #[error("the motor is driven by this encoder's position, which is not there during the procedure")]
+    DrivenByThisEncoder,
+}
+
+/// The banks that have to be read before a restore of this profile can be planned.
+pub fn banks_needed(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
+    let there = |bank: &u8| areas.iter().any(|area| area.contains(*bank));
+    profile.banks().map(|bank| bank.number).filter(there).collect()
+}
+
+/// Plans a restore.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_restore(
+    profile: &BissProfile,
+    device: &DeviceState,
+    options: RestoreOptions,
+) -> Result<Restore, PlanError> {
+    check_allowed(profile, &device.identity, options)?;
+    let same_device = is_same_device(profile, &device.identity);
+    let mounting = if same_device { Mounting::Own } else { Mounting::of_another(options) };
+    let mut planner = Planner::new(profile, device, mounting);
+    planner.data()?;
+    planner.filter()?;
+    planner.preset()?;
+    Ok(planner.finish())
+}
+
+/// Plans only the plain data of a profile, the values of the mounting included: somebody mounts this encoder now.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore, PlanError> {
+    let mut planner = Planner::new(profile, device, Mounting::Own);
+    planner.data()?;
+    Ok(planner.finish())
+}
+
+/// Refuses an encoder that the profile was not read from. Encoders that do not tell their serial number are never the
+/// same one.
+///
+/// # Errors
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
+    check_allowed(profile, device, RestoreOptions::default())
+}
+
+/// Refuses an encoder that the profile was not read from, as far as that is not allowed. Registers of another type of encoder
+/// may mean something else, so that a permit for another serial number is none for that.
+///
+/// # Errors
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+pub fn check_allowed(
+    profile: &BissProfile,
+    device: &ProfileIdentity,
+    options: RestoreOptions,
+) -> Result<(), PlanError> {
+    if let Some(error) = other_type(&profile.identity, device).filter(|_| !options.allow_other_type) {
+        return Err(error.into());
+    }
+    if options.allow_other_device || is_same_number(profile, device) {
+        return Ok(());
+    }
+    Err(PlanError::OtherDevice {
+        profile: profile.identity.serial_number.clone(),
+        device: device.serial_number.clone(),
+    })
+}
+
+fn is_same_device(profile: &BissProfile, device: &ProfileIdentity) -> bool {
+    is_same_number(profile, device) && other_type(&profile.identity, device).is_none()
+}
+
+fn is_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
+    !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
+}
+
+/// Refuses a preset value that the position cannot take.
+///
+/// # Errors
+/// [`PlanError::PresetTooWide`].
+pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Result<(), PlanError> {
+    let parts = [
+        ("singleturn", value.singleturn(), identity.singleturn_bits),
+        ("multiturn", value.multiturn(), identity.multiturn_bits),
+    ];
+    for (part, value, bits) in parts {
+        if let Some(bits) = bits.filter(|bits| u64::from(value).checked_shr((*bits).into()).unwrap_or(0) != 0) {
+            return Err(PlanError::PresetTooWide { part, value, bits });
+        }
+    }
+    Ok(())
+}
+
+/// What becomes of the values of the mounting.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mounting {
+    /// They are this encoder's.
+    Own,
+    /// They are another encoder's, and are left.
+    Leave,
+    /// They are another encoder's, and are written.
+    Write,
+}
+
+impl Mounting {
+    fn of_another(options: RestoreOptions) -> Self {
+        if options.with_mounting { Mounting::Write } else { Mounting::Leave }
+    }
+}
+
+struct Planner<'a> {
+    profile: &'a BissProfile,
+    device: &'a DeviceState,
+    mounting: Mounting,
+    base: Base,
+    ops: Vec<Op>,
+    unchanged: u64,
+    missing: Vec<String>,
+    left: Vec<RegisterAddress>,
+    mounting_written: Vec<RegisterAddress>,
+}
+
+impl<'a> Planner<'a> {
+    fn new(profile: &'a BissProfile, device: &'a DeviceState, mounting: Mounting) -> Self {
+        Planner {
+            profile,
+            device,
+            mounting,
+            base: Base::default(),
+            ops: Vec::new(),
+            unchanged: 0,
+            missing: Vec::new(),
+            left: Vec::new(),
+            mounting_written: Vec::new(),
+        }
+    }
+
+    /// All that differs in an area is one save.
+    fn data(&mut self) -> Result<(), PlanError> {
+        let mut areas: Vec<(&Area, Vec<RegisterChange>)> = Vec::new();
+        for wanted in self.profile.banks() {
+            let bank = wanted.number;
+            let area = self.device.areas.iter().find(|area| area.contains(bank));
+            let area = area.ok_or(PlanError::NoBank { bank })?;
+            let now = self.device.banks.iter().find(|own| own.number == bank).ok_or(PlanError::NoBank { bank })?;
+            let changes = self.changes(now, &wanted);
+            if changes.is_empty() {
+                continue;
+            }
+            if !area.access.writes() {
+                return Err(PlanError::NoBank { bank });
+            }
+            self.base.banks.push(*now);
+            match areas.iter_mut().find(|(own, _)| *own == area) {
+                Some((_, registers)) => registers.extend(changes),
+                None => areas.push((area, changes)),
+            }
+        }
+        self.ops.extend(areas.into_iter().flat_map(|(area, registers)| store(area, registers)));
+        Ok(())
+    }
+
+    /// The registers of a bank that differ and may be written.
+    fn changes(&mut self, now: &Bank, wanted: &Bank) -> Vec<RegisterChange> {
+        let mut changes = Vec::new();
+        for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
+            if old == new {
+                self.unchanged += 1;
+            } else if self.mounting == Mounting::Leave && self.profile.is_mounting(address) {
+                self.left.push(address);
+            } else {
+                if self.mounting == Mounting::Write && self.profile.is_mounting(address) {
+                    self.mounting_written.push(address);
+                }
+                changes.push(RegisterChange { address, old, new });
+            }
+        }
+        changes
+    }
+
+    fn filter(&mut self) -> Result<(), PlanError> {
+        match (self.profile.filter, self.device.filter) {
+            (None, _) => {}
+            (Some(_), None) => self.missing.push(BissProfile::FILTER.to_owned()),
+            (Some(to), Some(from)) if to == from => self.unchanged += 1,
+            (Some(Filter::Unknown(code)), Some(_)) => return Err(PlanError::UnknownFilter { code }),
+            (Some(to), Some(from)) => {
+                self.base.filter = Some(from);
+                self.ops.push(Op::SelectFilter { from, to });
+            }
+        }
+        Ok(())
+    }
+
+    fn preset(&mut self) -> Result<(), PlanError> {
+        let wanted = self.profile.preset.as_ref().map(|preset| preset.value);
+        match (wanted, self.device.preset) {
+            (None, _) => {}
+            (Some(_), None) => self.missing.push(BissProfile::PRESET.to_owned()),
+            (Some(to), Some(from)) if to == from => self.unchanged += to.emit().len() as u64,
+            (Some(_), Some(_)) if self.mounting == Mounting::Leave => self.left.extend(preset_addresses()),
+            (Some(to), Some(from)) => {
+                check_preset(to, &self.device.identity)?;
+                if self.mounting == Mounting::Write {
+                    self.mounting_written.extend(preset_addresses());
+                }
+                self.base.preset = Some(from);
+                self.ops.push(Op::StorePreset { from, to });
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Restore {
+        self.left.sort_unstable();
+        self.mounting_written.sort_unstable();
+        Restore {
+            plan: BissPlan { base: self.base, ops: self.ops },
+            unchanged: self.unchanged,
+            missing: self.missing,
+            mounting_left: RegisterRange::runs(self.left),
+            mounting_written: RegisterRange::runs(self.mounting_written),
+        }
+    }
+}
+
+/// The registers of the preset value.
+fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
+    BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
+}
+
+/// An area that is opened and saved takes all of it at once; another one, register by register.
+pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
+    if area.open.is_some() {
+        return vec![Op::StoreData { area: area.clone(), registers }];
+    }
+    let single = |change: RegisterChange| Op::WriteRegister {
+        address: change.address,
+        old: Some(change.old),
+        new: change.new,
+        // Nothing tells what it costs; at most one.
+        cycles: 1,
+    };
+    registers.into_iter().map(single).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,54 @@
+//! Profiles for tests: a kit encoder as delivered, to be changed.
+
+use super::{Bank, BissProfile, DataImage, PresetSetting, ProfileIdentity, Recorded};
+use crate::devices::biss::protocol::{Access, Area, Filter, Firmware, PresetValue, ProfileId};
+
+/// The areas of the manual's table 12.
+pub(super) fn areas() -> [Area; 2] {
+    let area = |name: &str, first, last, open| Area {
+        name: crate::devices::biss::protocol::Name::new(name),
+        first,
+        last,
+        access: Access::Rw,
+        open: Some(open),
+    };
+    [area("EDS motor data", 0x04, 0x23, 1), area("OEM data", 0x24, 0x43, 2)]
+}
+
+/// An encoder as delivered, with the newest firmware known.
+pub(super) fn profile(serial_number: &str) -> BissProfile {
+    let empty = |area: &Area| DataImage::of(area, area.banks().map(|number| Bank::filled(number, 0)).collect());
+    BissProfile {
+        identity: ProfileIdentity {
+            serial_number: serial_number.to_owned(),
+            profile_id: ProfileId::new(0x6129),
+            device_id: [0x01, 0x01, 0x68, 0x11, 0x00, 0x01],
+            manufacturer: *b"Fr",
+            firmware: Some(Firmware::new(1, 6, 0)),
+            description: "POSITAL IXARC kit encoder".to_owned(),
+            multiturn_bits: Some(16),
+            singleturn_bits: Some(17),
+            unknown: Default::default(),
+        },
+        filter: Some(Filter::Balanced),
+        preset: Some(PresetSetting { value: PresetValue::default(), unknown: Default::default() }),
+        recorded: Recorded::default(),
+        mounting: Vec::new(),
+        data: areas().iter().map(empty).collect(),
+    }
+}
+
+/// With other bytes in a bank that is listed then.
+pub(super) fn with_bytes(profile: &mut BissProfile, number: u8, bytes: &[(usize, u8)]) {
+    let mut bank = profile.bank(number).unwrap_or_else(|| Bank::filled(number, 0));
+    for (at, byte) in bytes {
+        if let Some(place) = bank.bytes.get_mut(*at) {
+            *place = *byte;
+        }
+    }
+    for image in profile.data.iter_mut().filter(|image| (image.first..=image.last).contains(&number)) {
+        image.listed.retain(|listed| listed.bank.number != number);
+        image.listed.push(bank.into());
+        image.listed.sort_by_key(|listed| listed.bank.number);
+    }
+}

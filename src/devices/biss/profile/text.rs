@@ -1,0 +1,260 @@
+//! The text of a BiSS profile: written for people, read from their hands. What is wrong names its entry.
+
+use super::{
+    Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,
+};
+use crate::bits::hex;
+use crate::devices::biss::protocol::{self, DeviceMode, Filter, Firmware, PresetValue, ProfileId, WiegandResult};
+use crate::profile::mounting::NEVER_BY_ITSELF;
+use crate::profile::ron_text::{BYTE, Entries, Writer, quoted};
+use crate::profile::{Profile, ProfileError};
+
+/// Three registers hold a preset value.
+const PRESET_NUMBER: &str = "a number from 0 to 16777215";
+const FOUR_TENTHS: &str = "a list of four numbers from 0 to 255, in tenths of a volt";
+
+impl Profile for BissProfile {
+    const KIND: &'static str = protocol::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let identity = read_identity(entries.structure("identity")?)?;
+        let filter = entries.optional("filter", BYTE)?.map(Filter::from_byte);
+        let preset = entries.optional_structure("preset")?.map(read_preset).transpose()?;
+        let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
+        let mounting = MountingMark::read_all(entries, "a text such as \"0x24:0x10+3\"", read_marked)?;
+        let mut data: Vec<DataImage> = Vec::new();
+        for entries in entries.required_structures("data")? {
+            let path = entries.path_of("banks");
+            let image = read_image(entries)?;
+            if let Some(other) = data.iter().find(|other| other.first <= image.last && image.first <= other.last) {
+                let what = format!("bank 0x{:02X} stands twice", image.first.max(other.first));
+                return Err(ProfileError::Value { path, what });
+            }
+            data.push(image);
+        }
+        data.sort_by_key(|image| image.first);
+        Ok(BissProfile { identity, filter, preset, recorded, mounting, data })
+    }
+
+    fn write(&self, writer: &mut Writer) {
+        self.write_identity(writer);
+        if let Some(filter) = self.filter {
+            let name = match filter {
+                Filter::Balanced => "balanced",
+                Filter::Dynamic => "dynamic",
+                Filter::Unknown(_) => "unknown",
+            };
+            writer.entry("filter", &format!("0x{:02X}", filter.byte()), name);
+        }
+        if let Some(preset) = &self.preset {
+            writer.comment("stored, never carried out by a restore");
+            writer.open("preset", '(');
+            let degrees = self.identity.singleturn_bits.map(|bits| {
+                let revolution = f64::powi(2.0, bits.into());
+                format!("{:.3}°", f64::from(preset.value.singleturn()) / revolution * 360.0)
+            });
+            writer.entry("singleturn", &preset.value.singleturn().to_string(), &degrees.unwrap_or_default());
+            writer.entry("multiturn", &preset.value.multiturn().to_string(), "");
+            writer.unknown(&preset.unknown);
+            writer.close(')');
+        }
+        self.recorded.write(writer);
+        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
+        writer.open("data", '[');
+        for image in &self.data {
+            image.write(writer);
+        }
+        writer.close(']');
+    }
+}
+
+impl BissProfile {
+    fn write_identity(&self, writer: &mut Writer) {
+        let identity = &self.identity;
+        writer.open("identity", '(');
+        writer.text("serial_number", &identity.serial_number);
+        writer.entry("profile_id", &format!("0x{:04X}", identity.profile_id.word()), "");
+        writer.entry("device_id", &quoted(&hex(&identity.device_id)), "");
+        writer.entry("manufacturer", &quoted(&hex(&identity.manufacturer)), &printable(&identity.manufacturer));
+        if let Some(firmware) = identity.firmware {
+            writer.text("firmware", &firmware.to_string());
+        }
+        writer.text("description", &identity.description);
+        for (name, bits) in [("multiturn_bits", identity.multiturn_bits), ("singleturn_bits", identity.singleturn_bits)]
+        {
+            if let Some(bits) = bits {
+                writer.entry(name, &bits.to_string(), "");
+            }
+        }
+        writer.unknown(&identity.unknown);
+        writer.close(')');
+    }
+}
+
+impl Recorded {
+    fn write(&self, writer: &mut Writer) {
+        writer.comment("recorded, neither compared nor restored");
+        writer.open("recorded", '(');
+        let results =
+            [("last", self.wiegand_last), ("production", self.wiegand_production), ("saved", self.wiegand_saved)];
+        if results.iter().any(|(_, result)| result.is_some()) {
+            writer.comment("tenths of a volt: average, average - 4σ clockwise; the same counterclockwise");
+            for (name, result) in results {
+                let Some(result) = result else { continue };
+                let numbers = result.emit().map(|tenths| tenths.to_string()).join(", ");
+                writer.entry(&format!("wiegand_{name}"), &format!("[{numbers}]"), "");
+            }
+        }
+        if let Some(status) = self.calibration_status {
+            writer.entry("calibration_status", &format!("0x{status:02X}"), "");
+        }
+        if let Some(mode) = self.device_mode {
+            writer.entry("device_mode", &format!("0x{:02X}", mode.byte()), "values may not have been saved");
+        }
+        if !self.eds.is_empty() {
+            writer.open("eds", '[');
+            self.eds.iter().for_each(|listed| write_bank(writer, listed));
+            writer.close(']');
+        }
+        writer.unknown(&self.unknown);
+        writer.close(')');
+    }
+}
+
+impl DataImage {
+    fn write(&self, writer: &mut Writer) {
+        writer.open("", '(');
+        writer.text("name", &self.name);
+        writer.entry("banks", &format!("(0x{:02X}, 0x{:02X})", self.first, self.last), "");
+        if let Some(byte) = self.empty {
+            writer.entry("empty", &format!("0x{byte:02X}"), "every register of the banks that are not listed");
+        }
+        writer.open("listed", '[');
+        self.listed.iter().for_each(|listed| write_bank(writer, listed));
+        writer.close(']');
+        writer.unknown(&self.unknown);
+        writer.close(')');
+    }
+}
+
+fn write_bank(writer: &mut Writer, listed: &ListedBank) {
+    writer.open("", '(');
+    writer.entry("bank", &format!("0x{:02X}", listed.bank.number), "");
+    writer.bytes("bytes", &listed.bank.bytes);
+    writer.unknown(&listed.unknown);
+    writer.close(')');
+}
+
+fn printable(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| crate::bits::ascii(*byte).unwrap_or('.')).collect()
+}
+
+fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
+    let firmware = match entries.optional::<String>("firmware", "a text such as \"1.6.0\"")? {
+        None => None,
+        Some(text) => Some(read_firmware(&text).ok_or_else(|| ProfileError::Value {
+            path: entries.path_of("firmware"),
+            what: format!("{text:?} is not of the form 1.6.0"),
+        })?),
+    };
+    let device_id = read_exactly(&mut entries, "device_id")?;
+    let manufacturer = read_exactly(&mut entries, "manufacturer")?;
+    Ok(ProfileIdentity {
+        serial_number: entries.required("serial_number", "a text")?,
+        profile_id: ProfileId::new(entries.required("profile_id", "a number from 0 to 65535 (0x0000 to 0xFFFF)")?),
+        device_id,
+        manufacturer,
+        firmware,
+        description: entries.optional("description", "a text")?.unwrap_or_default(),
+        multiturn_bits: entries.optional("multiturn_bits", BYTE)?,
+        singleturn_bits: entries.optional("singleturn_bits", BYTE)?,
+        unknown: entries.rest()?,
+    })
+}
+
+fn read_firmware(text: &str) -> Option<Firmware> {
+    let numbers: Vec<u8> = text.split('.').map(|number| number.parse().ok()).collect::<Option<_>>()?;
+    match numbers.as_slice() {
+        [major, minor, patch] => Some(Firmware::new(*major, *minor, *patch)),
+        _ => None,
+    }
+}
+
+/// As many bytes as there have to be.
+fn read_exactly<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; N], ProfileError> {
+    let path = entries.path_of(name);
+    let bytes = entries.bytes(name)?.ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
+    let count = bytes.len();
+    bytes.try_into().map_err(|_| ProfileError::Value { path, what: format!("{count} bytes where {N} belong") })
+}
+
+fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
+    let mut number = |name| {
+        let number: u32 = entries.required(name, PRESET_NUMBER)?;
+        let fits = PresetValue::new(number, 0).is_some();
+        let path = entries.path_of(name);
+        if fits { Ok(number) } else { Err(ProfileError::Shape { path, expected: PRESET_NUMBER }) }
+    };
+    let (singleturn, multiturn) = (number("singleturn")?, number("multiturn")?);
+    let value = PresetValue::new(singleturn, multiturn).unwrap_or_default();
+    Ok(PresetSetting { value, unknown: entries.rest()? })
+}
+
+fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
+    let mut result = |name| {
+        let tenths: Option<[u8; 4]> = entries.optional(name, FOUR_TENTHS)?;
+        Ok(tenths.map(WiegandResult::parse))
+    };
+    Ok(Recorded {
+        wiegand_last: result("wiegand_last")?,
+        wiegand_production: result("wiegand_production")?,
+        wiegand_saved: result("wiegand_saved")?,
+        calibration_status: entries.optional("calibration_status", BYTE)?,
+        device_mode: entries.optional("device_mode", BYTE)?.map(DeviceMode::new),
+        eds: entries.structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
+        unknown: entries.rest()?,
+    })
+}
+
+fn read_marked(text: &str) -> Result<MountingItem, String> {
+    if text == MountingItem::CALIBRATION {
+        return Ok(MountingItem::Calibration);
+    }
+    let range = text.parse().map_err(|_| format!("{text:?} is neither calibration nor of the form 0x24:0x10+3"))?;
+    Ok(MountingItem::Registers(range))
+}
+
+fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
+    let (first, last): (u8, u8) = entries.required("banks", "the first and the last bank such as (0x24, 0x43)")?;
+    if first > last {
+        let what = format!("0x{first:02X} comes after 0x{last:02X}");
+        return Err(ProfileError::Value { path: entries.path_of("banks"), what });
+    }
+    let mut listed: Vec<ListedBank> = Vec::new();
+    for entries in entries.structures("listed")? {
+        let path = entries.path_of("bank");
+        let own = read_bank(entries)?;
+        let number = own.bank.number;
+        if !(first..=last).contains(&number) {
+            let what = format!("0x{number:02X} is not within 0x{first:02X} to 0x{last:02X}");
+            return Err(ProfileError::Value { path, what });
+        }
+        if listed.iter().any(|other| other.bank.number == number) {
+            return Err(ProfileError::Value { path, what: format!("bank 0x{number:02X} stands twice") });
+        }
+        listed.push(own);
+    }
+    listed.sort_by_key(|listed| listed.bank.number);
+    let name = entries.optional("name", "a text")?.unwrap_or_default();
+    let empty = entries.optional("empty", BYTE)?;
+    Ok(DataImage { name, first, last, empty, listed, unknown: entries.rest()? })
+}
+
+fn read_bank(mut entries: Entries) -> Result<ListedBank, ProfileError> {
+    let number = entries.required("bank", BYTE)?;
+    let bytes = read_exactly(&mut entries, "bytes")?;
+    Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.rest()? })
+}
+
+#[cfg(test)]
+mod tests;

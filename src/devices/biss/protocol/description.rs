@@ -1,0 +1,262 @@
+//! What an encoder's registers are: a description that anybody can write (RON, `assets/devices/biss/`), with the frame,
+//! the registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
+
+mod file;
+mod german;
+mod name;
+mod register;
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
+
+pub use name::Name;
+pub use register::{Access, Area, Decoded, Decoding, Register, Role};
+
+use super::address::RegisterAddress;
+use super::procedure::ProcedureKind;
+use super::single_cycle::Layout;
+use super::status::{Firmware, ProfileId};
+
+/// A kind of encoder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    name: String,
+    identity: Option<Identity>,
+    layout: Option<Layout>,
+    lock: Option<Lock>,
+    registers: Vec<Register>,
+    banks: Vec<(u8, Name)>,
+    areas: Vec<Area>,
+    procedures: Vec<Procedure>,
+}
+
+/// What an encoder says of itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// 42h and 43h.
+    pub profile: ProfileId,
+    /// 7Eh and 7Fh.
+    pub manufacturer: [u8; 2],
+    /// 78h…7Dh.
+    pub device_id: [u8; 6],
+}
+
+/// An encoder is not of the kind that is described.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the encoder says {found}; the description \"{name}\" is for {expected}")]
+pub struct Mismatch {
+    /// The description's name.
+    pub name: String,
+    /// What it is for.
+    pub expected: Identity,
+    /// What is on the line.
+    pub found: Identity,
+}
+
+/// What has to be written before a device mode can be chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lock {
+    /// Where the password belongs.
+    pub password_at: RegisterAddress,
+    /// The password.
+    pub password: u8,
+    /// Where the device mode belongs.
+    pub mode_at: RegisterAddress,
+}
+
+/// Where a guided procedure has its registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Procedure {
+    /// Which one.
+    pub kind: ProcedureKind,
+    /// The device mode that it needs.
+    pub mode: u8,
+    /// Where its commands are written.
+    pub command: RegisterAddress,
+    /// Where it tells how far it is.
+    pub status: RegisterAddress,
+    /// The first of its further registers: the error code and results of a Wiegand test, the value of a preset.
+    pub data: Option<RegisterAddress>,
+    /// Older firmware has no such procedure.
+    pub since: Firmware,
+}
+
+/// A description that cannot be used, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}, line {line}, column {column}: {what}")]
+pub struct DescriptionError {
+    /// The file's name as it was given.
+    pub file: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column, counted from 1.
+    pub column: usize,
+    /// What is wrong there.
+    pub what: String,
+}
+
+/// All kinds of encoders known, the most particular first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Descriptions(Vec<Description>);
+
+impl Description {
+    /// Reads a description. `file` is what an error is to call it.
+    ///
+    /// # Errors
+    /// With line and column: text that is not RON, unknown or missing keys, numbers out of their range, registers that
+    /// overlap.
+    pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
+        file::parse(text).map_err(|error| DescriptionError {
+            file: file.to_owned(),
+            line: error.span.start.line,
+            column: error.span.start.col,
+            what: error.code.to_string(),
+        })
+    }
+
+    /// What the encoder is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What an encoder of this kind says of itself; `None`: any may be one.
+    pub const fn identity(&self) -> Option<&Identity> {
+        self.identity.as_ref()
+    }
+
+    /// The frame of the position data; `None` where the encoder's data sheet or the user has to tell.
+    pub const fn layout(&self) -> Option<&Layout> {
+        self.layout.as_ref()
+    }
+
+    /// What opens the device modes; `None` where there are none.
+    pub const fn lock(&self) -> Option<Lock> {
+        self.lock
+    }
+
+    /// The registers, in the order of the file.
+    pub fn registers(&self) -> &[Register] {
+        &self.registers
+    }
+
+    /// Banks of plain data.
+    pub fn areas(&self) -> &[Area] {
+        &self.areas
+    }
+
+    /// What a bank is called: by its area, or by the list of banks.
+    pub fn bank_name(&self, bank: u8) -> Option<&Name> {
+        let area = self.areas.iter().find(|area| area.contains(bank)).map(|area| &area.name);
+        area.or_else(|| self.banks.iter().find(|(own, _)| *own == bank).map(|(_, name)| name))
+    }
+
+    /// The guided procedures.
+    pub fn procedures(&self) -> &[Procedure] {
+        &self.procedures
+    }
+
+    /// The register that plays a role.
+    pub fn with_role(&self, role: Role) -> Option<&Register> {
+        self.registers.iter().find(|register| register.role == Some(role))
+    }
+
+    /// The register to which a byte belongs.
+    pub fn at(&self, address: RegisterAddress) -> Option<&Register> {
+        self.registers.iter().find(|register| register.contains(address))
+    }
+
+    /// The area to which a byte belongs.
+    pub fn area_at(&self, address: RegisterAddress) -> Option<&Area> {
+        self.areas.iter().find(|area| address.bank().is_some_and(|bank| area.contains(bank)))
+    }
+
+    /// A procedure, where the encoder has it.
+    pub fn procedure(&self, kind: ProcedureKind) -> Option<&Procedure> {
+        self.procedures.iter().find(|procedure| procedure.kind == kind)
+    }
+
+    /// What the byte at an address may be.
+    pub fn access(&self, address: RegisterAddress) -> Option<Access> {
+        self.at(address).map(|register| register.access).or_else(|| self.area_at(address).map(|area| area.access))
+    }
+
+    /// Whether an encoder is of this kind.
+    ///
+    /// # Errors
+    /// [`Mismatch`], with both sides.
+    pub fn check(&self, found: &Identity) -> Result<(), Mismatch> {
+        match &self.identity {
+            Some(expected) if expected != found => {
+                Err(Mismatch { name: self.name.clone(), expected: expected.clone(), found: found.clone() })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for Identity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hex = crate::bits::hex;
+        write!(
+            f,
+            "profile {}, manufacturer {}, device ID {}",
+            self.profile,
+            hex(&self.manufacturer),
+            hex(&self.device_id)
+        )
+    }
+}
+
+impl Descriptions {
+    /// The descriptions that ship with the program, with their files' names.
+    pub const BUILT_IN: [(&'static str, &'static str); 2] = [
+        ("posital_kit.ron", include_str!("../../../../assets/devices/biss/posital_kit.ron")),
+        ("unknown.ron", include_str!("../../../../assets/devices/biss/unknown.ron")),
+    ];
+
+    /// Reads files, and says of each that cannot be used why; the rest counts all the same.
+    pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<DescriptionError>) {
+        let mut errors = Vec::new();
+        let mut read = Vec::new();
+        for (file, text) in files {
+            match Description::parse(file, text) {
+                Ok(description) => read.push(description),
+                Err(error) => errors.push(error),
+            }
+        }
+        // Those that are for one kind of encoder before those that are for any.
+        read.sort_by_key(|description| description.identity.is_none());
+        (Descriptions(read), errors)
+    }
+
+    /// The built-in ones.
+    pub fn built_in() -> Self {
+        // That they can be read is tested.
+        Self::read(Self::BUILT_IN).0
+    }
+
+    /// These, with those of `others` going before their own where both are for the same encoder.
+    #[must_use]
+    pub fn overlaid_with(self, others: Descriptions) -> Self {
+        let mut all = others.0;
+        all.extend(self.0);
+        all.sort_by_key(|description| description.identity.is_none());
+        Descriptions(all)
+    }
+
+    /// The description of an encoder that says this of itself: its own, else one for any.
+    pub fn find(&self, identity: &Identity) -> Option<&Description> {
+        self.0.iter().find(|description| description.check(identity).is_ok())
+    }
+
+    /// By its name.
+    pub fn named(&self, name: &str) -> Option<&Description> {
+        self.0.iter().find(|description| description.name == name)
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Description> {
+        self.0.iter()
+    }
+}

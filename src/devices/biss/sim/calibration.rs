@@ -1,0 +1,135 @@
+//! The calibration of the singleturn (manual 6.4): two runs, counterclockwise first, each about five seconds. Chosen here
+//! (`U`): a condition that is not met ends a run after a second; a motor that changes its speed ends it at once; the
+//! second run is refused where the first was not done. One that keeps its status shows it until the next run has begun,
+//! over a change of the device mode too.
+
+use std::time::Duration;
+
+use crate::devices::biss::protocol::{CalibrationCommand, CalibrationStatus, Filter};
+use crate::units::Moment;
+
+/// What the runs depend on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Conditions {
+    /// Above 0 clockwise.
+    pub(super) rpm: f64,
+    /// How far the speed wavers, in revolutions a minute.
+    pub(super) waver: f64,
+    pub(super) celsius: i16,
+    pub(super) filter: Filter,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Calibration {
+    pub(super) command: u8,
+    pub(super) status: CalibrationStatus,
+    run: Option<Run>,
+    duration: Duration,
+    keeps_status: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    clockwise: bool,
+    begins: Moment,
+    ends: Moment,
+    outcome: CalibrationStatus,
+}
+
+/// What has become of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// Nothing yet.
+    No,
+    /// The second run is done: the table is saved.
+    Saved,
+    /// The second run has failed: the table is lost.
+    Lost,
+}
+
+impl Calibration {
+    const BEGINS_AFTER: Duration = Duration::from_millis(300);
+    const FAILS_AFTER: Duration = Duration::from_secs(1);
+    /// Revolutions a minute, either way.
+    const SPEED: std::ops::RangeInclusive<f64> = 300.0..=700.0;
+    const MAX_WAVER: f64 = 2.0;
+    const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
+
+    pub(super) fn new(duration: Duration, keeps_status: bool) -> Self {
+        Calibration { command: 0, status: CalibrationStatus::Idle, run: None, duration, keeps_status }
+    }
+
+    pub(super) fn is_running(&self) -> bool {
+        self.run.is_some() && self.status == CalibrationStatus::Running
+    }
+
+    /// A command is written; `false`: it is refused.
+    pub(super) fn write(&mut self, now: Moment, value: u8, conditions: Conditions) -> bool {
+        let clockwise = match CalibrationCommand::from_byte(value) {
+            CalibrationCommand::StartCounterclockwise => false,
+            CalibrationCommand::StartClockwise if self.status == CalibrationStatus::CounterclockwiseDone => true,
+            CalibrationCommand::StartClockwise | CalibrationCommand::Unknown(_) => return false,
+        };
+        if self.run.is_some() {
+            return false;
+        }
+        self.command = value;
+        let success =
+            if clockwise { CalibrationStatus::ClockwiseDone } else { CalibrationStatus::CounterclockwiseDone };
+        let (outcome, duration) = match failure(conditions, clockwise) {
+            Some(failure) => (failure, Self::FAILS_AFTER),
+            None => (success, self.duration),
+        };
+        let begins = if self.keeps_status { now + Self::BEGINS_AFTER } else { now };
+        self.run = Some(Run { clockwise, begins, ends: begins + duration, outcome });
+        self.settle(now);
+        true
+    }
+
+    /// The motor has changed its speed.
+    pub(super) fn disturb(&mut self, now: Moment) {
+        if let Some(run) = &mut self.run {
+            (run.ends, run.outcome) = (now, CalibrationStatus::Failed);
+        }
+    }
+
+    /// Begins a run that is due, and ends one whose time is over.
+    pub(super) fn settle(&mut self, now: Moment) -> Ended {
+        if self.run.is_some_and(|run| run.begins <= now) {
+            self.status = CalibrationStatus::Running;
+        }
+        let Some(run) = self.run.filter(|run| run.ends <= now) else { return Ended::No };
+        self.run = None;
+        self.status = run.outcome;
+        match run.outcome {
+            CalibrationStatus::ClockwiseDone => Ended::Saved,
+            CalibrationStatus::CounterclockwiseDone => Ended::No,
+            _ if run.clockwise => Ended::Lost,
+            _ => Ended::No,
+        }
+    }
+
+    /// The mode is left, or power is lost.
+    pub(super) fn abandon(&mut self) -> Ended {
+        let lost = self.run.take().is_some_and(|run| run.clockwise);
+        self.command = 0;
+        if !self.keeps_status || self.status == CalibrationStatus::Running {
+            self.status = CalibrationStatus::Idle;
+        }
+        if lost { Ended::Lost } else { Ended::No }
+    }
+}
+
+fn failure(conditions: Conditions, clockwise: bool) -> Option<CalibrationStatus> {
+    if !Calibration::CELSIUS.contains(&conditions.celsius) {
+        Some(CalibrationStatus::Temperature)
+    } else if !Calibration::SPEED.contains(&conditions.rpm.abs()) {
+        Some(CalibrationStatus::Speed)
+    } else if (conditions.rpm > 0.0) != clockwise {
+        Some(CalibrationStatus::WrongDirection)
+    } else if conditions.waver > Calibration::MAX_WAVER || conditions.filter != Filter::Balanced {
+        Some(CalibrationStatus::Failed)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,247 @@
+//! The settings of a virtual encoder, as the query of a `sim:` link gives them: `seed=7&fault=drop:0.01&rpm=-500`. It
+//! opens nothing.
+
+use std::time::Duration;
+
+use super::wiegand::Pulses;
+use crate::bits::ByteOrder;
+use crate::devices::biss::protocol::{Filter, Firmware};
+use crate::sim::setting::Setting;
+use crate::sim::{ConfigError, Faults};
+
+/// What a virtual encoder shall be like. The default is one as delivered, with the newest firmware known, at rest,
+/// without faults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Config {
+    pub(super) seed: u64,
+    pub(super) faults: Faults,
+    pub(super) firmware: Firmware,
+    pub(super) serial_number: u32,
+    pub(super) rpm: f64,
+    pub(super) reverses: bool,
+    pub(super) waver: f64,
+    pub(super) position: u64,
+    pub(super) temperature: i16,
+    pub(super) errors: u8,
+    pub(super) filter: Filter,
+    pub(super) cycles: u32,
+    pub(super) pulses: Pulses,
+    pub(super) calibration_time: Duration,
+    pub(super) silent_calibration: bool,
+    pub(super) keeps_status: bool,
+    pub(super) echo: bool,
+    pub(super) order: ByteOrder,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Config {
+            seed: 0,
+            faults: Faults::default(),
+            firmware: Firmware::new(1, 6, 0),
+            serial_number: 0x0012_D687,
+            rpm: 0.0,
+            reverses: false,
+            waver: 0.5,
+            position: 0x1234 << 17 | 0x18000,
+            temperature: 30,
+            errors: 0,
+            filter: Filter::Balanced,
+            cycles: 3,
+            pulses: Pulses { average: 63, lowest: 58 },
+            calibration_time: Duration::from_secs(5),
+            silent_calibration: true,
+            keeps_status: false,
+            echo: false,
+            order: ByteOrder::LowFirst,
+        }
+    }
+}
+
+impl Config {
+    /// The keys that [`from_pairs`](Self::from_pairs) takes.
+    pub const KEYS: [&str; 18] = [
+        "seed",
+        "fault",
+        "firmware",
+        "serial",
+        "rpm",
+        "motor",
+        "waver",
+        "position",
+        "temperature",
+        "errors",
+        "filter",
+        "cycles",
+        "pulses",
+        "calibration",
+        "calibration-silent",
+        "calibration-status",
+        "echo",
+        "order",
+    ];
+
+    const POSITIONS: u64 = 1 << 33;
+
+    /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
+    /// `0x…`.
+    ///
+    /// # Errors
+    /// With a sentence that names the key and what is allowed.
+    pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+        let mut config = Config::default();
+        for (key, value) in pairs {
+            config.set(key, value)?;
+        }
+        Ok(config)
+    }
+
+    /// The faults of its line and its flash.
+    pub const fn faults(&self) -> &Faults {
+        &self.faults
+    }
+
+    /// Where its noise begins.
+    pub const fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Revolutions a minute at the start.
+    pub const fn rpm(&self) -> f64 {
+        self.rpm
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
+        let setting = Setting { key, value };
+        let refuse = |allowed: &str| setting.refused(allowed);
+        match key {
+            "seed" => self.seed = setting.number("a whole number")?,
+            "fault" => self.faults = value.parse()?,
+            "firmware" => self.firmware = firmware(value).ok_or_else(|| refuse("a release as 1.6.0"))?,
+            "serial" => self.serial_number = setting.number("a number from 0 to 0xFFFFFFFF")?,
+            "rpm" => self.rpm = setting.rpm()?,
+            "motor" => {
+                self.reverses = setting.one_of(&[("steady", false), ("reverse", true)], "steady or reverse")?;
+            }
+            "waver" => self.waver = setting.decimal(0.0..=1000.0, "0 to 1000 revolutions a minute")?,
+            "position" => self.position = setting.within(..Self::POSITIONS, "a position from 0 to 8589934591")?,
+            "temperature" => {
+                self.temperature = setting.signed(-50..=205, "whole degrees Celsius from -50 to 205")?;
+            }
+            "errors" => self.errors = setting.number("the error register's value from 0x00 to 0xFF")?,
+            "filter" => {
+                let filters = [("balanced", Filter::Balanced), ("dynamic", Filter::Dynamic)];
+                self.filter = setting.one_of(&filters, "balanced or dynamic")?;
+            }
+            "cycles" => self.cycles = setting.number("the number of write cycles its flash has had")?,
+            "pulses" => {
+                self.pulses =
+                    pulses(value).ok_or_else(|| refuse("AVERAGE,LOWEST in volts from 0 to 25.5, as 6.3,5.8"))?;
+            }
+            "calibration" => {
+                self.calibration_time = Duration::from_secs_f64(setting.decimal(0.1..=60.0, "0.1 to 60 seconds")?);
+            }
+            "calibration-silent" => self.silent_calibration = setting.switch()?,
+            "calibration-status" => {
+                self.keeps_status = setting.one_of(&[("fresh", false), ("kept", true)], "fresh or kept")?;
+            }
+            "echo" => self.echo = setting.switch()?,
+            "order" => {
+                let orders = [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)];
+                self.order = setting.one_of(&orders, "low-first or high-first")?;
+            }
+            _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
+        }
+        Ok(())
+    }
+}
+
+fn firmware(text: &str) -> Option<Firmware> {
+    let numbers: Vec<u8> = text.split('.').map(str::parse).collect::<Result<_, _>>().ok()?;
+    match numbers.as_slice() {
+        [major, minor, patch] => Some(Firmware::new(*major, *minor, *patch)),
+        _ => None,
+    }
+}
+
+fn pulses(text: &str) -> Option<Pulses> {
+    let tenths = |volts: &str| {
+        let volts: f64 = volts.parse().ok()?;
+        // At most 255.
+        (0.0..=25.5).contains(&volts).then(|| (volts * 10.0).round() as u8)
+    };
+    let (average, lowest) = text.split_once(',')?;
+    Some(Pulses { average: tenths(average)?, lowest: tenths(lowest)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::setting::pairs;
+    use proptest::prelude::*;
+
+    fn read(query: &str) -> Result<Config, ConfigError> {
+        Config::from_pairs(&pairs(query))
+    }
+
+    #[test]
+    fn every_key_is_read() {
+        let config = read(
+            "seed=7&fault=drop:0.5&firmware=1.2.3&serial=0x10&rpm=-500&motor=reverse&waver=3&position=0x20000&temperature=-10&\
+             errors=0x12&filter=dynamic&cycles=801&pulses=6.1,5.2&calibration=0.5&calibration-silent=off&calibration-status=kept&echo=on&\
+             order=high-first",
+        )
+        .unwrap();
+        let expected = Config {
+            seed: 7,
+            faults: "drop:0.5".parse().unwrap(),
+            firmware: Firmware::new(1, 2, 3),
+            serial_number: 16,
+            rpm: -500.0,
+            reverses: true,
+            waver: 3.0,
+            position: 0x20000,
+            temperature: -10,
+            errors: 0x12,
+            filter: Filter::Dynamic,
+            cycles: 801,
+            pulses: Pulses { average: 61, lowest: 52 },
+            calibration_time: Duration::from_millis(500),
+            silent_calibration: false,
+            keeps_status: true,
+            echo: true,
+            order: ByteOrder::HighFirst,
+        };
+        assert_eq!(config, expected);
+        assert_eq!(Config::from_pairs(&[]), Ok(Config::default()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_in_a_sentence() {
+        let cases = [
+            (
+                "sed=1",
+                "a virtual encoder has no setting `sed`; allowed are seed, fault, firmware, serial, rpm, motor, \
+                 waver, position, temperature, errors, filter, cycles, pulses, calibration, calibration-silent, \
+                 calibration-status, echo, order",
+            ),
+            ("filter=fast", "`filter=fast` cannot be used: allowed is balanced or dynamic"),
+            ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1"),
+        ];
+        for (query, sentence) in cases {
+            assert_eq!(read(query).unwrap_err().to_string(), sentence, "{query}");
+        }
+        let wrong = "seed=-1 firmware=1.6 firmware=1.6.256 serial=0x100000000 rpm=NaN rpm=inf motor=on waver=-1 temperature=206 \
+                     position=8589934592 errors=256 cycles=-1 pulses=6.3 pulses=6.3,26 calibration=0 echo=yes order=low";
+        for query in wrong.split_whitespace() {
+            assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_value_panics(key in 0..Config::KEYS.len(), value in ".*") {
+            let _ = Config::from_pairs(&[(Config::KEYS[key].to_owned(), value)]).map(|config| super::super::Encoder::new(&config));
+        }
+    }
+}

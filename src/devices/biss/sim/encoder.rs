@@ -1,0 +1,405 @@
+//! The encoder without any line: what a read or a write does at a moment (manual 4, 6 and appendix).
+//!
+//! ```text
+//! operation ── password, mode ──▶ mode m ── mode 00 ──▶ operation
+//!                                   └── save or preset of modes 05, 07 ──▶ restart (silent) ──▶ operation
+//! ```
+//! Chosen here (`U`): a mode is entered from operation only, and left without the password; registers that are nowhere described read 00h and cannot be
+//! written; what is entered is forgotten when the mode is left.
+
+mod registers;
+mod time;
+
+use std::time::Duration;
+
+use super::calibration::{Calibration, Conditions, Ended};
+use super::config::Config;
+use super::entry::{Area, DataEntry, FilterEntry, PresetEntry, Then};
+use super::flash::Flash;
+use super::motor::Drive;
+use super::shaft::{FINE, Shaft};
+use super::wiegand::{Pulses, Wiegand};
+use crate::devices::biss::protocol::{
+    CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, Reading, RegisterAddress,
+    WiegandCommand, WiegandStatus,
+};
+use crate::sim::{Faults, Motor};
+use crate::units::Moment;
+
+/// A virtual encoder.
+#[derive(Clone, Debug)]
+pub struct Encoder {
+    firmware: Firmware,
+    serial_number: u32,
+    waver: f64,
+    pulses: Pulses,
+    silent_calibration: bool,
+    die_in_store: Option<u32>,
+    eds: [Eds; 2],
+    drive: Drive,
+    shaft: Shaft,
+    celsius: i16,
+    errors: ErrorRegister,
+    hot: bool,
+    power: Power,
+    bank: u8,
+    password: u8,
+    mode: DeviceMode,
+    flash: Flash,
+    /// Results of the Wiegand test as they were saved when the encoder started.
+    saved_wiegand: [u8; 4],
+    calibration: Calibration,
+    wiegand: Wiegand,
+    data: DataEntry,
+    filter: FilterEntry,
+    preset: PresetEntry,
+    stores_begun: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Power {
+    Off,
+    /// Registers can be asked from then on.
+    Starting {
+        ready: Moment,
+    },
+    On,
+}
+
+impl Encoder {
+    /// Data sheet, 02:0Eh: 500 ms until control communication is available.
+    pub(super) const START: Duration = Duration::from_millis(500);
+    const MAX_BANK: u8 = 0x43;
+    /// Manual 6.8: the warning comes at 125 °C and goes below 123 °C.
+    const HOT: i16 = 125;
+    const COOL: i16 = 123;
+    const DIAGNOSTICS_SINCE: Firmware = Firmware::new(1, 6, 0);
+    const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
+    const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
+    const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
+
+    /// The encoder that `config` wants. It got its power long ago.
+    pub fn new(config: &Config) -> Self {
+        let flash = Flash { filter: config.filter, ..Flash::delivered(config.cycles) };
+        let mut encoder = Encoder {
+            firmware: config.firmware,
+            serial_number: config.serial_number,
+            waver: config.waver,
+            pulses: config.pulses,
+            silent_calibration: config.silent_calibration,
+            die_in_store: config.faults.die_in_store(),
+            eds: [EdsBank::Common, EdsBank::Encoder].map(Eds::delivered),
+            drive: Drive::new(config.rpm, config.reverses),
+            shaft: Shaft::new(Layout::default(), config.position, config.rpm),
+            celsius: config.temperature,
+            errors: ErrorRegister::new(config.errors),
+            hot: false,
+            power: Power::On,
+            bank: 0,
+            password: 0,
+            mode: DeviceMode::OPERATION,
+            saved_wiegand: flash.wiegand,
+            calibration: Calibration::new(config.calibration_time, config.keeps_status),
+            wiegand: Wiegand::new(),
+            data: DataEntry::default(),
+            filter: FilterEntry::default(),
+            preset: PresetEntry::new(flash.preset),
+            flash,
+            stores_begun: 0,
+        };
+        encoder.watch_temperature();
+        encoder
+    }
+
+    /// What survives a loss of power.
+    pub const fn flash(&self) -> &Flash {
+        &self.flash
+    }
+
+    /// The frame of its position data.
+    pub const fn layout(&self) -> &Layout {
+        self.shaft.layout()
+    }
+
+    /// The device mode it is in.
+    pub const fn mode(&self) -> DeviceMode {
+        self.mode
+    }
+
+    /// What turns its shaft.
+    pub fn motor(&self) -> Motor {
+        self.drive.motor().clone()
+    }
+
+    /// Turns the shaft at another speed from `now` on.
+    pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        self.drive.motor().set_rpm(rpm);
+        self.settle(now);
+    }
+
+    /// Warms or cools it.
+    pub fn set_temperature(&mut self, celsius: i16) {
+        self.celsius = celsius;
+        self.watch_temperature();
+    }
+
+    /// Other faults of its flash from now on; stores are counted on.
+    pub fn set_faults(&mut self, faults: &Faults) {
+        self.die_in_store = faults.die_in_store();
+    }
+
+    /// Its monitoring finds something, or no longer.
+    pub fn set_errors(&mut self, errors: ErrorRegister) {
+        self.errors = errors;
+    }
+
+    /// Power goes and comes back at `now`.
+    pub fn power_cycle(&mut self, now: Moment) {
+        self.settle(now);
+        self.disconnect();
+        self.start(now);
+    }
+
+    /// Takes the power away.
+    pub fn disconnect(&mut self) {
+        self.abandon();
+        self.power = Power::Off;
+    }
+
+    /// Gives the power back to an encoder that has lost it.
+    pub fn connect(&mut self, now: Moment) {
+        if self.power == Power::Off {
+            self.start(now);
+        }
+    }
+
+    /// It has power, though it may still be starting.
+    pub fn has_power(&self) -> bool {
+        self.power != Power::Off
+    }
+
+    /// Registers can be asked at `now`. It is silent while it starts, and may be while it calibrates.
+    pub fn answers(&mut self, now: Moment) -> bool {
+        self.settle(now);
+        self.power == Power::On && !(self.silent_calibration && self.calibration.is_running())
+    }
+
+    /// The position at `now`; `None` without power and while it starts. It is marked as wrong while it calibrates.
+    pub fn reading(&mut self, now: Moment) -> Option<Reading> {
+        self.settle(now);
+        let reading = self.shaft.reading(now);
+        let error = self.errors != ErrorRegister::default() || self.calibration.is_running();
+        (self.power == Power::On).then_some(Reading { error, warning: self.hot, ..reading })
+    }
+
+    /// The place of its shaft at `now`, whatever it says of it itself: steps, and how many a revolution has.
+    pub fn shaft_place(&mut self, now: Moment) -> (u64, u64) {
+        self.settle(now);
+        (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
+    }
+
+    /// The bank of the registers 00h…3Fh that is selected.
+    pub const fn bank(&self) -> u8 {
+        self.bank
+    }
+
+    /// Where a register address of the control frame leads to, with the bank that is selected.
+    pub fn address(&self, address: u8) -> Option<RegisterAddress> {
+        if address < RegisterAddress::BANK_SIZE {
+            RegisterAddress::banked(self.bank, address)
+        } else {
+            RegisterAddress::direct(address)
+        }
+    }
+
+    /// A register's value at `now`; `None` for a bank that there is not.
+    pub fn read(&mut self, now: Moment, address: RegisterAddress) -> Option<u8> {
+        self.settle(now);
+        let offset = address.address();
+        let value = match address.bank() {
+            None => self.direct(offset),
+            Some(0x00) => self.special(offset),
+            Some(0x01) => self.preset_register(offset),
+            Some(bank @ (0x02 | 0x03)) => {
+                let [common, encoder] = &self.eds;
+                let eds = if bank == EdsBank::Common.number() { common } else { encoder };
+                eds.emit().get(usize::from(offset)).copied().unwrap_or(0)
+            }
+            Some(bank) if bank <= Self::MAX_BANK => {
+                let (area, begin) = Area::of_bank(bank)?;
+                let at = begin + usize::from(offset);
+                self.data.byte(area, at).or_else(|| self.area(area).get(at).copied())?
+            }
+            Some(_) => return None,
+        };
+        Some(value)
+    }
+
+    /// Writes a register at `now`; `false`: the encoder refuses, and nothing has changed.
+    pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
+        self.settle(now);
+        let offset = address.address();
+        let accepted = match (address.bank(), offset) {
+            (None, 0x40) => {
+                self.bank = value;
+                true
+            }
+            (None, 0x6A) => self.change_mode(DeviceMode::new(value)),
+            (None, 0x6B) => {
+                self.password = value;
+                true
+            }
+            (Some(0x00), 0x00) if self.mode == DeviceMode::CALIBRATION => {
+                let conditions = self.conditions();
+                self.calibration.write(now, value, conditions)
+            }
+            (Some(0x00), 0x06) if self.mode == DeviceMode::WIEGAND_TEST => self.wiegand_command(now, value),
+            (Some(0x00), 0x1A) if self.mode == DeviceMode::DATA_WRITE => {
+                let then = self.data.command(value);
+                self.follow(now, then)
+            }
+            (Some(0x00), 0x24) if self.mode == DeviceMode::FILTER => {
+                let then = self.filter.command(value);
+                self.follow(now, then)
+            }
+            (Some(0x01), 0x00) if self.mode == DeviceMode::PRESET => {
+                let parts = self.firmware >= Self::PRESET_PARTS_SINCE;
+                let then = self.preset.command(value, parts, self.shaft.layout());
+                self.follow(now, then)
+            }
+            (Some(0x01), 0x02..=0x07) if self.mode == DeviceMode::PRESET => {
+                self.preset.enter(usize::from(offset - 2), value)
+            }
+            (Some(bank), _) => Area::of_bank(bank)
+                .is_some_and(|(area, begin)| self.data.enter(area, begin + usize::from(offset), value)),
+            _ => false,
+        };
+        self.settle(now);
+        accepted
+    }
+
+    fn area(&self, area: Area) -> &[u8] {
+        match area {
+            Area::Motor => &self.flash.motor_data,
+            Area::Oem => &self.flash.oem_data,
+        }
+    }
+
+    fn conditions(&self) -> Conditions {
+        Conditions { rpm: self.shaft.rpm(), waver: self.waver, celsius: self.celsius, filter: self.flash.filter }
+    }
+
+    fn change_mode(&mut self, mode: DeviceMode) -> bool {
+        let there = match mode {
+            DeviceMode::FILTER => self.firmware >= Self::FILTER_SINCE,
+            DeviceMode::PRESET => self.firmware >= Self::PRESET_SINCE,
+            _ => mode.is_known(),
+        };
+        let opened = self.password == DeviceMode::PASSWORD;
+        let may = opened && (mode == self.mode || self.mode == DeviceMode::OPERATION);
+        if !there || !(may || mode == DeviceMode::OPERATION) {
+            return false;
+        }
+        if mode != self.mode {
+            self.abandon();
+            self.mode = mode;
+        }
+        true
+    }
+
+    fn wiegand_command(&mut self, now: Moment, value: u8) -> bool {
+        if WiegandCommand::from_byte(value) != WiegandCommand::Save {
+            return self.wiegand.write(now, value);
+        }
+        if self.wiegand.status != WiegandStatus::Complete {
+            return false;
+        }
+        let result = self.wiegand.result;
+        self.wiegand.command = value;
+        self.store(|flash, whole| {
+            if whole {
+                flash.wiegand = result;
+            }
+        });
+        true
+    }
+
+    fn follow(&mut self, now: Moment, then: Then) -> bool {
+        match then {
+            Then::Refused => return false,
+            Then::Nothing => {}
+            Then::Open(area) => {
+                let bytes = self.area(area).to_vec();
+                self.data.open(area, bytes);
+            }
+            Then::SaveData(area, bytes) => {
+                self.store(|flash, whole| {
+                    let place = match area {
+                        Area::Motor => &mut flash.motor_data,
+                        Area::Oem => &mut flash.oem_data,
+                    };
+                    let count = if whole { bytes.len() } else { bytes.len() / 2 };
+                    place.iter_mut().zip(bytes.into_iter().take(count)).for_each(|(old, new)| *old = new);
+                });
+            }
+            Then::SaveFilter(filter) => self.store_and_restart(now, |flash| flash.filter = filter),
+            Then::SavePreset(preset) => self.store_and_restart(now, |flash| flash.preset = preset),
+            Then::Preset { singleturn, multiturn } => {
+                let preset = self.flash.preset;
+                self.store_and_restart(now, |_| {});
+                if self.power != Power::Off {
+                    let (own_singleturn, own_multiturn) = (preset.singleturn(), preset.multiturn());
+                    self.shaft.preset(now, singleturn.then_some(own_singleturn), multiturn.then_some(own_multiturn));
+                }
+            }
+        }
+        true
+    }
+
+    /// Writes the flash once; `whole` is false where power is lost in the middle of it.
+    fn store(&mut self, change: impl FnOnce(&mut Flash, bool)) {
+        self.stores_begun = self.stores_begun.saturating_add(1);
+        self.flash.cycles = self.flash.cycles.saturating_add(1);
+        let whole = self.die_in_store != Some(self.stores_begun);
+        change(&mut self.flash, whole);
+        if !whole {
+            self.disconnect();
+        }
+    }
+
+    fn store_and_restart(&mut self, now: Moment, change: impl FnOnce(&mut Flash)) {
+        self.store(|flash, whole| {
+            if whole {
+                change(flash);
+            }
+        });
+        if self.power != Power::Off {
+            self.start(now);
+        }
+    }
+
+    /// What was only in memory is gone.
+    fn start(&mut self, now: Moment) {
+        self.abandon();
+        self.power = Power::Starting { ready: now + Self::START };
+        (self.bank, self.password, self.mode) = (0, 0, DeviceMode::OPERATION);
+        self.calibration.status = CalibrationStatus::Idle;
+        self.wiegand = Wiegand::new();
+        self.saved_wiegand = self.flash.wiegand;
+    }
+
+    /// Whatever was under way ends.
+    fn abandon(&mut self) {
+        if self.calibration.abandon() == Ended::Lost {
+            self.flash.calibrated = false;
+        }
+        self.wiegand.abandon();
+        self.data = DataEntry::default();
+        self.filter = FilterEntry::default();
+        self.preset = PresetEntry::new(self.flash.preset);
+    }
+
+    fn watch_temperature(&mut self) {
+        self.hot = self.celsius >= Self::HOT || (self.hot && self.celsius >= Self::COOL);
+    }
+}

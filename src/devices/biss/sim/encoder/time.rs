@@ -1,0 +1,43 @@
+//! What happens as time passes: a start ends, the runs of a procedure end, the shaft follows its motor.
+
+use super::{Encoder, Power};
+use crate::devices::biss::protocol::{CalibrationStatus, WiegandStatus};
+use crate::devices::biss::sim::calibration::Ended;
+use crate::units::Moment;
+
+impl Encoder {
+    /// Lets happen what was due by `now`, and turns the shaft as the motor does by then.
+    pub(super) fn settle(&mut self, now: Moment) {
+        if let Power::Starting { ready } = self.power
+            && ready <= now
+        {
+            self.power = Power::On;
+        }
+        self.settle_runs(now);
+        let rpm = self.drive.motor().rpm();
+        if rpm != self.shaft.rpm() {
+            self.calibration.disturb(now);
+            self.shaft.set_rpm(now, rpm);
+            self.settle_runs(now);
+        }
+    }
+
+    fn settle_runs(&mut self, now: Moment) {
+        let waited = self.waits_for_direction();
+        match self.calibration.settle(now) {
+            Ended::No => {}
+            Ended::Saved => self.store(|flash, whole| flash.calibrated = whole),
+            Ended::Lost => self.flash.calibrated = false,
+        }
+        self.wiegand.settle(now, self.shaft.rpm(), self.pulses);
+        if self.waits_for_direction() && !waited {
+            self.drive.other_direction();
+        }
+    }
+
+    /// The first run of a procedure is done, and the second needs the other direction.
+    fn waits_for_direction(&self) -> bool {
+        self.calibration.status == CalibrationStatus::CounterclockwiseDone
+            || self.wiegand.status == WiegandStatus::WaitForDirection
+    }
+}

@@ -1,0 +1,173 @@
+//! The procedures in which something is entered and then saved: data, filter, preset (manual 6.5 to 6.7). They hold what
+//! was entered; saving it is the [`Encoder`](super::Encoder)'s matter. A command out of turn is refused (`U`).
+
+use crate::devices::biss::protocol::{
+    DataCommand, DataStatus, Filter, FilterCommand, FilterStatus, Layout, PresetCommand, PresetStatus, PresetValue,
+};
+
+/// Which area of plain data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Area {
+    Motor,
+    Oem,
+}
+
+impl Area {
+    /// The area of a bank and where the bank begins in it.
+    pub(super) fn of_bank(bank: u8) -> Option<(Area, usize)> {
+        let begin = |first: u8| usize::from(bank - first) * 64;
+        match bank {
+            0x04..=0x23 => Some((Area::Motor, begin(0x04))),
+            0x24..=0x43 => Some((Area::Oem, begin(0x24))),
+            _ => None,
+        }
+    }
+}
+
+/// What follows of a command.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Then {
+    /// It is refused.
+    Refused,
+    /// Nothing further.
+    Nothing,
+    /// An area is opened; its content is to be handed over with [`DataEntry::open`].
+    Open(Area),
+    /// Data goes into the flash.
+    SaveData(Area, Vec<u8>),
+    /// The filter goes into the flash; a restart follows.
+    SaveFilter(Filter),
+    /// The preset value goes into the flash; a restart follows.
+    SavePreset(PresetValue),
+    /// The position becomes the preset value, in its singleturn, its multiturn or both; a restart follows.
+    Preset { singleturn: bool, multiturn: bool },
+}
+
+/// Write access to motor or OEM data.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DataEntry {
+    pub(super) command: u8,
+    open: Option<(Area, Vec<u8>)>,
+}
+
+impl DataEntry {
+    pub(super) fn status(&self) -> DataStatus {
+        if self.open.is_some() { DataStatus::Open } else { DataStatus::Closed }
+    }
+
+    pub(super) fn command(&mut self, value: u8) -> Then {
+        let then = match (DataCommand::from_byte(value), self.open.take()) {
+            (DataCommand::OpenMotorData, None) => Then::Open(Area::Motor),
+            (DataCommand::OpenOemData, None) => Then::Open(Area::Oem),
+            (DataCommand::Save, Some((area, bytes))) => Then::SaveData(area, bytes),
+            (DataCommand::Cancel, _) => Then::Nothing,
+            (_, open) => {
+                self.open = open;
+                Then::Refused
+            }
+        };
+        if then != Then::Refused {
+            self.command = value;
+        }
+        then
+    }
+
+    /// An area is opened, with what it holds.
+    pub(super) fn open(&mut self, area: Area, bytes: Vec<u8>) {
+        self.open = Some((area, bytes));
+    }
+
+    /// A byte as it was entered; `None` while its area is closed.
+    pub(super) fn byte(&self, area: Area, at: usize) -> Option<u8> {
+        let (_, bytes) = self.open.as_ref().filter(|(open, _)| *open == area)?;
+        bytes.get(at).copied()
+    }
+
+    /// Enters a byte; `false` while its area is closed.
+    pub(super) fn enter(&mut self, area: Area, at: usize, value: u8) -> bool {
+        let place = self.open.as_mut().filter(|(open, _)| *open == area).and_then(|(_, bytes)| bytes.get_mut(at));
+        place.map(|byte| *byte = value).is_some()
+    }
+}
+
+/// The choice of a filter.
+#[derive(Clone, Debug)]
+pub(super) struct FilterEntry {
+    pub(super) command: u8,
+    pub(super) status: FilterStatus,
+    chosen: Filter,
+}
+
+impl Default for FilterEntry {
+    fn default() -> Self {
+        FilterEntry { command: 0, status: FilterStatus::Closed, chosen: Filter::Balanced }
+    }
+}
+
+impl FilterEntry {
+    pub(super) fn command(&mut self, value: u8) -> Then {
+        let (status, then) = match (FilterCommand::from_byte(value), self.status) {
+            (FilterCommand::Open, FilterStatus::Closed) => (FilterStatus::WaitForValue, Then::Nothing),
+            (
+                FilterCommand::Balanced | FilterCommand::Dynamic,
+                FilterStatus::WaitForValue | FilterStatus::WaitForSave,
+            ) => {
+                self.chosen = Filter::from_byte(value);
+                (FilterStatus::WaitForSave, Then::Nothing)
+            }
+            (FilterCommand::Save, FilterStatus::WaitForSave) => (FilterStatus::Closed, Then::SaveFilter(self.chosen)),
+            _ => return Then::Refused,
+        };
+        (self.command, self.status) = (value, status);
+        then
+    }
+}
+
+/// The entry of a preset value.
+#[derive(Clone, Debug)]
+pub(super) struct PresetEntry {
+    pub(super) command: u8,
+    pub(super) status: PresetStatus,
+    bytes: [u8; 6],
+}
+
+impl PresetEntry {
+    /// With the value that is stored.
+    pub(super) fn new(stored: PresetValue) -> Self {
+        PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
+    }
+
+    /// `parts`: the encoder can preset singleturn or multiturn alone.
+    pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> Then {
+        let then = match (PresetCommand::from_byte(value), self.status) {
+            (PresetCommand::Edit, _) => {
+                self.status = PresetStatus::WaitForValue;
+                Then::Nothing
+            }
+            (PresetCommand::Save, PresetStatus::WaitForValue) => {
+                let preset = PresetValue::parse(self.bytes);
+                let fits = u64::from(preset.singleturn()) >> layout.singleturn_bits() == 0
+                    && u64::from(preset.multiturn()) >> layout.multiturn_bits() == 0;
+                if fits { Then::SavePreset(preset) } else { Then::Refused }
+            }
+            (PresetCommand::Both, _) => Then::Preset { singleturn: true, multiturn: true },
+            (PresetCommand::Singleturn, _) if parts => Then::Preset { singleturn: true, multiturn: false },
+            (PresetCommand::Multiturn, _) if parts => Then::Preset { singleturn: false, multiturn: true },
+            _ => Then::Refused,
+        };
+        if then != Then::Refused {
+            self.command = value;
+        }
+        then
+    }
+
+    pub(super) fn byte(&self, at: usize) -> Option<u8> {
+        self.bytes.get(at).copied()
+    }
+
+    /// Enters a byte; `false` where none is expected.
+    pub(super) fn enter(&mut self, at: usize, value: u8) -> bool {
+        let open = self.status == PresetStatus::WaitForValue;
+        self.bytes.get_mut(at).filter(|_| open).map(|byte| *byte = value).is_some()
+    }
+}

@@ -1,0 +1,64 @@
+//! What survives a loss of power, and how often it was written: 1000 times in a life (manual 6.1).
+
+use crate::devices::biss::protocol::{Filter, PresetValue};
+
+/// The flash of a virtual encoder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flash {
+    pub(super) motor_data: Vec<u8>,
+    pub(super) oem_data: Vec<u8>,
+    pub(super) preset: PresetValue,
+    pub(super) filter: Filter,
+    /// Average and average less four standard deviations, clockwise and counterclockwise, in tenths of a volt.
+    pub(super) wiegand: [u8; 4],
+    pub(super) calibrated: bool,
+    pub(super) cycles: u32,
+}
+
+impl Flash {
+    /// Bytes of either area: 32 banks.
+    pub(super) const AREA: usize = 32 * 64;
+
+    /// As delivered, after so many write cycles.
+    pub(super) fn delivered(cycles: u32) -> Self {
+        Flash {
+            motor_data: vec![0; Self::AREA],
+            oem_data: vec![0; Self::AREA],
+            preset: PresetValue::default(),
+            filter: Filter::Balanced,
+            wiegand: [0; 4],
+            calibrated: true,
+            cycles,
+        }
+    }
+
+    /// Banks 04h…23h.
+    pub fn motor_data(&self) -> &[u8] {
+        &self.motor_data
+    }
+
+    /// Banks 24h…43h.
+    pub fn oem_data(&self) -> &[u8] {
+        &self.oem_data
+    }
+
+    /// What a preset makes of the shaft's place.
+    pub const fn preset(&self) -> PresetValue {
+        self.preset
+    }
+
+    /// The filter that is in force after a restart.
+    pub const fn filter(&self) -> Filter {
+        self.filter
+    }
+
+    /// The table of the calibration is there, from the factory or from a run.
+    pub const fn is_calibrated(&self) -> bool {
+        self.calibrated
+    }
+
+    /// How often it was written.
+    pub const fn cycles(&self) -> u32 {
+        self.cycles
+    }
+}

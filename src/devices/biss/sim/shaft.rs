@@ -1,0 +1,130 @@
+//! The shaft: its position as an exact function of time. A preset shifts the position, not the shaft.
+
+use crate::devices::biss::protocol::{Layout, Reading};
+use crate::units::Moment;
+
+/// Bits of the parts of a step.
+pub(super) const FINE: u8 = 8;
+
+/// A shaft turning at constant speed, seen through an encoder of 16 and 17 bits.
+#[derive(Clone, Debug)]
+pub(super) struct Shaft {
+    rpm: f64,
+    /// Mechanical place in steps at `since`.
+    place: f64,
+    since: Moment,
+    /// Position less mechanical place.
+    offset: u64,
+    layout: Layout,
+}
+
+impl Shaft {
+    pub(super) fn new(layout: Layout, position: u64, rpm: f64) -> Self {
+        Shaft { rpm, place: position as f64, since: Moment::START, offset: 0, layout }
+    }
+
+    pub(super) const fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Revolutions a minute; above 0 it turns clockwise, and the position rises.
+    pub(super) const fn rpm(&self) -> f64 {
+        self.rpm
+    }
+
+    pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        (self.place, self.since) = (self.place(now), now);
+        self.rpm = rpm;
+    }
+
+    /// The position at a moment; error and warning are not the shaft's matter.
+    pub(super) fn reading(&self, at: Moment) -> Reading {
+        let position = (self.whole_steps(at) + self.offset) % self.range();
+        let singleturn = position % self.steps();
+        let multiturn = position / self.steps();
+        // Fields have at most 32 bits.
+        let [singleturn, multiturn] = [singleturn, multiturn].map(|field| u32::try_from(field).unwrap_or(u32::MAX));
+        Reading { multiturn, singleturn, error: false, warning: false }
+    }
+
+    /// The position at a moment in parts of a step, [`FINE`] bits behind it: what another encoder on this shaft sees.
+    pub(super) fn fine(&self, at: Moment) -> u64 {
+        let whole = (self.whole_steps(at) + self.offset) % self.range();
+        // Not negative, below 1.
+        let parts = (self.place(at).fract() * f64::from(1_u32 << FINE)) as u64;
+        whole << FINE | parts
+    }
+
+    /// From `at` on the shaft's place has this singleturn or this multiturn, or both; what is `None` stays.
+    pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
+        let now = self.reading(at);
+        let wanted = Reading {
+            singleturn: singleturn.unwrap_or(now.singleturn),
+            multiturn: multiturn.unwrap_or(now.multiturn),
+            ..now
+        };
+        let range = self.range();
+        self.offset = (self.layout.steps(&wanted) % range + range - self.whole_steps(at)) % range;
+    }
+
+    /// Steps in a revolution.
+    fn steps(&self) -> u64 {
+        1 << self.layout.singleturn_bits()
+    }
+
+    fn range(&self) -> u64 {
+        self.steps() << self.layout.multiturn_bits()
+    }
+
+    fn whole_steps(&self, at: Moment) -> u64 {
+        self.place(at) as u64 // not negative, below the range
+    }
+
+    fn place(&self, at: Moment) -> f64 {
+        let moved = at.since(self.since).as_secs_f64() * self.rpm / 60.0 * self.steps() as f64;
+        let range = self.range() as f64;
+        // rem_euclid may round up to the range itself.
+        let place = (self.place + moved).rem_euclid(range);
+        if place < range { place } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    #[test]
+    fn a_turning_shaft_is_where_it_must_be() {
+        let mut shaft = Shaft::new(Layout::default(), 0, 60.0);
+        let place = |shaft: &Shaft, ms| (shaft.reading(at(ms)).multiturn, shaft.reading(at(ms)).singleturn);
+        assert_eq!(place(&shaft, 0), (0, 0));
+        assert_eq!(place(&shaft, 1_750), (1, 0x18000));
+        shaft.set_rpm(at(1_750), -60.0);
+        assert_eq!(place(&shaft, 2_750), (0, 0x18000));
+        assert_eq!(place(&shaft, 3_750), (0xFFFF, 0x18000), "below zero it is at the end of the range");
+    }
+
+    #[test]
+    fn parts_of_a_step_are_seen_too() {
+        // 60 rpm: 2^17 steps a second, 131.072 in a millisecond; 0.072 of 256 parts are 18.4.
+        let shaft = Shaft::new(Layout::default(), 5, 60.0);
+        assert_eq!((shaft.fine(at(0)), shaft.fine(at(1))), (5 << 8, 136 << 8 | 18));
+    }
+
+    #[test]
+    fn a_preset_shifts_what_it_is_asked_to() {
+        let mut shaft = Shaft::new(Layout::default(), 5 << 17 | 0x100, 0.0);
+        let place = |shaft: &Shaft| (shaft.reading(at(9)).multiturn, shaft.reading(at(9)).singleturn);
+        shaft.preset(at(0), Some(0x18000), None);
+        assert_eq!(place(&shaft), (5, 0x18000));
+        shaft.preset(at(0), None, Some(0xFFFF));
+        assert_eq!(place(&shaft), (0xFFFF, 0x18000));
+        shaft.preset(at(0), Some(0), Some(0));
+        assert_eq!(place(&shaft), (0, 0));
+    }
+}

@@ -1,0 +1,82 @@
+//! What a host sees of the virtual kit encoder, in virtual time. Expected values are the manual's and the reference's;
+//! none is computed by the code under test.
+
+mod at_adapter;
+mod modes;
+mod motor;
+mod registers;
+mod storage;
+mod ubicom;
+
+use std::time::Duration;
+
+use super::*;
+use crate::devices::biss::protocol::RegisterAddress;
+use crate::units::Moment;
+
+/// Somebody who reads and writes registers by their names, without any line.
+struct Host {
+    encoder: Encoder,
+    now: Moment,
+}
+
+impl Host {
+    /// With the query of a `sim:` link.
+    fn with(query: &str) -> Self {
+        Host { encoder: Encoder::new(&config(query)), now: Moment::START }
+    }
+
+    fn read(&mut self, register: &str) -> u8 {
+        self.encoder.read(self.now, address(register)).unwrap()
+    }
+
+    fn write(&mut self, register: &str, value: u8) -> bool {
+        self.encoder.write(self.now, address(register), value)
+    }
+
+    /// Writes what the encoder has to accept.
+    #[track_caller]
+    fn put(&mut self, register: &str, value: u8) {
+        assert!(self.write(register, value), "{register} = {value:02X}");
+    }
+
+    #[track_caller]
+    fn expect(&mut self, register: &str, value: u8) {
+        assert_eq!(self.read(register), value, "{register}");
+    }
+
+    /// The prologue of every procedure.
+    #[track_caller]
+    fn enter(&mut self, mode: u8) {
+        self.put("0x6B", 0x2A);
+        self.put("0x6A", mode);
+        self.expect("0x6A", mode);
+    }
+
+    fn wait(&mut self, seconds: f64) {
+        self.now = self.now + Duration::from_secs_f64(seconds);
+    }
+
+    fn turn(&mut self, rpm: f64) {
+        self.encoder.set_rpm(self.now, rpm);
+    }
+
+    fn answers(&mut self) -> bool {
+        self.encoder.answers(self.now)
+    }
+
+    /// Multiturn and singleturn.
+    fn position(&mut self) -> Option<(u32, u32)> {
+        self.encoder.reading(self.now).map(|reading| (reading.multiturn, reading.singleturn))
+    }
+}
+
+fn config(query: &str) -> Config {
+    let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
+    Config::from_pairs(&pairs).unwrap()
+}
+
+fn address(register: &str) -> RegisterAddress {
+    register.parse().unwrap()
+}

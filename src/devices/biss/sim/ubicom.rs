@@ -1,0 +1,197 @@
+//! The configuration pin: UBICOM on a half-duplex line, byte for byte, with its faults. Chosen here (`U`): the encoder
+//! answers a millisecond after the last byte; what it does not understand it does not answer; what comes while it works
+//! or talks is lost.
+
+use std::time::Duration;
+
+use super::config::Config;
+use super::encoder::Encoder;
+use crate::bits::ByteOrder;
+use crate::buses::ubicom::protocol::{
+    BYTE_TIME_OUT, FORMAT, Frame, NODE, Receiver, Reply, Request, Written, character_bits,
+};
+use crate::devices::biss::protocol::RegisterAddress;
+use crate::sim::Faults;
+use crate::sim::line::{Line, Queue, Wires};
+use crate::units::Moment;
+
+/// The line with its encoder, seen from the host. Made of a [`Config`].
+#[derive(Clone)]
+pub struct Port {
+    encoder: Encoder,
+    receiver: Receiver,
+    order: ByteOrder,
+    echo: bool,
+    wires: Wires,
+    /// Bytes by the moment in which they have arrived.
+    to_encoder: Queue<u8>,
+    to_host: Queue<u8>,
+    /// When the encoder heard the last byte of a frame that is not complete.
+    heard: Option<Moment>,
+    work: Option<Work>,
+    /// Until then the encoder drives the line.
+    talks_until: Moment,
+    frames: u32,
+}
+
+/// A request that the encoder is working on.
+#[derive(Clone, Copy)]
+struct Work {
+    ends: Moment,
+    request: Request,
+}
+
+/// Of events at the same moment the first of these happens first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Event {
+    EncoderAnswers,
+    EncoderHears,
+    FrameEnds,
+    HostReceives,
+}
+
+impl Port {
+    const PROCESSING: Duration = Duration::from_millis(1);
+
+    /// The virtual line as `config` wants it.
+    pub fn new(config: &Config) -> Self {
+        Port {
+            encoder: Encoder::new(config),
+            receiver: Receiver::new(NODE),
+            order: config.order,
+            echo: config.echo,
+            wires: Wires::new(&config.faults, config.seed, FORMAT),
+            to_encoder: Queue::default(),
+            to_host: Queue::default(),
+            heard: None,
+            work: None,
+            talks_until: Moment::START,
+            frames: 0,
+        }
+    }
+
+    /// The encoder.
+    pub const fn encoder(&self) -> &Encoder {
+        &self.encoder
+    }
+
+    /// The encoder, to turn its shaft or to warm it.
+    pub const fn encoder_mut(&mut self) -> &mut Encoder {
+        &mut self.encoder
+    }
+
+    /// Other faults from now on: a cable that was mended, or one that breaks only now. Frames and stores are counted on.
+    pub fn set_faults(&mut self, faults: &Faults) {
+        self.wires.faults = faults.clone();
+        self.encoder.set_faults(faults);
+    }
+
+    fn hear(&mut self) {
+        let Some((at, byte)) = self.to_encoder.pop() else { return };
+        if self.work.is_some() || at <= self.talks_until || !self.encoder.answers(at) {
+            (self.receiver, self.heard) = (Receiver::new(NODE), None);
+            return;
+        }
+        self.receiver.push(&[byte]);
+        while let Some(frame) = self.receiver.next_frame() {
+            self.take(at, &frame);
+        }
+        self.heard = self.receiver.is_waiting().then_some(at);
+    }
+
+    fn end_frame(&mut self, at: Moment) {
+        self.heard = None;
+        while let Some(frame) = self.receiver.silence() {
+            self.take(at, &frame);
+        }
+    }
+
+    /// A whole frame has come. Only one request is worked on at a time.
+    fn take(&mut self, at: Moment, frame: &[u8]) {
+        let silent = self.wires.faults.silent_after().is_some_and(|frames| frames <= self.frames);
+        self.frames = self.frames.saturating_add(1);
+        let request = Frame::parse(frame).ok().and_then(|frame| Request::parse(&frame, self.order).ok());
+        if let Some(request) = request.filter(|_| !silent && self.work.is_none()) {
+            self.work = Some(Work { ends: at + Self::PROCESSING + self.wires.faults.delay(), request });
+        }
+    }
+
+    fn answer(&mut self, at: Moment) {
+        let Some(Work { request, .. }) = self.work.take() else { return };
+        let reply = match request {
+            Request::Read { register } => RegisterAddress::from_global(register)
+                .and_then(|address| self.encoder.read(at, address))
+                .map(Reply::Value),
+            Request::Write { register, value } => {
+                let accepted = RegisterAddress::from_global(register)
+                    .is_some_and(|address| self.encoder.write(at, address, value));
+                Some(Reply::Written(if accepted { Written::Acknowledged } else { Written::Refused }))
+            }
+            Request::Position { argument: 0x01 } => {
+                let layout = self.encoder.layout().clone();
+                self.encoder.reading(at).map(|reading| Reply::Position(layout.position_word(&reading)))
+            }
+            Request::Position { .. } => None,
+        };
+        // A write that cost the encoder its power is not answered any more.
+        if let Some(reply) = reply.filter(|_| self.encoder.has_power()) {
+            self.talks_until = self.drive(at, &reply.emit(), true);
+        }
+    }
+
+    /// Puts bytes on the line and gives the moment when the last one is through.
+    fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
+        let format = if from_encoder { FORMAT } else { self.wires.host };
+        let sent = self.wires.send(start, format.baud.time_of_bits(character_bits(format)), bytes);
+        for heard in sent.heard {
+            // Between different settings no byte is read as it was sent.
+            let byte = if self.wires.host == FORMAT { heard.byte } else { self.wires.rng.u8(..0x80) };
+            let to = if from_encoder { &mut self.to_host } else { &mut self.to_encoder };
+            to.insert(heard.end, byte);
+        }
+        if self.echo && !from_encoder {
+            sent.own.iter().for_each(|own| self.to_host.insert(own.end, own.byte));
+        }
+        sent.end
+    }
+}
+
+impl Line for Port {
+    type Event = Event;
+
+    fn wires(&self) -> &Wires {
+        &self.wires
+    }
+
+    fn wires_mut(&mut self) -> &mut Wires {
+        &mut self.wires
+    }
+
+    fn next_event(&self) -> Option<(Moment, Event)> {
+        let answering = self.work.map(|work| (work.ends, Event::EncoderAnswers));
+        let hearing = self.to_encoder.due().map(|at| (at, Event::EncoderHears));
+        let ending = self.heard.map(|at| (at + BYTE_TIME_OUT, Event::FrameEnds));
+        let receiving = self.to_host.due().map(|at| (at, Event::HostReceives));
+        [answering, hearing, ending, receiving].into_iter().flatten().min()
+    }
+
+    fn happen(&mut self, at: Moment, event: Event) {
+        match event {
+            Event::EncoderAnswers => self.answer(at),
+            Event::EncoderHears => self.hear(),
+            Event::FrameEnds => self.end_frame(at),
+            Event::HostReceives => {
+                let byte = self.to_host.pop().map(|(_, byte)| byte);
+                self.wires.inbox.extend(byte);
+            }
+        }
+    }
+
+    fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment {
+        self.drive(start, bytes, false)
+    }
+
+    fn give_power(&mut self, now: Moment) {
+        self.encoder.connect(now);
+    }
+}

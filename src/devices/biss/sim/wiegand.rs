@@ -1,0 +1,102 @@
+//! The test of the Wiegand sensor (manual 6.3): pulses are collected for 515 revolutions in each direction. The encoder
+//! does not know which direction is which; chosen here (`U`): it notices that the second run turns as the first did, and
+//! a sensor without pulses fails with code 01h.
+
+use crate::devices::biss::protocol::{WiegandCommand, WiegandStatus};
+use crate::units::Moment;
+
+/// What the sensor gives, in tenths of a volt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pulses {
+    /// Average; 0: no pulses at all.
+    pub(super) average: u8,
+    /// Average less four standard deviations.
+    pub(super) lowest: u8,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Wiegand {
+    pub(super) command: u8,
+    pub(super) status: WiegandStatus,
+    pub(super) error: u8,
+    /// In the order of the registers.
+    pub(super) result: [u8; 4],
+    /// Revolutions since the run began, until `since`.
+    collected: f64,
+    since: Moment,
+    /// The first run turned clockwise.
+    first_clockwise: Option<bool>,
+}
+
+impl Wiegand {
+    const REVOLUTIONS: f64 = 515.0;
+    const NO_PULSES: u8 = 0x01;
+
+    pub(super) fn new() -> Self {
+        Wiegand {
+            command: 0,
+            status: WiegandStatus::Stopped,
+            error: 0,
+            result: [0; 4],
+            collected: 0.0,
+            since: Moment::START,
+            first_clockwise: None,
+        }
+    }
+
+    /// A command is written; `false`: it is refused. Saving is the [`Encoder`](super::Encoder)'s matter.
+    pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
+        let status = match (WiegandCommand::from_byte(value), self.status) {
+            (WiegandCommand::Stop, _) => WiegandStatus::Stopped,
+            (WiegandCommand::StartClockwise, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise) => {
+                return false;
+            }
+            (WiegandCommand::StartClockwise, _) => {
+                (self.result, self.error, self.first_clockwise) = ([0; 4], 0, None);
+                WiegandStatus::Clockwise
+            }
+            (WiegandCommand::StartCounterclockwise, WiegandStatus::WaitForDirection) => WiegandStatus::Counterclockwise,
+            _ => return false,
+        };
+        self.command = value;
+        self.status = status;
+        (self.collected, self.since) = (0.0, now);
+        true
+    }
+
+    pub(super) fn is_running(&self) -> bool {
+        matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
+    }
+
+    /// Takes the revolutions since the last call, and ends a run that has enough of them. The speed did not change in
+    /// between.
+    pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: Pulses) {
+        if !self.is_running() {
+            return;
+        }
+        self.collected += now.since(self.since).as_secs_f64() * rpm.abs() / 60.0;
+        self.since = now;
+        let clockwise = rpm > 0.0;
+        let second = self.status == WiegandStatus::Counterclockwise;
+        if second && rpm != 0.0 && self.first_clockwise == Some(clockwise) {
+            self.status = WiegandStatus::WrongDirection;
+        } else if self.collected >= Self::REVOLUTIONS && pulses.average == 0 {
+            (self.status, self.error) = (WiegandStatus::Failed, Self::NO_PULSES);
+        } else if self.collected >= Self::REVOLUTIONS {
+            let [average_cw, lowest_cw, average_ccw, lowest_ccw] = &mut self.result;
+            if second {
+                (*average_ccw, *lowest_ccw) = (pulses.average, pulses.lowest);
+                self.status = WiegandStatus::Complete;
+            } else {
+                (*average_cw, *lowest_cw) = (pulses.average, pulses.lowest);
+                self.first_clockwise = Some(clockwise);
+                self.status = WiegandStatus::WaitForDirection;
+            }
+        }
+    }
+
+    /// The mode is left, or power is lost. The result stays until power is lost.
+    pub(super) fn abandon(&mut self) {
+        (self.command, self.status) = (0, WiegandStatus::Stopped);
+    }
+}

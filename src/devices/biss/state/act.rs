@@ -1,0 +1,143 @@
+//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+
+use std::time::Duration;
+
+use super::action::Action;
+use super::encoder::Encoder;
+use super::words;
+use crate::app::Text;
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::devices::biss::jobs::BissJob;
+use crate::devices::biss::profile::{BissProfile, RegisterRange};
+use crate::devices::biss::protocol::{Area, Register, RegisterAddress};
+use crate::profile::Body;
+
+use super::table::Group;
+use crate::devices::biss::state::explain as explained;
+
+/// How often a watched register is read: what is watched changes slowly, and the position has to wait for it.
+const WATCHED_EVERY: Duration = Duration::from_millis(500);
+
+impl Encoder {
+    /// Does what is asked.
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) | Action::PlanMounting { .. } => {}
+            Action::Review => self.review_edits(services),
+            Action::Read => {
+                if !self.session.read_file_again(services) {
+                    self.submit(BissJob::Survey, services);
+                }
+            }
+            Action::ReadStatus => self.submit(BissJob::Status, services),
+            Action::Check => self.submit(BissJob::Check, services),
+            Action::ReadPosition => self.submit(BissJob::Position, services),
+            Action::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            Action::Watch(register, on) => self.watch(*register, on),
+            Action::ReadBank(bank) => self.read_bank(bank, services),
+            Action::SeeBank(bank) => {
+                // Only when nothing else is to be done, also no stream that it would interrupt, and only once.
+                let free = self.session.is_ready() && self.streamed().is_none();
+                if free && self.seen.insert(bank) {
+                    self.read_bank(bank, services);
+                }
+            }
+            Action::ReadArea(first) => self.read_area(first, services),
+            Action::Put { start, bytes } => self.put(start, &bytes, services),
+            Action::Undo => self.memory.undo(),
+            Action::Redo => self.memory.redo(),
+            Action::RevertAll => self.memory.revert(),
+            Action::Revert { start, count } => self.memory.revert_range(start, count),
+            Action::Plan(change) => self.plan(*change, services),
+            Action::Answer(task, answer) => self.answer(task, answer),
+            Action::CloseGuide => self.close_guide(),
+            Action::LeadBack => self.submit(BissJob::LeadBack, services),
+            Action::Turn(rpm) => {
+                if let Some(motor) = &self.motor {
+                    motor.set_rpm(rpm);
+                }
+            }
+            Action::AskSave => self.session.ask_where_to_save(services),
+            Action::Save(path) => self.save(path, services),
+            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// Watches a register beside the position, or no more.
+    fn watch(&mut self, register: Register, on: bool) {
+        let mut watched = self.record.watched();
+        watched.retain(|own| own.address != register.address);
+        if on {
+            watched.push(register);
+        }
+        self.record.watch(&watched);
+        self.wish_watched();
+    }
+
+    /// Tells the session what is watched.
+    pub(super) fn wish_watched(&mut self) {
+        let ranges = self.record.watched().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
+        if let Some(line) = &self.session.line {
+            line.watch(ranges.map(|range| (range, WATCHED_EVERY)).collect());
+        }
+    }
+
+    fn read_bank(&mut self, bank: Option<u8>, services: &mut Services) {
+        let job = match bank {
+            None => BissJob::ReadDirect,
+            Some(bank) => BissJob::ReadBank(bank),
+        };
+        self.submit(job, services);
+    }
+
+    fn read_area(&mut self, first: u8, services: &mut Services) {
+        let area = self.description.iter().flat_map(|own| own.areas()).find(|own| own.first == first).cloned();
+        if let Some(area) = area {
+            self.submit(BissJob::ReadArea(area), services);
+        }
+    }
+
+    /// A bank is worth being read when it comes in sight: it was not, nothing runs, no
+    /// stream would be interrupted, and it was not tried in vain.
+    pub fn wants(&self, group: &Group) -> bool {
+        let free = self.session.is_ready() && self.streamed().is_none();
+        free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
+    }
+
+    /// What can be shown of an area: of a profile as much as it holds, of an encoder only the whole.
+    pub fn shown(&self, area: &Area) -> Option<Area> {
+        if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
+    }
+
+    /// Why an area cannot be edited now; `None`: it can.
+    pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
+        if !area.access.writes() {
+            return Some(Text::new("data.read_only"));
+        }
+        // A profile is a text: what it says about access does not protect it.
+        (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))
+    }
+
+    fn put(&mut self, start: RegisterAddress, bytes: &[u8], services: &mut Services) {
+        if self.session.is_writing() {
+            return self.session.refuse(Text::new("session.busy"), services);
+        }
+        let Some(description) = self.description.clone() else { return };
+        if let Err(error) = self.memory.put(&description, start, bytes) {
+            self.session.refuse(words::not_edited(error), services);
+        }
+    }
+
+    /// A profile was read for a file.
+    pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
+        let edits = self.is_dirty().then(|| self.edits());
+        let remarks = explained::saved_unsaved(&profile).into_iter().collect();
+        self.session.write_read(Body::new(profile), edits, remarks, services);
+    }
+}

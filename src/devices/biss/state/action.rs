@@ -1,0 +1,83 @@
+//! What can be asked of a BiSS encoder that is shown.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use crate::app::studio::SessionId;
+use crate::devices::biss::jobs::Change;
+use crate::devices::biss::procedures::procedure::{Answer, Task};
+use crate::devices::biss::profile::{MotorSource, MountingRun};
+use crate::devices::biss::protocol::{Register, RegisterAddress};
+
+/// Something in the BiSS tab.
+pub enum Action {
+    /// Open the link again, after it was lost or could not be opened.
+    Reconnect,
+    /// Read everything again; edits stay.
+    Read,
+    /// Read errors, warnings, temperature and mode.
+    ReadStatus,
+    /// The device check.
+    Check,
+    /// Read the position once.
+    ReadPosition,
+    /// Read the position all the time, or no more.
+    Poll(Option<Duration>),
+    /// While the position is read all the time, read this too, or no more.
+    Watch(Box<Register>, bool),
+    /// Read a bank; `None`: the direct registers.
+    ReadBank(Option<u8>),
+    /// Read a bank that is in sight and was never read, when nothing else is to be done.
+    SeeBank(Option<u8>),
+    /// Read an area of plain data, by its first bank.
+    ReadArea(u8),
+    /// Edit bytes of plain data.
+    Put {
+        /// First byte.
+        start: RegisterAddress,
+        /// The bytes.
+        bytes: Vec<u8>,
+    },
+    /// Take the last edit back.
+    Undo,
+    /// Do it again.
+    Redo,
+    /// Take all edits back.
+    RevertAll,
+    /// Take the edits of a range back.
+    Revert {
+        /// First byte.
+        start: RegisterAddress,
+        /// How many.
+        count: usize,
+    },
+    /// Show what writing the edits would do.
+    Review,
+    /// Show what a change would do.
+    Plan(Box<Change>),
+    /// Show what a mounting run would do; the plain data comes from a profile that is open in another session.
+    PlanMounting {
+        /// What is done, without the data.
+        run: Box<MountingRun>,
+        /// What turns the motor.
+        motor: MotorSource,
+        /// Whose data.
+        data: Option<SessionId>,
+    },
+    /// Answer what a procedure asks.
+    Answer(Task, Answer),
+    /// Put a procedure that is over away.
+    CloseGuide,
+    /// Back to operation, with the password cleared.
+    LeadBack,
+    /// Turn the virtual encoder's shaft, in revolutions a minute.
+    Turn(f64),
+    /// Ask where to save the profile.
+    AskSave,
+    /// Save the profile.
+    Save(PathBuf),
+    /// Show what restoring a backup would do.
+    Restore(PathBuf),
+    /// Show what writing this profile into a connected encoder would do.
+    WriteInto(SessionId),
+}

@@ -1,0 +1,347 @@
+//! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
+
+use crate::app::Text;
+use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
+use crate::bits::ByteOrder;
+use crate::buses::bridge::procedures::SupplyAfter;
+use crate::buses::bridge::sim as bridge;
+use crate::buses::ubicom::protocol::FORMAT;
+use crate::devices::biss::jobs::check;
+use crate::devices::biss::procedures::{Echo, PARAMETERS, Way};
+use crate::devices::biss::sim;
+use crate::link::{LinkUrl, Scheme};
+use crate::sim::AT_ADAPTER;
+use crate::units::Parity;
+
+/// How the encoder is reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BissWay {
+    /// The virtual encoder in this program.
+    #[default]
+    Virtual,
+    /// Its configuration pin, over a serial line.
+    Pin,
+    /// Its bus, over an adapter.
+    Bus,
+    /// A recorded trace.
+    Replay,
+}
+
+/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
+/// for what is usual.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BissForm {
+    /// How the encoder is reached.
+    pub way: BissWay,
+    /// The virtual encoder stands behind a virtual adapter; what was recorded passed an adapter.
+    pub behind_adapter: bool,
+    /// Over a network, and not a serial port of this machine.
+    pub network: bool,
+    /// Serial port.
+    pub port: String,
+    /// Name or address of a device server.
+    pub host: String,
+    /// Its TCP port.
+    pub tcp_port: String,
+    /// The recording.
+    pub file: String,
+    /// Bits a second on the configuration pin; empty: 115200.
+    pub baud: String,
+    /// Parity on the configuration pin.
+    pub parity: Parity,
+    /// Which byte of a register's number comes first on the configuration pin; `None`: find out.
+    pub order: Option<ByteOrder>,
+    /// Whether the line gives our own bytes back; unknown: find out.
+    pub echo: Echo,
+    /// The clock on the bus in hertz.
+    pub clock: String,
+    /// The adapter leaves the encoder's supply on at the end.
+    pub leave_supply: bool,
+    /// Bits of turns of an encoder that does not tell its frame.
+    pub turns: String,
+    /// Bits of steps of such an encoder.
+    pub steps: String,
+    /// The polynomial of its checksum; empty: the usual one.
+    pub crc: String,
+    /// Milliseconds that a reply may come later than usual.
+    pub margin: String,
+    /// The virtual encoder's speed in revolutions a minute.
+    pub rpm: String,
+    /// What goes wrong with it on purpose.
+    pub fault: String,
+    /// Parameters of the link that have no entry.
+    pub rest: Vec<(String, String)>,
+}
+
+/// The parameter that puts the virtual adapter in front of the virtual encoder.
+const BRIDGE: (&str, &str) = ("bridge", "on");
+
+impl Default for BissForm {
+    fn default() -> Self {
+        let none = String::new;
+        BissForm {
+            way: BissWay::default(),
+            behind_adapter: true,
+            network: false,
+            port: none(),
+            host: none(),
+            tcp_port: none(),
+            file: none(),
+            baud: none(),
+            parity: FORMAT.parity,
+            order: None,
+            echo: Echo::Unknown,
+            clock: none(),
+            leave_supply: false,
+            turns: none(),
+            steps: none(),
+            crc: none(),
+            margin: none(),
+            rpm: none(),
+            fault: none(),
+            rest: Vec::new(),
+        }
+    }
+}
+
+impl BissForm {
+    /// The virtual encoder as the window begins with it: behind an adapter, so that everything can be seen.
+    pub fn usual() -> LinkUrl {
+        let mut url = LinkUrl::sim();
+        url.query.set(BRIDGE.0, BRIDGE.1);
+        url
+    }
+
+    /// The form filled in as a link says.
+    pub fn from_url(url: &LinkUrl) -> Self {
+        let mut form = BissForm { behind_adapter: false, ..BissForm::default() };
+        let target = url.target.as_str();
+        let network = match url.scheme {
+            Scheme::Tcp => Some(target),
+            Scheme::Bridge => adapter_in_network(target),
+            _ => None,
+        };
+        form.way = match url.scheme {
+            Scheme::Sim => BissWay::Virtual,
+            Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => BissWay::Pin,
+            Scheme::Bridge => BissWay::Bus,
+            Scheme::Replay => BissWay::Replay,
+        };
+        if let Some(network) = network {
+            form.network = true;
+            (form.host, form.tcp_port) = parted(network);
+        } else if form.way == BissWay::Replay {
+            form.file = target.to_owned();
+        } else {
+            form.port = target.to_owned();
+        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form
+    }
+
+    /// Fills in the entry of a parameter; false where there is none that can show it.
+    fn take(&mut self, name: &str, value: &str) -> bool {
+        if name == SupplyAfter::LEFT_ON.0 {
+            self.leave_supply = value == SupplyAfter::LEFT_ON.1;
+            return self.leave_supply;
+        }
+        let is_virtual = self.way == BissWay::Virtual;
+        let entry = match name {
+            "mt" => &mut self.turns,
+            "st" => &mut self.steps,
+            "crc" => &mut self.crc,
+            "margin" => &mut self.margin,
+            "clock" => &mut self.clock,
+            "baud" => &mut self.baud,
+            "rpm" if is_virtual => &mut self.rpm,
+            "fault" if is_virtual => &mut self.fault,
+            "bridge" if self.may_say_what_is_between() => {
+                self.behind_adapter = value == BRIDGE.1;
+                return self.behind_adapter;
+            }
+            "parity" => {
+                let Some(parity) = Parity::from_word(value) else { return false };
+                self.parity = parity;
+                return true;
+            }
+            "order" => {
+                self.order = match value {
+                    "low-first" => Some(ByteOrder::LowFirst),
+                    "high-first" => Some(ByteOrder::HighFirst),
+                    _ => return false,
+                };
+                return true;
+            }
+            "echo" => {
+                self.echo = match value {
+                    "on" => Echo::On,
+                    "off" => Echo::Off,
+                    _ => return false,
+                };
+                return true;
+            }
+            _ => return false,
+        };
+        value.clone_into(entry);
+        true
+    }
+
+    /// The link that the entries stand for. What is as usual is left out.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        checked(self.parameters().link(self.target()?)?, check)
+    }
+
+    /// The encoder is reached over its bus.
+    pub fn is_on_the_bus(&self) -> bool {
+        self.way == BissWay::Bus || (self.may_say_what_is_between() && self.behind_adapter)
+    }
+
+    /// A link of this kind leads to the configuration pin or to the bus.
+    pub fn may_say_what_is_between(&self) -> bool {
+        matches!(self.way, BissWay::Virtual | BissWay::Replay)
+    }
+
+    fn target(&self) -> Result<(Scheme, String), Text> {
+        let port = || entered(&self.port, "form.port_missing");
+        Ok(match self.way {
+            BissWay::Virtual => (Scheme::Sim, String::new()),
+            BissWay::Pin if self.network => (Scheme::Tcp, host_and_port(&self.host, &self.tcp_port)?),
+            BissWay::Pin => (Scheme::Serial, port()?),
+            BissWay::Bus if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
+            BissWay::Bus => (Scheme::Bridge, port()?),
+            BissWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        })
+    }
+
+    fn parameters(&self) -> Parameters {
+        let mut parameters = Parameters::default();
+        if self.may_say_what_is_between() && self.behind_adapter {
+            parameters.set(BRIDGE.0, BRIDGE.1);
+        }
+        if self.way == BissWay::Virtual {
+            parameters.decimal("rpm", &self.rpm);
+            parameters.entry("fault", &self.fault);
+        }
+        if self.is_on_the_bus() {
+            parameters.entry("clock", &self.clock);
+            if self.leave_supply {
+                parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
+            }
+        } else {
+            if filled(&self.baud).is_some_and(|baud| baud != FORMAT.baud.to_string()) {
+                parameters.entry("baud", &self.baud);
+            }
+            if self.parity != FORMAT.parity {
+                parameters.set("parity", self.parity.word());
+            }
+            match self.order {
+                None => {}
+                Some(ByteOrder::LowFirst) => parameters.set("order", "low-first"),
+                Some(ByteOrder::HighFirst) => parameters.set("order", "high-first"),
+            }
+            match self.echo {
+                Echo::Unknown => {}
+                Echo::On => parameters.set("echo", "on"),
+                Echo::Off => parameters.set("echo", "off"),
+            }
+        }
+        parameters.entry("mt", &self.turns);
+        parameters.entry("st", &self.steps);
+        parameters.entry("crc", &self.crc);
+        parameters.entry("margin", &self.margin);
+        parameters.rest(&self.rest, |name| self.belongs(name));
+        parameters
+    }
+
+    /// What only another way has is not taken along; what nothing has is, so that it is refused by its name.
+    fn belongs(&self, name: &str) -> bool {
+        let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
+        let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(&AT_ADAPTER).contains(&name));
+        let of_the_virtual = self.way == BissWay::Virtual && (encoder || (adapter && self.behind_adapter));
+        let elsewhere = PARAMETERS.contains(&name) || encoder || adapter || name == BRIDGE.0;
+        way.parameters().contains(&name) || of_the_virtual || !elsewhere
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_is_shown_and_comes_back_as_it_was() {
+        for link in [
+            "sim:",
+            "sim:?bridge=on",
+            "sim:?bridge=on&rpm=-500&fault=drop:0.01",
+            "sim:?rpm=500&order=high-first&echo=on",
+            "serial:/dev/ttyUSB0",
+            "serial:COM3?order=low-first&echo=off&margin=200",
+            "serial:/dev/ttyUSB0?baud=57600&parity=even&echo=on",
+            "tcp:192.168.0.7:4001?baud=9600",
+            "tcp:192.168.0.7:4001",
+            "tcp:[::1]:4001",
+            "bridge:/dev/ttyACM0?clock=2000000",
+            "bridge:tcp:adapter:5000",
+            // Issue 22.16: another choice than the check box stays in the link.
+            "bridge:/dev/ttyACM0?leave-supply=on",
+            "bridge:tcp:adapter:5000?clock=2000000&leave-supply=on",
+            "bridge:/dev/ttyACM0?leave-supply=off",
+            // Issue 22.20.
+            "bridge:/dev/ttyACM0?mt=12&st=19&crc=0x43",
+            "serial:/dev/ttyUSB0?st=14&crc=none",
+            "replay:monday.trace",
+            "replay:monday.trace?bridge=on&clock=2000000",
+            "sim:?bridge=on&noise=0.1&temperature=80",
+        ] {
+            let url: LinkUrl = link.parse().unwrap();
+            assert_eq!(BissForm::from_url(&url).url().unwrap().to_string(), link);
+        }
+        assert_eq!(BissForm::usual().to_string(), "sim:?bridge=on");
+        assert_eq!(BissForm::default().url().unwrap(), BissForm::usual());
+    }
+
+    #[test]
+    fn another_way_takes_along_only_what_it_has() {
+        let other = |link: &str, change: fn(&mut BissForm)| {
+            let mut form = BissForm::from_url(&link.parse().unwrap());
+            change(&mut form);
+            form.url().unwrap().to_string()
+        };
+        let to_pin: fn(&mut BissForm) = |form| (form.way, form.port) = (BissWay::Pin, "COM3".to_owned());
+        assert_eq!(other("sim:?bridge=on&noise=0.1&temperature=80&rpm=5&margin=7", to_pin), "serial:COM3?margin=7");
+        assert_eq!(other("bridge:COM3?clock=2000000&voltage=5&leave-supply=on", to_pin), "serial:COM3");
+        assert_eq!(other("serial:COM3?timeout=50&order=low-first", |form| form.way = BissWay::Bus), "bridge:COM3");
+        assert_eq!(other("sim:?bridge=on&noise=0.1&rpm=5", |form| form.behind_adapter = false), "sim:?rpm=5");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_entry() {
+        let refused = |change: fn(&mut BissForm)| {
+            let mut form = BissForm::default();
+            change(&mut form);
+            form.url().unwrap_err().id()
+        };
+        assert_eq!(refused(|form| form.way = BissWay::Pin), "form.port_missing");
+        assert_eq!(refused(|form| form.way = BissWay::Bus), "form.port_missing");
+        assert_eq!(refused(|form| (form.way, form.network) = (BissWay::Bus, true)), "form.host_missing");
+        assert_eq!(refused(|form| form.way = BissWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.margin");
+        assert_eq!(refused(|form| form.clock = "1".to_owned()), "form.clock");
+        assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
+        assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
+        assert_eq!(refused(|form| form.rest = vec![("motor".to_owned(), "none".to_owned())]), "form.parameter");
+        let fast =
+            |form: &mut BissForm| (form.way, form.port, form.baud) = (BissWay::Pin, "COM3".into(), "fast".into());
+        assert_eq!(refused(fast), "form.parameter");
+        assert_eq!(refused(|form| (form.way, form.port) = (BissWay::Pin, "a?b".to_owned())), "form.characters");
+        let colour = |form: &mut BissForm| {
+            (form.way, form.port) = (BissWay::Pin, "COM3".to_owned());
+            form.rest = vec![("colour".to_owned(), "green".to_owned())];
+        };
+        assert_eq!(refused(colour), "form.other");
+    }
+}

@@ -1,0 +1,151 @@
+//! What a register says in words: as its description decodes it, and beyond that what the program knows of registers with
+//! a role and of the data sheet.
+
+use super::encoder::Encoder;
+use super::table::Shown;
+use super::words;
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::app::number::decimals;
+use crate::devices::biss::protocol::{Decoded, Eds, EdsBank, ProfileId, Register, RegisterAddress, Role};
+use crate::devices::biss::state::explain as explained;
+
+impl Encoder {
+    /// What a register says; `None` where it was not read, and where it says no more than its number.
+    pub fn meaning(&self, shown: &Shown<'_>) -> Option<Text> {
+        let register = &shown.row.register;
+        let bytes = shown.bytes.as_deref()?;
+        if let Some(text) = register.role.and_then(|role| self.of_role(role, bytes)) {
+            return Some(text);
+        }
+        Some(match register.decode(bytes)? {
+            Decoded::Scaled(value) => quantity(value, &register.unit),
+            Decoded::Number(number) if !register.unit.is_empty() => quantity(number as f64, &register.unit),
+            Decoded::Number(_) | Decoded::Hex(_) => return self.of_data_sheet(register, bytes),
+            Decoded::Bits(set) if set.is_empty() => Text::new("registers.no_bit"),
+            Decoded::Bits(set) => {
+                let named =
+                    |(bit, name): (u8, Option<_>)| name.map_or_else(|| plain(format!("b{bit}")), explained::name);
+                Text::new("plain.words").with_list("words", set.into_iter().map(named))
+            }
+            Decoded::Choice(_, Some(name)) => explained::name(name),
+            Decoded::Choice(_, None) => Text::new("registers.unknown_value"),
+            Decoded::Text(text) => plain(text),
+        })
+    }
+
+    fn of_role(&self, role: Role, bytes: &[u8]) -> Option<Text> {
+        let description = self.description.as_deref()?;
+        match (role, bytes) {
+            (Role::BankSelect | Role::EdsBank, [bank]) => {
+                let group = self.table.position(Some(*bank)).and_then(|at| self.table.groups().get(at));
+                group.and_then(|group| group.name.as_ref()).map(explained::name)
+            }
+            (Role::Profile, [high, low]) => {
+                let is_standard = ProfileId::new(u16::from_be_bytes([*high, *low])).is_standard_encoder();
+                Some(Text::new(if is_standard { "registers.standard" } else { "registers.other_profile" }))
+            }
+            (Role::Password, [byte]) => {
+                let is_open = *byte == description.lock()?.password;
+                Some(Text::new(if is_open { "registers.open" } else { "registers.locked" }))
+            }
+            (Role::DeviceId, bytes) => {
+                let is_own = description.identity()?.device_id == bytes;
+                Some(if is_own { plain(description.name()) } else { Text::new("registers.other_device") })
+            }
+            _ => None,
+        }
+    }
+
+    /// Fields of the data sheet that need more than a description can say: times, banks, polynomials, its sum.
+    fn of_data_sheet(&self, register: &Register, bytes: &[u8]) -> Option<Text> {
+        let offset = register.address.address();
+        let bank = [EdsBank::Common, EdsBank::Encoder]
+            .into_iter()
+            .find(|own| !register.name.is_empty() && register.address.bank() == Some(own.number()))?;
+        if offset == Eds::CHECKSUM_OFFSET {
+            let all = self.memory.bytes(RegisterAddress::start_of(bank.number()), RegisterAddress::BANK_SIZE.into())?;
+            return Some(match Eds::parse(bank, all.try_into().ok()?) {
+                Ok(_) => Text::new("sheet_card.sum"),
+                Err(_) => Text::new("registers.wrong_sum"),
+            });
+        }
+        let field = bank.fields().iter().find(|field| field.offset == offset)?;
+        let mut own = [0; 64];
+        own.get_mut(usize::from(offset)..usize::from(offset) + bytes.len())?.copy_from_slice(bytes);
+        words::beyond_number(field.value(&own))
+    }
+}
+
+/// A quantity with its unit, three decimals at most.
+fn quantity(value: f64, unit: &str) -> Text {
+    let value = (value * 1000.0).round() / 1000.0;
+    Text::new("registers.quantity").with_number("value", value, decimals(value)).with("unit", unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::app::Language;
+    use crate::app::studio::SessionId;
+    use crate::devices::biss::protocol::Descriptions;
+
+    fn said(encoder: &Encoder, at: &str, language: Language) -> String {
+        let at: RegisterAddress = at.parse().unwrap();
+        let group = &encoder.table.groups()[encoder.table.position(at.bank()).unwrap()];
+        let row = group.rows().iter().position(|row| row.register.address == at).unwrap();
+        let shown = group.shown(row, &encoder.memory).unwrap();
+        encoder.meaning(&shown).map(|text| text.words(language)).unwrap_or_default()
+    }
+
+    /// Reference 4: every register that needs more than its number to be understood.
+    #[test]
+    fn every_register_of_the_reference_says_what_it_means() {
+        let mut encoder = Encoder::at_link(SessionId::default(), "sim:".parse().unwrap());
+        let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
+        encoder.describe(Some(Arc::new(kit.clone())));
+        for register in kit.registers() {
+            let bytes =
+                if register.default.is_empty() { vec![0; register.width.into()] } else { register.default.clone() };
+            encoder.memory.take(register.address, &bytes);
+        }
+        for bank in [EdsBank::Common, EdsBank::Encoder] {
+            encoder.memory.take(RegisterAddress::start_of(bank.number()), &Eds::delivered(bank).emit());
+        }
+        for (at, byte) in [("0x66", 0x4B), ("0x68", 0x12), ("0x40", 0x24), ("0x00:0x09", 53)] {
+            encoder.memory.take(at.parse().unwrap(), &[byte]);
+        }
+        for (at, english, german) in [
+            ("0x40", "OEM data", "OEM-Daten"),
+            ("0x41", "EDS, common", "EDS, allgemein"),
+            ("0x42", "BiSS profile 3", "BiSS-Profil 3"),
+            ("0x66", "25 °C", "25 °C"),
+            (
+                "0x68",
+                "multiturn synchronisation error, magnetic field too low",
+                "Multiturn-Synchronisationsfehler, Magnetfeld zu schwach",
+            ),
+            ("0x6A", "operation", "Betrieb"),
+            ("0x6B", "device modes locked", "Gerätemodi gesperrt"),
+            ("0x6E", "balanced", "ausgewogen"),
+            ("0x78", "POSITAL IXARC kit encoder", "POSITAL IXARC kit encoder"),
+            ("0x7E", "Fr", "Fr"),
+            ("0x00:0x09", "5.3 V", "5,3 V"),
+            ("0x02:0x01", "2 banks", "2 Bänke"),
+            ("0x02:0x05", "7.00 µs at 250 ns", "7,00 µs bei 250 ns"),
+            ("0x02:0x11", "1 slave address", "1 Slave-Adresse"),
+            ("0x02:0x17", "0x43", "0x43"),
+            ("0x02:0x3F", "checksum fits", "Prüfsumme stimmt"),
+            ("0x03:0x04", "error, active low", "Fehler, aktiv 0"),
+            ("0x03:0x30", "-40 °C", "-40 °C"),
+            ("0x03:0x2C", "12000 1/min", "12000 1/min"),
+        ] {
+            assert_eq!(said(&encoder, at, Language::English), english, "{at}");
+            assert_eq!(said(&encoder, at, Language::German), german, "{at}");
+        }
+        encoder.memory.take("0x03:0x0A".parse().unwrap(), &[0x0C]);
+        assert_eq!(said(&encoder, "0x03:0x3F", Language::English), "checksum does not fit");
+    }
+}

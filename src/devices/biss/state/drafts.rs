@@ -1,0 +1,46 @@
+//! Edits of an encoder's plain data, kept over a crash: global address and byte.
+
+use super::encoder::Encoder;
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
+use crate::devices::biss::jobs::Biss;
+use crate::devices::biss::profile::BissProfile;
+use crate::profile::Document;
+
+/// Edited bytes: global address, byte.
+pub(crate) type Edits = Vec<(u16, u8)>;
+
+impl OnDesk for Encoder {
+    type Device = Biss;
+
+    fn session(&self) -> &Session<Biss> {
+        &self.session
+    }
+
+    fn session_mut(&mut self) -> &mut Session<Biss> {
+        &mut self.session
+    }
+}
+
+impl Drafted for Encoder {
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        self.key().map(|key| (key.device_type, key.serial_number))
+    }
+
+    fn edited(&self) -> Edits {
+        self.memory.edits()
+    }
+
+    fn take_edits(&mut self, edits: Edits) {
+        self.memory.take_draft(edits);
+    }
+
+    fn revert_edits(&mut self) {
+        self.memory.revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
+        let Some(profile) = document.body.get::<BissProfile>() else { return };
+        self.take_profile(profile);
+        self.session.take_document(file, document);
+    }
+}

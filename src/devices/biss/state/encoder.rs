@@ -1,0 +1,273 @@
+//! A BiSS encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its line.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::guide::Guide;
+use super::meaning::Meaning;
+use super::memory::Memory;
+use super::record::{Record, Streamed};
+use super::review::Review;
+use super::table::Table;
+use crate::app::check::CheckLine;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
+use crate::app::studio::SessionId;
+use crate::app::{Severity, Text};
+use crate::devices::biss::jobs::Biss;
+use crate::devices::biss::procedures::{Identity, Status, Survey};
+use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
+use crate::devices::biss::protocol::{Description, Descriptions, DeviceMode, Eds, EdsBank, EdsError};
+use crate::devices::biss::state::explain as words;
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::sim::Motor;
+
+/// A BiSS encoder, or a profile of one.
+pub struct Encoder {
+    /// What every session has.
+    pub session: Session<Biss>,
+    /// Everything there is to see of it, as it was found.
+    pub survey: Option<Survey>,
+    /// How it is, as it was last read.
+    pub status: Option<Status>,
+    /// The last device check.
+    pub check: Option<Vec<CheckLine>>,
+    /// What its registers are.
+    pub description: Option<Arc<Description>>,
+    /// Its registers and the edits beside them.
+    pub memory: Memory,
+    /// Its registers as a table.
+    pub table: Table,
+    /// What was recorded while it was polled.
+    pub record: Record,
+    /// A write on its way.
+    pub review: Option<Review>,
+    /// A procedure on its way, or as it ended.
+    pub guide: Option<Guide>,
+    /// Why data were not read the last time that somebody wanted it.
+    pub refusal: Option<Text>,
+    /// What turns the virtual encoder's shaft.
+    pub motor: Option<Motor>,
+    pub(super) meaning: Meaning,
+    /// Banks that were read because they came in sight, or could not be: they are not asked for by themselves again.
+    pub(super) seen: BTreeSet<Option<u8>>,
+    /// Banks that were written, to be read again.
+    pub(super) read_after: BTreeSet<u8>,
+}
+
+impl Encoder {
+    /// An encoder at a link that is being opened.
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+        Encoder::with(Session::at_link(id, url))
+    }
+
+    fn with(session: Session<Biss>) -> Self {
+        Encoder {
+            session,
+            survey: None,
+            status: None,
+            check: None,
+            description: None,
+            memory: Memory::default(),
+            table: Table::default(),
+            record: Record::default(),
+            review: None,
+            guide: None,
+            refusal: None,
+            motor: None,
+            meaning: Meaning::default(),
+            seen: BTreeSet::new(),
+            read_after: BTreeSet::new(),
+        }
+    }
+
+    /// A profile of an encoder.
+    pub(crate) fn in_file(
+        id: SessionId,
+        file: ProfileFile,
+        document: Document,
+        types: &Descriptions,
+        services: &Services,
+    ) -> Self {
+        let mut encoder = Encoder::with(Session::in_file(id, file, document.clone()));
+        if let Some(profile) = document.body.get::<BissProfile>() {
+            let described = types.named(&profile.identity.description).or_else(|| types.iter().last()).cloned();
+            encoder.describe(described.map(Arc::new));
+            encoder.take_profile(profile);
+        }
+        encoder.load_draft(services);
+        encoder
+    }
+
+    /// What its registers are, from now on.
+    pub(super) fn describe(&mut self, description: Option<Arc<Description>>) {
+        let sheet = self.survey.as_ref().and_then(|survey| survey.identity.data_sheet.as_ref());
+        let last = sheet.and_then(|sheet| sheet.common.eds.as_ref().ok()).and_then(Eds::last_user_bank);
+        self.table = description.as_ref().map(|own| Table::of(own, last)).unwrap_or_default();
+        self.description = description;
+    }
+
+    /// The registers that a profile holds.
+    pub(super) fn take_profile(&mut self, profile: &BissProfile) {
+        let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
+        for bank in profile.banks().chain(sheets) {
+            bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
+        }
+    }
+
+    /// The profile, where this is one.
+    pub fn profile(&self) -> Option<&BissProfile> {
+        let Source::File { document, .. } = &self.session.source else { return None };
+        document.body.get::<BissProfile>()
+    }
+
+    /// The profile as the user wants it, where this is one.
+    pub(crate) fn wanted_profile(&self) -> Option<BissProfile> {
+        let mut profile = self.profile()?.clone();
+        for (at, byte) in self.memory.wishes() {
+            profile.put(at, byte);
+        }
+        Some(profile)
+    }
+
+    /// Who it is, as far as that is known.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.survey.as_ref().map(|survey| &survey.identity)
+    }
+
+    /// Its data sheet, common part first: as it was found, or as a profile holds it.
+    pub fn data_sheet(&self) -> Option<[Result<Eds, EdsError>; 2]> {
+        if let Some(identity) = self.identity() {
+            return identity.data_sheet.as_ref().map(|sheet| [sheet.common.eds, sheet.encoder.eds]);
+        }
+        let banks = &self.profile()?.recorded.eds;
+        let parsed = |bank: EdsBank| {
+            let listed = banks.iter().find(|listed| listed.bank.number == bank.number())?;
+            Some(Eds::parse(bank, listed.bank.bytes))
+        };
+        Some([parsed(EdsBank::Common)?, parsed(EdsBank::Encoder)?])
+    }
+
+    /// An adapter is in between, which can stream positions.
+    pub fn streams(&self) -> bool {
+        self.identity().is_some_and(|own| own.adapter.is_some())
+    }
+
+    /// What an adapter streams now; `None` where it does not.
+    pub fn streamed(&self) -> Option<&Streamed> {
+        self.record.streamed().filter(|_| self.session.is_polling())
+    }
+
+    /// Who it was, where this is a profile.
+    pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
+        self.profile().map(|profile| &profile.identity)
+    }
+
+    /// Its serial number; empty where it does not tell, `None` where nothing has been read.
+    pub fn serial_number(&self) -> Option<&str> {
+        let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
+        self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
+    }
+
+    /// Bytes that are edited.
+    pub(crate) fn edits(&self) -> usize {
+        self.memory.edits().len()
+    }
+
+    pub(crate) fn can_undo(&self) -> bool {
+        self.memory.can_undo()
+    }
+
+    pub(crate) fn can_redo(&self) -> bool {
+        self.memory.can_redo()
+    }
+
+    /// There are edits that are not written.
+    pub fn is_dirty(&self) -> bool {
+        self.memory.is_dirty()
+    }
+
+    /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
+    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+        let fresh = std::mem::take(&mut self.session.just_connected);
+        // Without a serial number, it may be any of its type.
+        let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();
+        if unproven || self.is_another(&survey.identity) {
+            if self.memory.is_dirty() {
+                let kept = self.serial_number().is_some_and(|serial| !serial.is_empty());
+                let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
+                let text = text.with("serial", &survey.identity.serial_number);
+                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            }
+            self.forget_encoder(services);
+        }
+        let first = self.survey.is_none();
+        let Survey { identity, status, registers, .. } = &survey;
+        self.session.title = Some(title(identity));
+        self.status = Some(status.clone());
+        if let Some(position) = status.position {
+            self.record.add_position(position);
+        }
+        for (at, byte) in registers.iter() {
+            self.memory.take(at, &[byte]);
+        }
+        let description = identity.description.clone();
+        self.survey = Some(survey);
+        self.describe(Some(description));
+        if first {
+            self.load_draft(services);
+        }
+        if fresh {
+            self.log_answer(services);
+        }
+        self.list_backups(services);
+    }
+
+    /// The device mode in which registers were read just now; `None` in operation.
+    pub(super) fn see_mode(&mut self, unsaved: Option<DeviceMode>) {
+        if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
+            *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
+        }
+    }
+
+    /// The device mode in which its registers may show values that were never saved: of the encoder, or of a profile as it
+    /// was read.
+    pub fn unsaved(&self) -> Option<Text> {
+        if let Some(profile) = self.profile() {
+            return words::profile_unsaved(profile);
+        }
+        let mode = self.status.as_ref()?.mode.filter(|mode| *mode != DeviceMode::OPERATION)?;
+        Some(words::unsaved(mode))
+    }
+
+    /// Another encoder than the one that was read before.
+    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+        let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
+        self.identity().is_some_and(|known| who(known) != who(identity))
+    }
+
+    fn forget_encoder(&mut self, services: &mut Services) {
+        self.leave_draft(services);
+        self.survey = None;
+        self.status = None;
+        self.check = None;
+        self.session.title = None;
+        self.memory.clear();
+        self.record.forget();
+        self.session.backups = None;
+        self.session.writes = None;
+        self.session.statuses.clear();
+        self.seen.clear();
+        self.read_after.clear();
+        self.review = None;
+        self.guide = None;
+        self.refusal = None;
+    }
+}
+
+/// The name by which the log and the jobs call an encoder.
+fn title(identity: &Identity) -> String {
+    let name = identity.description.name();
+    if identity.serial_number.is_empty() { name.to_owned() } else { format!("{name} · {}", identity.serial_number) }
+}

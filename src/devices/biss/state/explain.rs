@@ -1,0 +1,241 @@
+//! A BiSS encoder in words: the errors of jobs with it, and what is said on the way.
+
+mod check;
+mod damage;
+mod guide;
+mod plan;
+mod write;
+
+pub use check::check;
+pub use damage::damage;
+pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
+pub use plan::{other_type, plan};
+pub use write::{change, failure, op, preset, wear, weight, written};
+
+use crate::app::Text;
+use crate::app::explain::{link, not_begun, store};
+use crate::buses::bridge::state::adapter;
+use crate::devices::biss::jobs::{Doing, JobError, Remark};
+use crate::devices::biss::procedures::{Asked, Error};
+use crate::devices::biss::profile::BissProfile;
+use crate::devices::biss::protocol::{DeviceMode, Mismatch, Name};
+use crate::link::LinkError;
+
+/// What a description of an encoder calls something.
+pub fn name(name: &Name) -> Text {
+    Text::new("plain.words").with_name("words", name.english(), name.german())
+}
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    match error {
+        JobError::Device(error) => vec![encoder(error)],
+        JobError::Plan(error) => vec![plan(error)],
+        JobError::NotBegun(why) => vec![not_begun(why)],
+        JobError::Interrupted { interrupted, backup, planned, kind } => {
+            write::interruption(interrupted, backup, *planned, *kind)
+        }
+    }
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    lost(error.device()?).map(link)
+}
+
+fn lost(error: &Error) -> Option<&LinkError> {
+    match error {
+        Error::Link(error) => Some(error),
+        Error::Unclear { cause, .. } => lost(cause),
+        _ => None,
+    }
+}
+
+/// An exchange with a BiSS encoder that failed.
+pub fn encoder(error: &Error) -> Text {
+    match error {
+        Error::Link(error) => link(error),
+        Error::Adapter(error) => adapter(error),
+        Error::NoReply { asked, tries, echo_heard } => {
+            let id = if *echo_heard { "biss.echo_only" } else { "biss.no_reply" };
+            Text::new(id).with_text("asked", self::asked(*asked)).with("tries", tries)
+        }
+        Error::Damaged { asked, tries, cause } => Text::new("biss.damaged")
+            .with_text("asked", self::asked(*asked))
+            .with("tries", tries)
+            .with_text("why", damage(cause)),
+        Error::NeverSilent => Text::new("biss.never_silent"),
+        Error::NoAcknowledge { tries, supply_off: false } => Text::new("biss.no_acknowledge").with("tries", tries),
+        Error::NoAcknowledge { tries, supply_off: true } => Text::new("biss.supply_off").with("tries", tries),
+        Error::StuckLow { tries } => Text::new("biss.stuck_low").with("tries", tries),
+        Error::StuckHigh { tries } => Text::new("biss.stuck_high").with("tries", tries),
+        Error::WrongWidths { frames, data_bits, crc_bits } => {
+            Text::new("biss.wrong_widths").with("frames", frames).with("data", data_bits).with("crc", crc_bits)
+        }
+        Error::WidthsUnknown { moving } => {
+            Text::new(if *moving { "biss.widths_unknown" } else { "biss.widths_at_rest" })
+        }
+        Error::NoSuchRegister { address } => Text::new("biss.no_such_register").with("address", address),
+        Error::NotWatched { address } => Text::new("biss.not_watched").with("address", address),
+        Error::Refused { address, value, reads } => {
+            let id = if reads.is_some() { "biss.refused_reads" } else { "biss.refused" };
+            let reads = reads.map(byte).unwrap_or_default();
+            Text::new(id).with("address", address).with("value", byte(*value)).with("reads", reads)
+        }
+        Error::Unclear { address, value, cause } => Text::new("biss.unclear")
+            .with("address", address)
+            .with("value", byte(*value))
+            .with_text("cause", encoder(cause)),
+        Error::Cancelled => Text::new("encoder.cancelled"),
+        Error::OrderUnknown { answer } => Text::new("biss.order_unknown").with("answer", byte(*answer)),
+        Error::TooWide { word, multiturn, singleturn } => Text::new("biss.too_wide")
+            .with("word", format!("0x{word:X}"))
+            .with("multiturn", multiturn)
+            .with("singleturn", singleturn),
+        Error::OutOfRange { start, count } => Text::new("biss.out_of_range").with("start", start).with("count", count),
+        Error::NoDescription(found) => Text::new("biss.no_description").with("found", found),
+        Error::NotIdentified => Text::new("biss.not_identified"),
+        Error::Moving { rpm } => moving(*rpm),
+        Error::NotInOperation { mode } => in_mode("biss.not_in_operation", *mode),
+        Error::Changed { item } => Text::new("biss.changed").with("item", item),
+        Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
+    }
+}
+
+/// An encoder in a device mode, where its registers may show what was never saved.
+pub fn unsaved(mode: DeviceMode) -> Text {
+    in_mode("biss.unsaved", mode)
+}
+
+/// The same of an encoder that was saved just now; `None` where it was in operation.
+pub fn saved_unsaved(profile: &BissProfile) -> Option<Text> {
+    profile.recorded.device_mode.map(unsaved)
+}
+
+/// A profile that was read in a device mode; `None` where the encoder was in operation.
+pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
+    profile.recorded.device_mode.map(profile_unsaved_in)
+}
+
+/// A profile that was read in this device mode.
+pub fn profile_unsaved_in(mode: DeviceMode) -> Text {
+    in_mode("biss.profile_unsaved", mode)
+}
+
+fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
+    Text::new(id).with_text("mode", self::mode(mode))
+}
+
+/// A shaft that has to stand and does not.
+fn moving(rpm: Option<f64>) -> Text {
+    let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return Text::new("biss.moving") };
+    let id = if rpm > 0.0 { "biss.moving_cw" } else { "biss.moving_ccw" };
+    Text::new(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
+}
+
+/// What was asked of an encoder.
+pub fn asked(asked: Asked) -> Text {
+    match asked {
+        Asked::Read(address) => Text::new("biss.asked_read").with("address", address),
+        Asked::Write(address, value) => {
+            Text::new("biss.asked_write").with("address", address).with("value", byte(value))
+        }
+        Asked::Position => Text::new("biss.asked_position"),
+    }
+}
+
+/// An encoder that is not the one of the description that comes nearest.
+pub fn mismatch(mismatch: &Mismatch) -> Text {
+    Text::new("biss.mismatch")
+        .with("found", &mismatch.found)
+        .with("name", &mismatch.name)
+        .with("expected", &mismatch.expected)
+}
+
+/// What was said on the way, one text each.
+pub fn remark(remark: &Remark) -> Vec<Text> {
+    match remark {
+        Remark::CrcErrors(1) => vec![Text::new("biss.crc_error")],
+        Remark::CrcErrors(count) => vec![Text::new("biss.crc_errors").with("count", count)],
+        Remark::Descriptions(errors) => errors.iter().map(store).collect(),
+    }
+}
+
+/// What a job does at the moment.
+pub fn doing(doing: &Doing) -> Text {
+    match doing {
+        Doing::Register(address) => Text::new("biss.register").with("address", address),
+        Doing::Bank(bank) => Text::new("biss.bank").with("bank", format!("0x{bank:02X}")),
+        Doing::Operation { news, .. } => step(news.step),
+    }
+}
+
+fn byte(byte: u8) -> String {
+    format!("0x{byte:02X}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::buses::bridge::procedures::AdapterError;
+    use crate::devices::biss::procedures::Damage;
+    use crate::devices::biss::protocol::{Identity, ProfileId, RegisterAddress};
+    use crate::link::LinkErrorKind;
+
+    /// What happened, and what to do: two sentences or more in both languages, with the facts in them.
+    #[test]
+    fn every_error_says_what_happened_and_what_to_do() {
+        let address: RegisterAddress = "0x24:0x10".parse().unwrap();
+        let asked = Asked::Read(address);
+        let kind = Identity { profile: ProfileId::new(0x6129), manufacturer: *b"Fr", device_id: [1, 2, 3, 4, 5, 6] };
+        let cases = [
+            (Error::NoReply { asked, tries: 5, echo_heard: false }, vec!["0x24:0x10", "5"]),
+            (Error::NoReply { asked, tries: 5, echo_heard: true }, vec!["0x24:0x10", "5"]),
+            (Error::Damaged { asked, tries: 5, cause: Damage::Inconsistent }, vec!["0x24:0x10", "5"]),
+            (Error::NeverSilent, vec![]),
+            (Error::NoAcknowledge { tries: 5, supply_off: false }, vec!["MA", "SLO"]),
+            (Error::NoAcknowledge { tries: 5, supply_off: true }, vec!["voltage="]),
+            (Error::StuckLow { tries: 5 }, vec!["SLO"]),
+            (Error::StuckHigh { tries: 5 }, vec!["SLO"]),
+            (Error::WrongWidths { frames: 21, data_bits: 27, crc_bits: 6 }, vec!["21", "27+6"]),
+            (Error::WidthsUnknown { moving: true }, vec!["10", "48"]),
+            (Error::WidthsUnknown { moving: false }, vec![]),
+            (Error::NoSuchRegister { address }, vec!["0x24:0x10"]),
+            (Error::NotWatched { address }, vec!["0x24:0x10"]),
+            (Error::Refused { address, value: 7, reads: None }, vec!["0x24:0x10", "0x07"]),
+            (Error::Refused { address, value: 7, reads: Some(1) }, vec!["0x24:0x10", "0x07", "0x01"]),
+            (Error::Unclear { address, value: 7, cause: Box::new(Error::NeverSilent) }, vec!["0x24:0x10", "0x07"]),
+            (Error::OrderUnknown { answer: 3 }, vec!["0x03", "order="]),
+            (Error::TooWide { word: 0x2_0000, multiturn: 0, singleturn: 17 }, vec!["0x20000", "0+17"]),
+            (Error::OutOfRange { start: address, count: 70_000 }, vec!["0x24:0x10", "70000"]),
+            (Error::Moving { rpm: Some(-499.6) }, vec!["500"]),
+            (Error::Moving { rpm: None }, vec![]),
+            (Error::NoDescription(kind), vec!["0x6129"]),
+            (Error::NotIdentified, vec![]),
+            (Error::Adapter(AdapterError::Silent), vec![]),
+            (Error::Adapter(AdapterError::Version { expected: 1, got: 2 }), vec!["1", "2"]),
+        ];
+        for (error, facts) in cases {
+            for language in [English, German] {
+                let words = encoder(&error).words(language);
+                assert!(facts.iter().all(|fact| words.contains(fact)), "{words}");
+                assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
+                assert!(!words.contains('{') && words.ends_with('.'), "{words}");
+            }
+            assert_ne!(encoder(&error).words(English), encoder(&error).words(German));
+        }
+    }
+
+    #[test]
+    fn a_wire_that_is_gone_is_a_loss_and_no_other_error_is() {
+        let gone = Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
+        let address = RegisterAddress::BANK_SELECT;
+        let unclear = Error::Unclear { address, value: 1, cause: Box::new(gone.clone()) };
+        for error in [gone, unclear] {
+            assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
+        }
+        assert_eq!(loss(&JobError::Device(Error::NeverSilent)), None);
+        assert_eq!(job(&JobError::Device(Error::NeverSilent)).len(), 1);
+    }
+}

@@ -1,0 +1,266 @@
+//! Guided procedures in words: their steps, what a person is to do, why a start is not possible, what came of them.
+
+use crate::app::{Severity, Text};
+use crate::devices::biss::procedures::procedure::{
+    Advice, Blocker, CalibrationReport, Demand, Motion, Outcome, Run, SpeedRange, Step, Task, WiegandReport,
+};
+use crate::devices::biss::profile::{Op, PresetParts};
+use crate::devices::biss::protocol::{DeviceMode, PulseVoltage};
+
+/// The heading of an operation.
+pub fn procedure(op: &Op) -> Text {
+    Text::new(match op {
+        Op::Calibrate => "guide.calibration",
+        Op::WiegandTest { .. } => "guide.wiegand",
+        Op::StorePreset { .. } => "guide.store_preset",
+        Op::FirePreset { .. } => "guide.fire_preset",
+        Op::SelectFilter { .. } => "guide.filter",
+        Op::StoreData { .. } => "guide.data",
+        Op::WriteRegister { .. } => "guide.register",
+    })
+}
+
+/// A step.
+pub fn step(step: Step) -> Text {
+    match step {
+        Step::Await(task) => self::task(task),
+        Step::Run(run) => Text::new(match run {
+            Run::CalibrationCounterclockwise => "guide.run_calibration_ccw",
+            Run::CalibrationClockwise => "guide.run_calibration_cw",
+            Run::WiegandClockwise => "guide.run_wiegand_cw",
+            Run::WiegandCounterclockwise => "guide.run_wiegand_ccw",
+        }),
+        Step::Enter(mode) => Text::new("guide.enter").with_text("mode", self::mode(mode)),
+        Step::Conditions => Text::new("guide.conditions"),
+        Step::Open => Text::new("guide.open"),
+        Step::Write => Text::new("guide.write"),
+        Step::Results => Text::new("guide.results"),
+        Step::Save => Text::new("guide.save"),
+        Step::Fire => Text::new("guide.fire"),
+        Step::Restart => Text::new("guide.restart"),
+        Step::LeadBack => Text::new("guide.lead_back"),
+        Step::ReadBack => Text::new("guide.read_back"),
+    }
+}
+
+/// A device mode.
+pub fn mode(mode: DeviceMode) -> Text {
+    let id = match mode {
+        DeviceMode::OPERATION => "biss_mode.operation",
+        DeviceMode::CALIBRATION => "biss_mode.calibration",
+        DeviceMode::WIEGAND_TEST => "biss_mode.wiegand_test",
+        DeviceMode::DATA_WRITE => "biss_mode.data_write",
+        DeviceMode::FILTER => "biss_mode.filter",
+        DeviceMode::PRESET => "biss_mode.preset",
+        _ => "biss_mode.unknown",
+    };
+    Text::new(id).with("code", format!("0x{:02X}", mode.byte()))
+}
+
+/// What a person is to do.
+pub fn task(task: Task) -> Text {
+    match task {
+        Task::Turn(run) => {
+            let id = match (run.is_clockwise(), run.calibrates()) {
+                (true, true) => "guide.turn_cw_best",
+                (false, true) => "guide.turn_ccw_best",
+                (true, false) => "guide.turn_cw",
+                (false, false) => "guide.turn_ccw",
+            };
+            speeds(Text::new(id), run.allowed()).with_number("best", run.recommended().middle(), 0)
+        }
+        Task::Stand => Text::new("guide.stand"),
+        Task::StandAtPlace => Text::new("guide.stand_at_place"),
+    }
+}
+
+/// Why a start is not possible.
+pub fn blocker(blocker: Blocker) -> Text {
+    match blocker {
+        Blocker::Measuring => Text::new("guide.measuring"),
+        Blocker::NoPosition => Text::new("guide.no_position"),
+        Blocker::Standing => Text::new("guide.standing"),
+        Blocker::Turning { rpm } => Text::new("guide.turning").with_number("rpm", rpm, 1),
+        Blocker::WrongDirection => Text::new("guide.wrong_direction"),
+        Blocker::Speed { rpm, allowed } => speeds(Text::new("guide.speed"), allowed).with_number("rpm", rpm, 0),
+        Blocker::Unsteady { spread } => Text::new("guide.unsteady").with_number("spread", spread, 1),
+        Blocker::Temperature { celsius } => temperatures(Text::new("guide.temperature").with("celsius", celsius)),
+    }
+}
+
+/// What to know before a start.
+pub fn advice(advice: Advice) -> Text {
+    match advice {
+        Advice::Speed { recommended } => {
+            let run = Run::CalibrationCounterclockwise;
+            let text = speeds(Text::new("guide.recommended"), recommended);
+            text.with_number("fluctuation", run.fluctuation().unwrap_or_default(), 0)
+        }
+        Advice::TableAtRisk => Text::new("guide.table_at_risk"),
+        Advice::Marked => Text::new("guide.marked"),
+    }
+}
+
+/// What a calibration needs of motor and encoder.
+pub fn calibration_needs() -> Text {
+    let run = Run::CalibrationCounterclockwise;
+    let text = speeds(Text::new("mounting_card.calibrate_words"), run.allowed());
+    temperatures(text.with_number("best", run.recommended().middle(), 0))
+}
+
+/// What a Wiegand test needs of the motor.
+pub fn wiegand_needs() -> Text {
+    speeds(Text::new("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
+}
+
+/// With the temperatures of a calibration.
+pub(super) fn temperatures(text: Text) -> Text {
+    text.with("coldest", Demand::CELSIUS.start()).with("warmest", Demand::CELSIUS.end())
+}
+
+/// With the slowest and the fastest speed.
+pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
+    text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
+}
+
+/// What came of an operation, a line each; for the page and for the report.
+pub fn outcome(outcome: &Outcome) -> Vec<Text> {
+    match outcome {
+        Outcome::Skipped { after } => vec![Text::new(match after {
+            None => "guide.skipped",
+            Some(run) if run.calibrates() => "guide.skipped_calibration",
+            Some(_) => "guide.skipped_wiegand",
+        })],
+        Outcome::Stored { registers } => vec![Text::new("guide.stored").with("count", registers)],
+        Outcome::PresetStored { value, singleturn_bits } => {
+            vec![Text::new("guide.preset_stored").with_text("value", super::preset(*value, *singleturn_bits))]
+        }
+        Outcome::PresetFired { parts, from, to } => {
+            let id = match parts {
+                PresetParts::Both => "guide.preset_both",
+                PresetParts::Singleturn => "guide.preset_singleturn",
+                PresetParts::Multiturn => "guide.preset_multiturn",
+            };
+            let text = Text::new(id).with("from_turns", from.turns).with("to_turns", to.turns);
+            vec![text.with_number("from", from.degrees(), 3).with_number("to", to.degrees(), 3)]
+        }
+        Outcome::FilterSelected(filter) => {
+            vec![
+                Text::new("guide.filter_selected")
+                    .with_text("filter", crate::devices::biss::state::words::filter(*filter)),
+            ]
+        }
+        Outcome::Calibrated(report) => calibrated(report),
+        Outcome::Tested(report) => tested(report),
+    }
+}
+
+/// What came of an operation, a line each with how much it matters; of one that was left out, which.
+pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
+    let lines = outcome(own);
+    if let Outcome::Skipped { .. } = own {
+        let named = |words| Text::new("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
+        return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
+    }
+    // The first says what was done, or how it was judged; the rest is beside it.
+    let severity = |at: usize| match own {
+        Outcome::Tested(report) => match at {
+            0 => verdict(report.result.lowest_cw).max(verdict(report.result.lowest_ccw)),
+            1 => verdict(report.result.lowest_cw),
+            2 => verdict(report.result.lowest_ccw),
+            _ => Severity::Note,
+        },
+        _ if at == 0 => Severity::Good,
+        _ => Severity::Note,
+    };
+    lines.into_iter().enumerate().map(|(at, text)| (severity(at), text)).collect()
+}
+
+fn verdict(lowest: PulseVoltage) -> Severity {
+    if lowest > PulseVoltage::LIMIT { Severity::Good } else { Severity::Warning }
+}
+
+fn calibrated(report: &CalibrationReport) -> Vec<Text> {
+    let mut texts = vec![Text::new("guide.calibrated")];
+    texts.extend(report.celsius.map(|celsius| Text::new("guide.at_temperature").with("celsius", celsius)));
+    texts.extend(motion("guide.motion_ccw", report.counterclockwise));
+    texts.extend(motion("guide.motion_cw", report.clockwise));
+    texts
+}
+
+fn tested(report: &WiegandReport) -> Vec<Text> {
+    let result = report.result;
+    let direction = |id, average: PulseVoltage, lowest: PulseVoltage| {
+        let verdict = if lowest > PulseVoltage::LIMIT { "guide.above_limit" } else { "guide.below_limit" };
+        Text::new(id)
+            .with_number("average", average.volts(), 1)
+            .with_number("lowest", lowest.volts(), 1)
+            .with_text("verdict", Text::new(verdict).with_number("limit", PulseVoltage::LIMIT.volts(), 1))
+    };
+    let passed = [result.lowest_cw, result.lowest_ccw].into_iter().all(|lowest| lowest > PulseVoltage::LIMIT);
+    let mut texts = vec![
+        Text::new(if passed { "guide.wiegand_passed" } else { "guide.wiegand_not_passed" }),
+        direction("guide.pulses_cw", result.average_cw, result.lowest_cw),
+        direction("guide.pulses_ccw", result.average_ccw, result.lowest_ccw),
+    ];
+    texts.extend(motion("guide.motion_cw", report.clockwise));
+    texts.extend(motion("guide.motion_ccw", report.counterclockwise));
+    texts.push(Text::new(if report.saved { "guide.result_saved" } else { "guide.result_not_saved" }));
+    texts
+}
+
+fn motion(id: &'static str, motion: Option<Motion>) -> Option<Text> {
+    let motion = motion?;
+    Some(Text::new(id).with_number("rpm", motion.rpm.abs(), 1).with_number("spread", motion.spread, 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::devices::biss::protocol::{PresetValue, WiegandResult};
+
+    #[test]
+    fn modes_are_called_as_the_protocol_calls_them_and_have_german_names() {
+        for byte in 0..=255 {
+            let own = DeviceMode::new(byte);
+            assert_eq!(mode(own).words(English), own.to_string());
+            assert_ne!(mode(own).words(German), own.to_string());
+        }
+    }
+
+    /// Manual 6.3: the average less four standard deviations has to be above 5.3 V.
+    #[test]
+    fn a_wiegand_result_is_measured_against_the_limit() {
+        let result = WiegandResult {
+            average_cw: PulseVoltage::new(63),
+            lowest_cw: PulseVoltage::new(54),
+            average_ccw: PulseVoltage::new(62),
+            lowest_ccw: PulseVoltage::new(53),
+        };
+        let report = WiegandReport { result, saved: false, clockwise: None, counterclockwise: None };
+        let words: Vec<String> = outcome(&Outcome::Tested(report)).iter().map(|text| text.words(English)).collect();
+        assert!(words[0].contains("not passed"), "{words:?}");
+        assert!(words[1].contains("6.3") && words[1].contains("5.4") && words[1].contains("above"), "{words:?}");
+        assert!(words[2].contains("5.3") && words[2].contains("not above"), "{words:?}");
+        let report = super::report(&Op::WiegandTest { save: false }, &Outcome::Tested(report));
+        let weights: Vec<Severity> = report.iter().map(|(severity, _)| *severity).collect();
+        assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Warning, Severity::Note]);
+    }
+
+    /// Manual 6.7: 18000h of 17 bits are 270°.
+    #[test]
+    fn a_stored_preset_value_is_told_as_an_angle() {
+        let value = PresetValue::new(0x18000, 2).unwrap();
+        let texts = outcome(&Outcome::PresetStored { value, singleturn_bits: 17 });
+        assert_eq!(texts[0].words(English), "Preset value stored: 270.000° (step 98304), turn 2.");
+        assert!(texts[0].words(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
+    }
+
+    #[test]
+    fn what_was_left_out_is_named() {
+        let report = report(&Op::Calibrate, &Outcome::Skipped { after: None });
+        let [(Severity::Note, text)] = report.as_slice() else { panic!("{report:?}") };
+        assert!(text.words(English).contains("Calibration") && text.words(German).contains("Kalibrierung"));
+    }
+}

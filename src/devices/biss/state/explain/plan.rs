@@ -1,0 +1,57 @@
+//! Why something cannot be planned for a BiSS encoder, and of which other type a profile is, in words.
+
+use crate::app::Text;
+use crate::devices::biss::profile::{OtherType, PlanError};
+use crate::devices::biss::protocol::ProcedureKind;
+
+/// A profile that goes onto another type of encoder.
+pub fn other_type(types: &OtherType) -> Text {
+    of_types(types, "biss_review.other_kind", "biss_review.other_width")
+}
+
+fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text {
+    match types {
+        OtherType::Kind { profile, device } => Text::new(kind).with("profile", profile).with("device", device),
+        OtherType::Width { profile, device } => Text::new(width).with("profile", profile).with("device", device),
+    }
+}
+
+/// Why something cannot be planned.
+pub fn plan(error: &PlanError) -> Text {
+    match error {
+        PlanError::OtherDevice { profile, device } => {
+            Text::new("plan.other_device").with("profile", profile).with("device", device)
+        }
+        PlanError::OtherType(types) => of_types(types, "biss_plan.other_kind", "biss_plan.other_width"),
+        PlanError::NoBank { bank } => Text::new("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
+        PlanError::PresetTooWide { value, bits, .. } => {
+            let last = (1u64 << bits.min(&63)) - 1;
+            Text::new("biss_plan.too_wide").with("value", value).with("bits", bits).with("last", last)
+        }
+        PlanError::UnknownFilter { code } => Text::new("biss_plan.no_filter").with("code", format!("0x{code:02X}")),
+        PlanError::NoProcedure { kind, description } => {
+            Text::new("biss_plan.no_procedure").with_text("what", kind_of(*kind)).with("name", description)
+        }
+        PlanError::FirmwareTooOld { kind, needed, found } => Text::new("biss_plan.old_firmware")
+            .with_text("what", kind_of(*kind))
+            .with("needed", needed)
+            .with("found", found),
+        PlanError::ReadOnly { address } => Text::new("biss_plan.read_only").with("address", address),
+        PlanError::Guarded { address } => Text::new("biss_plan.guarded").with("address", address),
+        PlanError::ByteCount { range, count } => {
+            Text::new("biss_plan.byte_count").with("range", range).with("count", count)
+        }
+        PlanError::NotBalanced { .. } => Text::new("biss_plan.not_balanced"),
+        PlanError::DrivenByThisEncoder => Text::new("mounting_card.refused"),
+    }
+}
+
+pub(super) fn kind_of(kind: ProcedureKind) -> Text {
+    Text::new(match kind {
+        ProcedureKind::WiegandTest => "guide.wiegand",
+        ProcedureKind::Calibration => "guide.calibration",
+        ProcedureKind::DataWrite => "guide.data",
+        ProcedureKind::FilterSelection => "guide.filter",
+        ProcedureKind::Preset => "guide.store_preset",
+    })
+}

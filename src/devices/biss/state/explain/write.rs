@@ -1,0 +1,405 @@
+//! Writes in words: what is wanted, the operations of a plan, why there is no plan, what was written, why it ended early and
+//! in which state the encoder was left.
+
+use std::path::Path;
+
+use super::encoder;
+use super::guide::{blocker, mode, speeds, step, task, temperatures};
+use super::plan::kind_of;
+use crate::app::explain::plain;
+use crate::app::review::{ChangeWords, OpWords};
+use crate::app::{Severity, Text};
+use crate::bits::hex;
+use crate::devices::biss::jobs::{Change, ChangeKind, Prepared, WEAR_LIMIT};
+use crate::devices::biss::procedures::procedure::{Activity, Failure, Run, Standing};
+use crate::devices::biss::procedures::write::{Interrupted, Left, Written};
+use crate::devices::biss::profile::{Op, PresetParts, RegisterChange, RegisterRange};
+use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, WiegandStatus};
+use crate::devices::biss::state::words::filter;
+
+/// A change in words.
+pub fn change(change: &Change) -> Text {
+    match change {
+        Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),
+        Change::Write(edits) => {
+            let bytes: usize = edits.iter().map(|(_, bytes)| bytes.len()).sum();
+            Text::new(if bytes == 1 { "change.store_one" } else { "change.store" }).with("bytes", bytes)
+        }
+        Change::SelectFilter(to) => Text::new("biss_change.filter").with_text("filter", filter(*to)),
+        Change::Preset { parts: None, .. } => Text::new("biss_change.store_preset"),
+        Change::Preset { .. } => Text::new("biss_change.fire_preset"),
+        Change::Guided { .. } => Text::new("biss_change.guided"),
+    }
+}
+
+/// An operation in words; each run of registers by itself, named as everywhere.
+pub fn op(op: &Op, layout: &Layout) -> OpWords {
+    let bits = layout.singleturn_bits();
+    match op {
+        Op::StoreData { area, registers } => OpWords {
+            item: Text::new("biss_op.data").with_text("area", super::name(&area.name)),
+            changes: runs(registers),
+        },
+        Op::StorePreset { from, to } => {
+            OpWords::one(Text::new("biss_op.preset"), preset(*from, bits), preset(*to, bits))
+        }
+        Op::FirePreset { parts, value } => {
+            let new = match parts {
+                PresetParts::Both => preset(*value, bits),
+                PresetParts::Singleturn => preset_words("biss_op.singleturn", *value, bits),
+                PresetParts::Multiturn => preset_words("biss_op.multiturn", *value, bits),
+            };
+            OpWords::one(Text::new("biss_op.fire"), Text::new("biss_op.place"), new)
+        }
+        Op::SelectFilter { from, to } => OpWords::one(Text::new("biss_op.filter"), filter(*from), filter(*to)),
+        Op::Calibrate => OpWords::one(
+            Text::new("guide.calibration"),
+            Text::new("biss_op.present_table"),
+            Text::new("biss_op.new_table"),
+        ),
+        Op::WiegandTest { save } => OpWords::one(
+            Text::new("guide.wiegand"),
+            Text::new("biss_op.last_result"),
+            Text::new(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
+        ),
+        Op::WriteRegister { address, old, new, .. } => OpWords::one(
+            Text::new("biss_op.register").with("address", address),
+            old.map_or_else(|| Text::new("biss_op.not_readable"), |old| plain(format!("{old:02X}"))),
+            plain(format!("{new:02X}")),
+        ),
+    }
+}
+
+/// Registers that follow each other are one line.
+fn runs(registers: &[RegisterChange]) -> Vec<ChangeWords> {
+    let words = |range: RegisterRange| {
+        let own = registers.iter().filter(|own| range.contains(own.address));
+        let (old, new): (Vec<u8>, Vec<u8>) = own.map(|own| (own.old, own.new)).unzip();
+        ChangeWords { part: Some(plain(range)), old: plain(hex(&old)), new: plain(hex(&new)) }
+    };
+    RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
+}
+
+/// A preset value as angle, step and turn; a turn has as many steps as these bits.
+pub fn preset(value: PresetValue, singleturn_bits: u8) -> Text {
+    preset_words("biss_op.preset_value", value, singleturn_bits)
+}
+
+fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Text {
+    let steps = (1_u64 << singleturn_bits) as f64;
+    Text::new(id)
+        .with_number("degrees", f64::from(value.singleturn()) * 360.0 / steps, 3)
+        .with("singleturn", value.singleturn())
+        .with("multiturn", value.multiturn())
+}
+
+/// That the write cycles of the flash are numbered, where a plan comes near their end.
+pub fn wear(prepared: &Prepared) -> Option<Text> {
+    let cycles = prepared.wear()?;
+    Some(Text::new("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
+}
+
+/// A write that is done.
+pub fn written(written: &Written) -> Text {
+    // Of a calibration the encoder's word is all there is.
+    let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
+    Text::new(id).with("verified", written.verified).with("cycles", written.write_cycles)
+}
+
+/// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
+pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+    let done = &interrupted.done;
+    let mut texts = vec![if interrupted.cause.is_cancelled() {
+        Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
+    } else {
+        let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
+        text.with_text("cause", failure(&interrupted.cause))
+    }];
+    texts.push(Text::new("biss_left.at").with_text("step", step(interrupted.at)));
+    texts.extend(match &interrupted.left {
+        Left::Operation => vec![Text::new("biss_left.operation")],
+        Left::Unknown(standing) => left(standing),
+    });
+    let what_next = match (interrupted.unclear, kind) {
+        (Some(register), _) => Text::new("biss_write.unclear").with("register", register),
+        // The table may be lost without a write, and no backup holds it.
+        (None, ChangeKind::Calibration) => Text::new("write.backup_calibration"),
+        // An operation that may have been carried out counts as a write cycle, where it costs one.
+        _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
+        (None, ChangeKind::Restore) => Text::new("write.backup"),
+        (None, ChangeKind::Bytes) => Text::new("biss_write.bytes"),
+        (None, ChangeKind::Guided) => Text::new("biss_write.guided"),
+        (None, ChangeKind::WiegandTest) => Text::new("biss_write.wiegand"),
+        (None, ChangeKind::Filter) => Text::new("biss_write.filter"),
+        (None, ChangeKind::Preset) => Text::new("biss_write.preset"),
+    };
+    let what_next = what_next.with("backup", backup.display());
+    texts.push(match &interrupted.left {
+        Left::Operation => what_next,
+        Left::Unknown(_) => Text::new("write.after_lead_back").with_text("next", what_next),
+    });
+    texts
+}
+
+/// How much one of the sentences about a write that was cut off matters.
+pub fn weight(text: &Text) -> Severity {
+    match text.id() {
+        "biss_left.operation" => Severity::Good,
+        "biss_left.at"
+        | "write.after_lead_back"
+        | "write.backup"
+        | "write.backup_calibration"
+        | "write.untouched"
+        | "biss_write.bytes"
+        | "biss_write.guided"
+        | "biss_write.wiegand"
+        | "biss_write.filter"
+        | "biss_write.preset" => Severity::Note,
+        "write.cancelled" | "biss_write.unclear" => Severity::Warning,
+        _ => Severity::Error,
+    }
+}
+
+/// In which state an encoder was left that could not be led back.
+fn left(standing: &Standing) -> Vec<Text> {
+    let mut texts = vec![match standing.mode.values() {
+        [certain] => Text::new("biss_left.mode").with_text("mode", mode(*certain)),
+        several => Text::new("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
+    }];
+    if standing.password.may_be(true) {
+        texts.push(Text::new("biss_left.password"));
+    }
+    texts.extend(match standing.activity {
+        Activity::Nothing => None,
+        Activity::Running(Run::CalibrationCounterclockwise) => Some(Text::new("biss_left.calibrating_ccw")),
+        Activity::Running(Run::CalibrationClockwise) => Some(Text::new("biss_left.calibrating_cw")),
+        Activity::Running(_) => Some(Text::new("biss_left.testing")),
+        Activity::Entered => Some(Text::new("biss_left.entered")),
+        Activity::Saving => Some(Text::new("biss_left.saving")),
+        Activity::Restarting => Some(Text::new("biss_left.restarting")),
+    });
+    texts.push(Text::new("biss_left.lead_back"));
+    texts
+}
+
+/// Why a procedure did not reach its end.
+pub fn failure(failure: &Failure) -> Text {
+    match failure {
+        Failure::Device(error) => encoder(error),
+        Failure::Calibration { run, status } => calibration(*run, *status),
+        Failure::Wiegand { status, code, .. } => wiegand(*status, *code),
+        Failure::NotBalanced { .. } => Text::new("biss_plan.not_balanced"),
+        Failure::Mode { wanted, found } => {
+            Text::new("biss_failure.mode").with_text("wanted", mode(*wanted)).with_text("found", mode(*found))
+        }
+        Failure::Status { kind, expected, found } => Text::new("biss_failure.status")
+            .with_text("what", kind_of(*kind))
+            .with("expected", format!("0x{expected:02X}"))
+            .with("found", format!("0x{found:02X}")),
+        Failure::TooLong { seconds, .. } => Text::new("biss_failure.too_long").with("seconds", seconds),
+        Failure::NotReady { task: asked, blockers } => {
+            let both =
+                |first, second| Text::new("biss_failure.both").with_text("first", first).with_text("second", second);
+            let why = blockers.iter().map(|own| blocker(*own)).reduce(both);
+            let text = Text::new("biss_failure.not_ready").with_text("task", task(*asked));
+            text.with_text("why", why.unwrap_or_else(|| plain("")))
+        }
+        Failure::NotVerified { item, expected, got } => {
+            Text::new("biss_failure.not_verified").with("item", item).with("expected", expected).with("got", got)
+        }
+        Failure::NotDescribed { kind } => Text::new("biss_failure.not_described").with_text("what", kind_of(*kind)),
+    }
+}
+
+fn calibration(run: Run, status: CalibrationStatus) -> Text {
+    let why = match status {
+        CalibrationStatus::WrongDirection => Text::new("biss_failure.direction"),
+        CalibrationStatus::Temperature => temperatures(Text::new("biss_failure.temperature")),
+        CalibrationStatus::Speed => speeds(Text::new("biss_failure.speed"), run.allowed()),
+        CalibrationStatus::Failed => Text::new("biss_failure.calibration"),
+        other => return unknown(other.byte()),
+    };
+    let id = if run.is_clockwise() { "biss_failure.table_lost" } else { "biss_failure.table_kept" };
+    Text::new(id).with_text("why", why)
+}
+
+fn wiegand(status: WiegandStatus, code: u8) -> Text {
+    match status {
+        WiegandStatus::WrongDirection => Text::new("biss_failure.wiegand_direction"),
+        WiegandStatus::Failed => Text::new("biss_failure.wiegand").with("code", format!("0x{code:02X}")),
+        other => unknown(other.byte()),
+    }
+}
+
+/// A status that does not belong there.
+fn unknown(status: u8) -> Text {
+    Text::new("biss_failure.unknown").with("status", format!("0x{status:02X}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::devices::biss::procedures::Error;
+    use crate::devices::biss::procedures::procedure::{Blocker, Possible, Step, Task};
+    use crate::devices::biss::protocol::{DeviceMode, ProcedureKind, RegisterAddress};
+
+    fn cut_off(write_cycles: u64, cause: Failure, left: Left) -> Interrupted {
+        let done = Written { ops: 1, write_cycles, ..Written::default() };
+        Interrupted { done, at: Step::Run(Run::CalibrationClockwise), cause, left, unclear: None }
+    }
+
+    fn told(cause: Failure, left: Left) -> (Vec<String>, Vec<String>) {
+        let texts = interruption(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
+        let words = |language| texts.iter().map(|text| text.words(language)).collect();
+        (words(English), words(German))
+    }
+
+    /// Each action in words of its own, also at a terminal; and nothing is told as untouched that may be otherwise.
+    #[test]
+    fn what_to_do_about_a_write_that_was_cut_off_fits_its_kind() {
+        let last = |interrupted: &Interrupted, kind| {
+            let text = interruption(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
+            assert!(text.terminal().contains("b.ron") && text.words(German).contains("b.ron"), "{text:?}");
+            text.terminal()
+        };
+        let lost = || Failure::Device(Error::NeverSilent);
+        let cases = [
+            (ChangeKind::Restore, "restoring the profile again"),
+            (ChangeKind::Bytes, "any other register stays as it was written"),
+            (ChangeKind::Guided, "done before stands"),
+            (ChangeKind::WiegandTest, "changes nothing but its saved result"),
+            (ChangeKind::Filter, "status biss"),
+            (ChangeKind::Preset, "position biss"),
+        ];
+        for (kind, part) in cases {
+            let words = last(&cut_off(1, lost(), Left::Operation), kind);
+            assert!(words.contains(part), "{words}");
+            assert!(last(&cut_off(0, lost(), Left::Operation), kind).contains("Nothing was changed"));
+        }
+        let mut interrupted = cut_off(0, lost(), Left::Operation);
+        interrupted.unclear = RegisterAddress::direct(0x6A);
+        let words = last(&interrupted, ChangeKind::Bytes);
+        assert!(words.contains("not known") && words.contains("read biss 0x6A"), "{words}");
+    }
+
+    #[test]
+    fn a_calibration_that_failed_names_the_limits_of_its_run() {
+        let cases = [(CalibrationStatus::Speed, "300…700"), (CalibrationStatus::Temperature, "25…40 °C")];
+        for (status, limits) in cases {
+            let text = failure(&Failure::Calibration { run: Run::CalibrationClockwise, status });
+            assert!(text.words(English).contains(limits) && text.words(German).contains(limits), "{text:?}");
+        }
+    }
+
+    fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Left {
+        let mut mode = Possible::known(modes[0]);
+        modes[1..].iter().for_each(|own| mode.or(*own));
+        Left::Unknown(Standing { mode, password: Possible::known(password), activity })
+    }
+
+    /// Issue 22.5: whatever completes it comes behind leading the encoder back.
+    #[test]
+    fn what_completes_a_write_comes_after_leading_back() {
+        for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
+            let last = |left| {
+                let interrupted = cut_off(1, Failure::Device(Error::NeverSilent), left);
+                interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
+            };
+            let found = last(Left::Operation);
+            let unknown = last(standing(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
+            assert_eq!(unknown.terminal(), format!("Lead the encoder back first. {}", found.terminal()));
+            assert!(unknown.words(German).starts_with("Zuerst den Geber zurückführen. "), "{unknown:?}");
+            assert_eq!(weight(&unknown), weight(&found));
+        }
+    }
+
+    #[test]
+    fn a_write_that_was_cut_off_says_where_why_and_in_which_state() {
+        let mode = DeviceMode::CALIBRATION;
+        let activity = Activity::Running(Run::CalibrationClockwise);
+        let left = standing(&[mode, DeviceMode::OPERATION], true, activity);
+        let (english, german) = told(Failure::Device(Error::NeverSilent), left);
+        let expected = [
+            ["1 of 3", "1 von 3"],
+            ["Second run, clockwise", "Zweiter Lauf, im Uhrzeigersinn"],
+            ["0x01 calibration, 0x00 operation", "0x01 Kalibrierung, 0x00 Betrieb"],
+            ["password", "Passwort"],
+            ["table", "Tabelle"],
+            ["Lead it back", "zurückführen"],
+            ["b.ron", "b.ron"],
+        ];
+        assert_eq!((english.len(), german.len()), (expected.len(), expected.len()), "{english:?}");
+        for (words, [own, deutsch]) in english.iter().zip(&german).zip(expected) {
+            assert!(words.0.contains(own) && words.1.contains(deutsch), "{words:?}");
+        }
+        let (english, _) = told(Failure::Device(Error::Cancelled), Left::Operation);
+        assert!(english[0].contains("1 of 3") && english[2].contains("in operation again"), "{english:?}");
+    }
+
+    /// What an encoder was doing, each in words of its own.
+    #[test]
+    fn every_activity_is_told() {
+        let activities = [
+            Activity::Running(Run::CalibrationCounterclockwise),
+            Activity::Running(Run::CalibrationClockwise),
+            Activity::Running(Run::WiegandClockwise),
+            Activity::Entered,
+            Activity::Saving,
+            Activity::Restarting,
+        ];
+        let mut seen = Vec::new();
+        for activity in activities {
+            let left = standing(&[DeviceMode::PRESET], false, activity);
+            let (english, german) = told(Failure::Device(Error::NeverSilent), left);
+            assert!(!seen.contains(&english[3]) && english[3] != german[3], "{english:?}");
+            seen.push(english[3].clone());
+        }
+        let (idle, _) =
+            told(Failure::Device(Error::NeverSilent), standing(&[DeviceMode::PRESET], false, Activity::Nothing));
+        assert!(idle[3].contains("Lead it back"), "{idle:?}");
+    }
+
+    /// Manual 6.3 and 6.4, every code; what happened, and what to do.
+    #[test]
+    fn every_failure_says_what_happened_and_what_to_do() {
+        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+        let calibration = |run, byte| Failure::Calibration { run, status: CalibrationStatus::from_byte(byte) };
+        let wiegand =
+            |byte, code| Failure::Wiegand { run: Run::WiegandClockwise, status: WiegandStatus::from_byte(byte), code };
+        let cases = [
+            (calibration(first, 0x30), "other way"),
+            (calibration(first, 0x31), "25…40 °C"),
+            (calibration(first, 0x32), "300…700 rpm"),
+            (calibration(first, 0x33), "no reason"),
+            (calibration(second, 0x32), "lost"),
+            (calibration(second, 0x77), "0x77"),
+            (wiegand(0x30, 0), "other way"),
+            (wiegand(0x07, 0x2A), "0x2A"),
+            (wiegand(0x99, 0), "0x99"),
+            (Failure::NotBalanced { code: 4 }, "balanced"),
+            (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "0x07 preset"),
+            (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "0x00"),
+            (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
+            (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "stands"),
+            (
+                Failure::NotReady {
+                    task: Task::Stand,
+                    blockers: vec![Blocker::Standing, Blocker::Temperature { celsius: 20 }],
+                },
+                "stands. The encoder is at 20 °C",
+            ),
+            (Failure::NotVerified { item: "0x6E".to_owned(), expected: "04".to_owned(), got: "03".to_owned() }, "0x6E"),
+            (Failure::NotDescribed { kind: ProcedureKind::Preset }, "Preset"),
+        ];
+        for (cause, fact) in cases {
+            let (english, german) = (failure(&cause).words(English), failure(&cause).words(German));
+            assert!(english.contains(fact), "{english}");
+            for words in [&english, &german] {
+                assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "what to do: {words}");
+                assert!(words.ends_with('.') && !words.starts_with(char::is_lowercase), "{words}");
+            }
+            assert_ne!(english, german);
+        }
+    }
+}

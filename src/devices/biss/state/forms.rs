@@ -1,0 +1,93 @@
+//! What a person types for a procedure, and what it stands for.
+
+use crate::app::Text;
+use crate::app::number::{whole, within};
+use crate::devices::biss::protocol::{Layout, PresetValue};
+
+/// The entries of a preset.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PresetForm {
+    /// Degrees within the revolution.
+    pub degrees: String,
+    /// Revolutions.
+    pub turns: String,
+}
+
+impl Default for PresetForm {
+    fn default() -> Self {
+        PresetForm { degrees: "0".to_owned(), turns: "0".to_owned() }
+    }
+}
+
+impl PresetForm {
+    /// The entries that stand for a value.
+    pub fn of(value: PresetValue, layout: &Layout) -> Self {
+        let steps = (1_u64 << layout.singleturn_bits()) as f64;
+        let degrees = f64::from(value.singleturn()) * 360.0 / steps;
+        PresetForm { degrees: format!("{}", (degrees * 1e6).round() / 1e6), turns: value.multiturn().to_string() }
+    }
+
+    /// The step that the degrees stand for: the nearest one.
+    ///
+    /// # Errors
+    /// A sentence that names what would do.
+    pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
+        let degrees = within("preset_card.degrees", &self.degrees, 0.0, 359.999_999)?;
+        let steps = 1_u64 << layout.singleturn_bits();
+        // Below the number of steps, which fits into 32 bits.
+        Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
+    }
+
+    /// The revolutions.
+    ///
+    /// # Errors
+    /// A sentence that names what would do.
+    pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
+        let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
+        whole("preset_card.turns", &self.turns, 0, last.min(PresetValue::MAX))
+    }
+
+    /// The value that the entries stand for.
+    ///
+    /// # Errors
+    /// A sentence that names what would do; of two bad entries it is about the first.
+    pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
+        let (singleturn, multiturn) = (self.singleturn(layout)?, self.multiturn(layout)?);
+        PresetValue::new(singleturn, multiturn).ok_or_else(|| Text::new("preset_card.too_wide"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form(degrees: &str, turns: &str) -> PresetForm {
+        PresetForm { degrees: degrees.to_owned(), turns: turns.to_owned() }
+    }
+
+    /// Reference 5.5: 17 bits.
+    #[test]
+    fn degrees_become_the_published_steps() {
+        let layout = Layout::default();
+        for (degrees, singleturn) in [("270", 98_304), ("0", 0), ("180", 65_536), ("90", 32_768), ("1", 364)] {
+            assert_eq!(form(degrees, "7").value(&layout).unwrap(), PresetValue::new(singleturn, 7).unwrap());
+        }
+        // The last half step is the first one of the next revolution.
+        assert_eq!(form("359.9999", "0").value(&layout).unwrap().singleturn(), 0);
+        assert_eq!(PresetForm::of(PresetValue::new(98_304, 7).unwrap(), &layout), form("270", "7"));
+    }
+
+    #[test]
+    fn what_cannot_be_is_told() {
+        let refused = |degrees, turns| form(degrees, turns).value(&Layout::default()).unwrap_err().id();
+        for degrees in ["360", "-1", "NaN", "inf", "east"] {
+            assert_eq!(refused(degrees, "0"), "entry.number", "{degrees}");
+        }
+        for turns in ["65536", "-1", "1.5"] {
+            assert_eq!(refused("0", turns), "entry.whole", "{turns}");
+        }
+        assert_eq!((refused("", "0"), refused("0", "")), ("entry.missing", "entry.missing"));
+        let (both, layout) = (form("north", "x"), Layout::default());
+        assert!(both.singleturn(&layout).is_err() && both.multiturn(&layout).is_err(), "each for itself");
+    }
+}

@@ -1,0 +1,236 @@
+//! A guided procedure as a person follows it: its steps, how far it is, what is asked now, what came of it. Nothing is
+//! carried out here; the answers go to whoever carries the plan out.
+
+use crate::app::Text;
+use crate::devices::biss::procedures::procedure::{Answer, Demand, Detail, News, Outcome, Seat, Step, Task, steps_of};
+use crate::devices::biss::profile::Op;
+
+/// A procedure on its way, or as it ended.
+pub struct Guide {
+    ops: Vec<Op>,
+    news: Option<News>,
+    /// The step that it was at when it was cut off: what is told last is the way back from there.
+    pub(super) cut: Option<Step>,
+    pub(super) seat: Seat,
+    /// What the person wants to leave out: the operation and what was asked in it.
+    skips: Vec<(usize, Task)>,
+    /// How it ended; `None`: it goes on.
+    pub end: Option<End>,
+}
+
+/// How a procedure ended.
+#[derive(Clone, Debug)]
+pub enum End {
+    /// To its end: what came of each operation.
+    Done(Vec<Outcome>),
+    /// Early: what happened, in which state the encoder was left, and what to do.
+    Failed {
+        /// In words.
+        texts: Vec<Text>,
+        /// What came of the operations before.
+        before: Vec<Outcome>,
+        /// The encoder may not be in operation.
+        may_lead_back: bool,
+        /// A person wanted it.
+        cancelled: bool,
+    },
+}
+
+/// How far a step is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// It is over.
+    Done,
+    /// It waits for a person.
+    Waits,
+    /// It runs.
+    Runs,
+    /// It was left out.
+    Skipped,
+    /// It ended the procedure.
+    Failed,
+    /// A person ended the procedure in it.
+    Cancelled,
+    /// It comes later, or not any more.
+    Ahead,
+}
+
+/// A step of the whole.
+#[derive(Clone, Debug)]
+pub struct GuideStep<'a> {
+    /// The operation that it belongs to.
+    pub op: &'a Op,
+    /// It is the first of its operation.
+    pub is_first: bool,
+    /// What it is.
+    pub step: Step,
+    /// How far it is.
+    pub reached: Reached,
+}
+
+impl Guide {
+    pub(super) fn new(ops: Vec<Op>) -> Self {
+        Guide { ops, news: None, cut: None, seat: Seat::default(), skips: Vec::new(), end: None }
+    }
+
+    /// It goes on.
+    pub fn is_running(&self) -> bool {
+        self.end.is_none()
+    }
+
+    /// What it carries out.
+    pub fn ops(&self) -> &[Op] {
+        &self.ops
+    }
+
+    pub(super) fn tell(&mut self, news: News) {
+        self.news = Some(news);
+    }
+
+    /// What is told of the step that counts.
+    pub fn detail(&self) -> Option<&Detail> {
+        self.news.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
+    }
+
+    /// What is asked of the person.
+    pub fn demand(&self) -> Option<&Demand> {
+        match self.detail()? {
+            Detail::Demand(demand) => Some(demand),
+            _ => None,
+        }
+    }
+
+    /// Answers what is being asked.
+    pub(super) fn answer(&mut self, task: Task, answer: Answer) {
+        if self.is_running() {
+            if let Some(op) = self.news.as_ref().map(|news| news.op).filter(|_| answer == Answer::Skip) {
+                self.skips.push((op, task));
+            }
+            self.seat.answer(task, answer);
+        }
+    }
+
+    /// All steps, in their order.
+    pub fn steps(&self) -> Vec<GuideStep<'_>> {
+        let at = self.news.as_ref().map(|news| (news.op, self.cut.unwrap_or(news.step)));
+        let mut steps = Vec::new();
+        let mut passed = true;
+        for (number, op) in self.ops.iter().enumerate() {
+            let all = steps_of(op);
+            let skipped = self.skipped(number, &all);
+            for (place, step) in all.into_iter().enumerate() {
+                let is_own = at == Some((number, step));
+                passed &= !is_own && at.is_some_and(|(own, _)| number <= own);
+                let is_skipped = skipped.as_ref().is_some_and(|range| range.contains(&place));
+                let reached = match &self.end {
+                    Some(End::Done(_)) if is_skipped => Reached::Skipped,
+                    Some(End::Done(_)) => Reached::Done,
+                    Some(End::Failed { cancelled: true, .. }) if is_own => Reached::Cancelled,
+                    Some(End::Failed { .. }) if is_own => Reached::Failed,
+                    Some(End::Failed { .. }) if self.was_led_back(number, step) => Reached::Done,
+                    _ if is_own && self.demand().is_some() => Reached::Waits,
+                    _ if is_own => Reached::Runs,
+                    _ if passed && is_skipped => Reached::Skipped,
+                    _ if passed => Reached::Done,
+                    _ => Reached::Ahead,
+                };
+                steps.push(GuideStep { op, is_first: place == 0, step, reached });
+            }
+        }
+        steps
+    }
+
+    /// Which steps of an operation were left out: as it ended, else as the person has answered.
+    fn skipped(&self, number: usize, steps: &[Step]) -> Option<std::ops::Range<usize>> {
+        let outcomes = match &self.end {
+            Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),
+            None => &[],
+        };
+        let asks = |step: &Step| matches!(step, Step::Await(_));
+        let from = match outcomes.get(number) {
+            Some(Outcome::Skipped { after }) => {
+                let done = after.and_then(|run| steps.iter().position(|step| *step == Step::Run(run))).unwrap_or(0);
+                steps.iter().skip(done).position(asks).map(|place| done + place)
+            }
+            Some(_) => None,
+            None => {
+                let task = self.skips.iter().find(|(op, _)| *op == number).map(|(_, task)| *task)?;
+                steps.iter().position(|step| *step == Step::Await(task))
+            }
+        }?;
+        // It is led back where its mode was entered.
+        let entered = steps.iter().take(from).any(|step| matches!(step, Step::Enter(_)));
+        let led_back = steps.iter().position(|step| *step == Step::LeadBack).filter(|_| entered);
+        Some(from..led_back.unwrap_or(steps.len()))
+    }
+
+    /// This is the way back from where it was cut off, and it was gone to its end.
+    fn was_led_back(&self, op: usize, step: Step) -> bool {
+        let told = self.news.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
+        let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
+        step == Step::LeadBack && told && in_operation
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::biss::procedures::procedure::Run;
+    use crate::devices::biss::protocol::DeviceMode;
+
+    fn reached(told: &[Step], cut: Option<Step>, may_lead_back: bool) -> Vec<Reached> {
+        let mut guide = Guide::new(vec![Op::Calibrate]);
+        told.iter().for_each(|step| guide.tell(News { op: 0, step: *step, detail: Detail::Begins }));
+        guide.cut = cut;
+        guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
+        guide.steps().iter().map(|own| own.reached).collect()
+    }
+
+    #[test]
+    fn what_was_left_out_is_not_done() {
+        use Reached::{Ahead, Done, Runs, Skipped};
+        let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
+        let states = |guide: &Guide| guide.steps().iter().map(|own| own.reached).collect::<Vec<_>>();
+        for (task, after, expected) in [
+            (first, None, [Done, Skipped, Skipped, Skipped, Skipped, Skipped, Skipped]),
+            (second, Some(first), [Done, Done, Done, Done, Skipped, Skipped, Done]),
+        ] {
+            let mut guide = Guide::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
+            guide.tell(News { op: 0, step: Step::Await(Task::Turn(task)), detail: Detail::Begins });
+            guide.answer(Task::Turn(task), Answer::Skip);
+            let next = Step::Await(Task::Turn(Run::WiegandClockwise));
+            guide.tell(News { op: 1, step: next, detail: Detail::Begins });
+            assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
+            guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
+            assert_eq!(states(&guide), [&expected[..], &[Skipped; 7]].concat());
+        }
+    }
+
+    #[test]
+    fn a_procedure_that_was_cut_off_tells_where_and_what_did_not_run() {
+        use Reached::{Ahead, Done, Failed};
+        let first = Run::CalibrationCounterclockwise;
+        let (turn, run) = (Step::Await(Task::Turn(first)), Step::Run(first));
+        let told = [Step::Conditions, turn, Step::Enter(DeviceMode::CALIBRATION), run];
+        let led = [&told[..], &[Step::LeadBack]].concat();
+        assert_eq!(reached(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
+        assert_eq!(reached(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
+        // The link is gone: nothing is told of a way back.
+        assert_eq!(reached(&told, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
+        // It has never left operation.
+        assert_eq!(reached(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
+        // The way back itself.
+        assert_eq!(reached(&led, Some(Step::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
+        assert_eq!(reached(&[], None, false), [Ahead; 7]);
+    }
+
+    #[test]
+    fn who_cancels_has_not_failed() {
+        let mut guide = Guide::new(vec![Op::Calibrate]);
+        guide.tell(News { op: 0, step: Step::Conditions, detail: Detail::Begins });
+        guide.cut = Some(Step::Conditions);
+        let (texts, before) = (Vec::new(), Vec::new());
+        guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });
+        assert_eq!(guide.steps().first().map(|own| own.reached), Some(Reached::Cancelled));
+    }
+}

@@ -1,0 +1,74 @@
+//! What the log is told of an encoder: who answered and how it is reached, which write began, what came of each of its
+//! operations.
+
+use super::encoder::Encoder;
+use crate::app::review::{ChangeWords, OpWords};
+use crate::app::services::Services;
+use crate::app::{Severity, Text, explain};
+use crate::bits::ByteOrder;
+use crate::devices::biss::jobs::Prepared;
+use crate::devices::biss::procedures::Identity;
+use crate::devices::biss::procedures::procedure::Outcome;
+use crate::devices::biss::profile::Op;
+use crate::devices::biss::state::explain as words;
+
+impl Encoder {
+    /// Who answered for the first time since the link was opened.
+    pub(super) fn log_answer(&self, services: &mut Services) {
+        let Some(identity) = self.identity() else { return };
+        self.session.log_answer(vec![way(identity), who(identity)], services);
+    }
+
+    /// A write has begun: what it changes, old and new.
+    pub(super) fn log_operations(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
+        let identity = &prepared.identity;
+        let operations = prepared.plan.ops.iter().flat_map(|op| match op {
+            // Of long runs the first registers.
+            Op::StoreData { .. } => vec![explain::plain(op.note(&identity.description))],
+            op => {
+                let OpWords { item, changes } = words::op(op, &identity.layout);
+                changes.into_iter().map(|change| operation(&item, change)).collect()
+            }
+        });
+        let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
+        services.note(Severity::Note, vec![text], Some(&self.session.name()));
+    }
+
+    /// What came of the operations that were carried out, before the end of the write is told.
+    pub(super) fn log_outcomes(&self, outcomes: &[Outcome], services: &mut Services) {
+        for outcome in outcomes {
+            services.note(Severity::Note, words::outcome(outcome), Some(&self.session.name()));
+        }
+    }
+}
+
+/// One thing that an operation changes, old and new.
+fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
+    let text = match part {
+        None => Text::new("log.operation"),
+        Some(part) => Text::new("log.operation_part").with_text("part", part),
+    };
+    text.with_text("item", item.clone()).with_text("old", old).with_text("new", new)
+}
+
+/// How it is reached.
+fn way(identity: &Identity) -> Text {
+    match (&identity.adapter, identity.order) {
+        (Some(hello), _) => Text::new("log.adapter")
+            .with("name", &hello.name)
+            .with("firmware", &hello.firmware)
+            .with("serial", &hello.serial),
+        (None, Some(ByteOrder::HighFirst)) => Text::new("log.high_first"),
+        (None, _) => Text::new("log.low_first"),
+    }
+}
+
+/// What it says to be.
+fn who(identity: &Identity) -> Text {
+    let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
+    Text::new("log.identity")
+        .with("profile", identity.kind.profile)
+        .with_text("firmware", firmware)
+        .with("multiturn", identity.layout.multiturn_bits())
+        .with("singleturn", identity.layout.singleturn_bits())
+}

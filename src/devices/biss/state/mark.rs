@@ -1,0 +1,30 @@
+//! What the last position of an encoder is worth: as the position itself tells, or, where its way does not carry that, as
+//! the registers of errors and warnings told when the status was last read.
+
+use super::encoder::Encoder;
+use crate::devices::biss::procedures::Bits;
+
+/// What is said against a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// It is not valid.
+    Invalid,
+    /// The encoder warns.
+    Warned,
+}
+
+impl Encoder {
+    /// What is said against the last position.
+    pub fn mark(&self) -> Option<Mark> {
+        let reading = self.record.last()?;
+        let status = self.status.as_ref();
+        let is_set = |own: bool, bits: Option<&Bits>| own || bits.is_some_and(|bits| bits.raw != 0);
+        let errors = status.and_then(|own| own.errors.as_ref()).filter(|_| reading.error.is_none());
+        let warnings = status.and_then(|own| own.warnings.as_ref()).filter(|_| reading.warning.is_none());
+        if is_set(!reading.is_valid(), errors) {
+            Some(Mark::Invalid)
+        } else {
+            is_set(reading.warning == Some(true), warnings).then_some(Mark::Warned)
+        }
+    }
+}

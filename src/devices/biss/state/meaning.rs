@@ -1,0 +1,163 @@
+//! What the frames of the trace say: a reply is read with the request before it, a register over the bus with the bank that
+//! was selected.
+
+use crate::app::explain::plain;
+use crate::app::{Explained, Text, TraceFault};
+use crate::bits::ByteOrder;
+use crate::buses::bridge::protocol as bridge;
+use crate::buses::bridge::state::traced as adapter;
+use crate::buses::ubicom::protocol::{Frame, Reply, Request, SYNC, Written};
+use crate::devices::biss::procedures::Damage;
+use crate::devices::biss::protocol::RegisterAddress;
+use crate::devices::biss::state::explain as words;
+use crate::link::{Direction, TraceEntry};
+
+/// Reads frames in the order in which they went over the line.
+#[derive(Debug, Default)]
+pub(super) struct Meaning {
+    /// Which byte of a register's number comes first, once it is known.
+    pub(super) order: Option<ByteOrder>,
+    asked: Option<Request>,
+    /// The last request went over the configuration pin.
+    is_pin: bool,
+    bank: Option<u8>,
+}
+
+impl Meaning {
+    /// What a frame says.
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
+        let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
+        let said = match entry.direction {
+            Direction::Sent if bytes.first() == Some(&SYNC) => self.request(&bytes),
+            Direction::Sent => {
+                self.is_pin = false;
+                self.packet(&bytes)
+            }
+            Direction::Received if self.is_pin => return self.reply(&bytes),
+            Direction::Received => match adapter::received(&bytes) {
+                Some(fault) => return fault,
+                None => self.packet(&bytes),
+            },
+        };
+        said.into_iter().collect::<Vec<_>>().into()
+    }
+
+    fn request(&mut self, bytes: &[u8]) -> Option<Text> {
+        let frame = Frame::parse(bytes).ok()?;
+        self.is_pin = true;
+        self.asked = Request::parse(&frame, self.order.unwrap_or(ByteOrder::LowFirst)).ok();
+        let place = |register| RegisterAddress::from_global(register).map_or_else(String::new, |at| at.to_string());
+        Some(match self.asked? {
+            Request::Read { register } => Text::new("trace.read").with("address", place(register)),
+            Request::Write { register, value } => written("trace.write", place(register), value),
+            Request::Position { .. } => Text::new("trace.position"),
+        })
+    }
+
+    /// What came over the configuration pin behind a request. The reply may still come behind what is broken.
+    fn reply(&mut self, bytes: &[u8]) -> Explained {
+        let broken = |damage| Explained::broken(words::damage(&damage));
+        let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
+        let Some(asked) = self.asked else { return Explained::default() };
+        let reply = match Reply::parse(&frame, asked.command()) {
+            Ok(reply) => reply,
+            Err(error) => return broken(Damage::Reply(error)),
+        };
+        self.asked = None;
+        let text = match reply {
+            Reply::Value(value) => plain(format!("0x{value:02X}")),
+            Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
+            Reply::Written(Written::Refused) => {
+                return Explained { meaning: vec![Text::new("trace.refused")], fault: Some(TraceFault::Reported) };
+            }
+            Reply::Written(Written::Unknown(code)) => plain(format!("0x{code:02X}")),
+            Reply::Position(word) => plain(format!("0x{:X}", word.word())),
+        };
+        vec![text].into()
+    }
+
+    fn packet(&mut self, bytes: &[u8]) -> Option<Text> {
+        let packet = adapter::packet(bytes)?;
+        match bridge::Request::parse(&packet) {
+            Ok(request) => Some(self.asked_of_adapter(&request)),
+            Err(_) => adapter::said(&packet),
+        }
+    }
+
+    fn asked_of_adapter(&mut self, request: &bridge::Request) -> Text {
+        let place = |address| {
+            let at = if address < RegisterAddress::BANK_SIZE {
+                self.bank.and_then(|bank| RegisterAddress::banked(bank, address))
+            } else {
+                RegisterAddress::direct(address)
+            };
+            at.map_or_else(|| format!("0x{address:02X}"), |at| at.to_string())
+        };
+        match *request {
+            bridge::Request::BissRegisterRead { address, .. } => {
+                Text::new("trace.read").with("address", place(address))
+            }
+            bridge::Request::BissRegisterWrite { address, value, .. } => {
+                let said = written("trace.write", place(address), value);
+                if address == RegisterAddress::BANK_SELECT.address() {
+                    self.bank = Some(value);
+                }
+                said
+            }
+            ref other => adapter::asked(other),
+        }
+    }
+}
+
+fn written(id: &'static str, address: String, value: u8) -> Text {
+    Text::new(id).with("address", address).with("value", format!("0x{value:02X}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::bits::{MaskedBytes, parse_hex};
+    use crate::units::Moment;
+
+    fn said(meaning: &mut Meaning, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
+        let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
+        let said = meaning.of(&TraceEntry { at: Moment::START, direction, bytes });
+        let words: Vec<String> = said.meaning.iter().map(|text| text.words(Language::English)).collect();
+        (said.fault, words.join(" "))
+    }
+
+    /// Issue 22.11: frames of the configuration pin (reference UBICOM 6), broken by hand, have a meaning and a mark; the reply may
+    /// still come behind them.
+    #[test]
+    fn a_broken_reply_has_a_meaning_and_a_mark() {
+        let request = "80 01 01 02 00 26 00 55";
+        let cases = [
+            ("good", "80 01 01 01 00 4B 31", None, "0x4B"),
+            ("a bit flipped", "80 01 01 01 00 4A 31", Some(TraceFault::Broken), "7"),
+            ("cut short", "80 01 01", Some(TraceFault::Broken), "3"),
+            ("no frame", "55 55", Some(TraceFault::Broken), "2"),
+            ("the reply to a write", "80 01 02 01 00 90 EB", Some(TraceFault::Broken), ""),
+        ];
+        for (label, reply, fault, words) in cases {
+            let mut meaning = Meaning::default();
+            assert_eq!(said(&mut meaning, Direction::Sent, request).0, None);
+            let told = said(&mut meaning, Direction::Received, reply);
+            assert!(told.0 == fault && told.1.contains(words) && !told.1.is_empty(), "{label}: {told:?}");
+            if fault.is_some() {
+                let then = said(&mut meaning, Direction::Received, "80 01 01 01 00 4B 31");
+                assert_eq!(then, (None, "0x4B".to_owned()), "{label}");
+            }
+        }
+        let mut meaning = Meaning::default();
+        said(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
+        assert_eq!(said(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
+        // Behind an adapter: a packet whose checksum is wrong.
+        let sent = bridge::Request::Hello.emit(1).emit();
+        let mut broken = sent.clone();
+        broken[2] ^= 1;
+        let hex = |bytes: &[u8]| crate::bits::hex(bytes);
+        assert_eq!(said(&mut meaning, Direction::Sent, &hex(&sent)).0, None);
+        assert_eq!(said(&mut meaning, Direction::Received, &hex(&broken)).0, Some(TraceFault::Broken));
+    }
+}

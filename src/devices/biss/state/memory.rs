@@ -1,0 +1,301 @@
+//! The registers of an encoder as they were read, and beside them as the user wants them. Nothing here is written to an
+//! encoder; a plan is made of the difference.
+//!
+//! Only plain data can be edited: the areas that the description says may be written. What else is written — a filter, a
+//! preset, a command — has a review of its own and stands nowhere as an edit.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::app::edits::Edits;
+use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddress};
+
+/// Registers with the user's edits.
+#[derive(Clone, Debug, Default)]
+pub struct Memory {
+    read: BTreeMap<RegisterAddress, u8>,
+    /// Another value was read than the time before.
+    changed: BTreeSet<RegisterAddress>,
+    edits: Edits<RegisterAddress>,
+}
+
+/// Why an edit cannot be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MemoryError {
+    /// It has not been read, so nobody knows what would be replaced.
+    #[error("{0} has not been read")]
+    NotRead(RegisterAddress),
+    /// It is no plain data.
+    #[error("{0} is no plain data")]
+    NoData(RegisterAddress),
+}
+
+/// Runs of bytes: where each begins, as the encoder has it, as it is wanted.
+pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
+
+impl Memory {
+    /// Takes bytes that were read, from `start` on. Edits stay, unless they are what the encoder has now.
+    pub fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
+        for (at, byte) in (start.global()..).zip(bytes) {
+            let Some(at) = RegisterAddress::from_global(at) else { break };
+            match self.read.insert(at, *byte) {
+                Some(before) if before != *byte => self.changed.insert(at),
+                _ => self.changed.remove(&at),
+            };
+        }
+        self.settle();
+        self.edits.forget_redo();
+    }
+
+    /// Forgets everything: another encoder.
+    pub fn clear(&mut self) {
+        *self = Memory::default();
+    }
+
+    /// A register as it was read; `None`: it was not.
+    pub fn read(&self, at: RegisterAddress) -> Option<u8> {
+        self.read.get(&at).copied()
+    }
+
+    /// A register as the user wants it.
+    pub fn wanted(&self, at: RegisterAddress) -> Option<u8> {
+        self.edits.get(at).or_else(|| self.read(at))
+    }
+
+    /// Bytes as they were read; `None` unless all were.
+    pub fn bytes(&self, start: RegisterAddress, count: usize) -> Option<Vec<u8>> {
+        let place = |at| RegisterAddress::from_global(at).and_then(|at| self.read(at));
+        (start.global()..).take(count).map(place).collect()
+    }
+
+    /// The bytes of a register of the description, as they were read; `None` unless all were.
+    pub fn register(&self, register: &Register) -> Option<Vec<u8>> {
+        self.bytes(register.address, register.width.into())
+    }
+
+    /// The bytes of an area, as read and as wanted; `None` unless all were read.
+    pub fn area(&self, area: &Area) -> Option<(Vec<u8>, Vec<u8>)> {
+        let places: Vec<RegisterAddress> = places(area).collect();
+        let read = places.iter().map(|at| self.read(*at)).collect::<Option<Vec<u8>>>()?;
+        let wanted = places.iter().map(|at| self.wanted(*at)).collect::<Option<Vec<u8>>>()?;
+        Some((read, wanted))
+    }
+
+    /// The banks of an area that were read, as many as follow each other: a profile may hold some of them only. `None`:
+    /// not one was read whole.
+    pub fn part(&self, area: &Area) -> Option<Area> {
+        let is_read = |bank: u8| {
+            let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::banked(bank, offset));
+            places.all(|at| at.is_some_and(|at| self.read(at).is_some()))
+        };
+        let mut best: Option<(u8, u8)> = None;
+        let mut first = None;
+        for bank in area.banks() {
+            first = is_read(bank).then(|| first.unwrap_or(bank));
+            if let Some(first) = first
+                && best.is_none_or(|(from, to)| bank - first > to - from)
+            {
+                best = Some((first, bank));
+            }
+        }
+        best.map(|(first, last)| Area { first, last, ..area.clone() })
+    }
+
+    /// Another value was read than the time before.
+    pub fn has_changed(&self, at: RegisterAddress) -> bool {
+        self.changed.contains(&at)
+    }
+
+    /// The user wants another value here than the encoder has.
+    pub fn is_edited(&self, at: RegisterAddress) -> bool {
+        self.edits.get(at).is_some()
+    }
+
+    /// There is something to write.
+    pub fn is_dirty(&self) -> bool {
+        self.edits.is_dirty()
+    }
+
+    /// Edits bytes from `start` on, as one step that can be undone.
+    ///
+    /// # Errors
+    /// [`MemoryError`]; then nothing is changed.
+    pub fn put(&mut self, description: &Description, start: RegisterAddress, bytes: &[u8]) -> Result<(), MemoryError> {
+        let mut wanted = Vec::with_capacity(bytes.len());
+        for (at, byte) in (start.global()..).zip(bytes) {
+            let at = RegisterAddress::from_global(at).ok_or(MemoryError::NoData(start))?;
+            if !description.area_at(at).is_some_and(|area| area.access.writes()) {
+                return Err(MemoryError::NoData(at));
+            }
+            self.read(at).ok_or(MemoryError::NotRead(at))?;
+            wanted.push((at, *byte));
+        }
+        let read = &self.read;
+        self.edits.put(wanted, |at, byte| read.get(&at) != Some(&byte));
+        Ok(())
+    }
+
+    /// Takes all edits back, as one step that can be undone.
+    pub fn revert(&mut self) {
+        self.edits.revert(|_| true);
+    }
+
+    /// Takes the edits of `count` bytes back.
+    pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
+        let range = start.global()..start.global().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
+        self.edits.revert(|at| range.contains(&at.global()));
+    }
+
+    /// There is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        self.edits.can_undo()
+    }
+
+    /// There is a step to do again.
+    pub fn can_redo(&self) -> bool {
+        self.edits.can_redo()
+    }
+
+    /// Undoes the last step.
+    pub fn undo(&mut self) {
+        self.edits.undo();
+        self.settle();
+    }
+
+    /// Does the last undone step again.
+    pub fn redo(&mut self) {
+        self.edits.redo();
+        self.settle();
+    }
+
+    /// The edits were written: what led to them cannot be undone any more.
+    pub fn forget_steps(&mut self) {
+        self.edits.forget_steps();
+    }
+
+    /// Runs of edited bytes; none reaches beyond its bank.
+    pub fn changes(&self) -> Runs {
+        let mut runs: Runs = Vec::new();
+        for (at, byte) in self.edits.iter() {
+            let old = self.read(at).unwrap_or(byte);
+            let next = |start: RegisterAddress, count: usize| u8::try_from(count).ok().and_then(|own| start.plus(own));
+            match runs.last_mut() {
+                Some((start, before, wanted)) if next(*start, wanted.len()) == Some(at) => {
+                    before.push(old);
+                    wanted.push(byte);
+                }
+                _ => runs.push((at, vec![old], vec![byte])),
+            }
+        }
+        runs
+    }
+
+    /// The edited bytes.
+    pub(super) fn wishes(&self) -> impl Iterator<Item = (RegisterAddress, u8)> {
+        self.edits.iter()
+    }
+
+    /// The edits, for a draft on disk: global address and byte.
+    pub fn edits(&self) -> Vec<(u16, u8)> {
+        self.edits.iter().map(|(at, byte)| (at.global(), byte)).collect()
+    }
+
+    /// Takes edits from a draft. Those that are as the encoder has them fall away when it is read.
+    pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
+        let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
+        let read = &self.read;
+        self.edits.put(places, |at, byte| read.get(&at) != Some(&byte));
+    }
+
+    fn settle(&mut self) {
+        let read = &self.read;
+        self.edits.settle(|at, byte| read.get(&at) != Some(&byte));
+    }
+}
+
+/// The registers of an area in their order.
+pub fn places(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
+    area.banks().flat_map(|bank| {
+        (0..RegisterAddress::BANK_SIZE).filter_map(move |offset| RegisterAddress::banked(bank, offset))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::biss::protocol::Descriptions;
+
+    fn kit() -> Description {
+        Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone()
+    }
+
+    fn at(text: &str) -> RegisterAddress {
+        text.parse().unwrap()
+    }
+
+    #[test]
+    fn an_edit_is_what_differs_from_what_was_read() {
+        let mut memory = Memory::default();
+        assert_eq!(memory.put(&kit(), at("0x24:0x10"), &[1]), Err(MemoryError::NotRead(at("0x24:0x10"))));
+        memory.take(at("0x24:0x00"), &[0xFF; 64]);
+        memory.put(&kit(), at("0x24:0x10"), &[1, 0xFF, 3]).unwrap();
+        assert_eq!((memory.wanted(at("0x24:0x10")), memory.read(at("0x24:0x10"))), (Some(1), Some(0xFF)));
+        assert_eq!(memory.edits(), [(0x950, 1), (0x952, 3)]);
+        assert!(!memory.is_edited(at("0x24:0x11")));
+        memory.undo();
+        assert!(!memory.is_dirty() && memory.can_redo());
+        memory.redo();
+        memory.take(at("0x24:0x10"), &[1]);
+        assert_eq!(memory.edits(), [(0x952, 3)], "the encoder has it by now");
+        memory.revert_range(at("0x24:0x12"), 1);
+        assert!(!memory.is_dirty());
+    }
+
+    #[test]
+    fn only_plain_data_is_edited() {
+        let mut memory = Memory::default();
+        memory.take(at("0x40"), &[0; 64]);
+        memory.take(at("0x02:0x00"), &[0; 64]);
+        for text in ["0x6A", "0x02:0x05"] {
+            assert_eq!(memory.put(&kit(), at(text), &[1]), Err(MemoryError::NoData(at(text))));
+        }
+        memory.take(at("0x43:0x3F"), &[0]);
+        assert_eq!(memory.put(&kit(), at("0x43:0x3F"), &[1, 2]), Err(MemoryError::NoData(at("0x44:0x00"))));
+        assert!(!memory.is_dirty(), "all or nothing");
+    }
+
+    #[test]
+    fn of_an_area_the_longest_part_that_was_read_is_shown() {
+        let mut memory = Memory::default();
+        let kit = kit();
+        let area = kit.area_at(at("0x24:0x00")).unwrap();
+        let part = |memory: &Memory| memory.part(area).map(|own| (own.first, own.last));
+        memory.take(at("0x24:0x01"), &[0; 63]);
+        assert_eq!(part(&memory), None, "not the whole bank");
+        memory.take(at("0x25:0x00"), &[0; 64]);
+        memory.take(at("0x30:0x00"), &[0; 128]);
+        assert_eq!(part(&memory), Some((0x30, 0x31)));
+        memory.take(at("0x24:0x00"), &[0; 0x20 * 64]);
+        assert_eq!(part(&memory), Some((area.first, area.last)));
+    }
+
+    #[test]
+    fn runs_end_with_their_bank() {
+        let mut memory = Memory::default();
+        memory.take(at("0x04:0x00"), &[0; 128]);
+        memory.put(&kit(), at("0x04:0x3E"), &[1, 2, 3, 4]).unwrap();
+        let runs = memory.changes();
+        assert_eq!(runs[0], (at("0x04:0x3E"), vec![0, 0], vec![1, 2]));
+        assert_eq!(runs[1], (at("0x05:0x00"), vec![0, 0], vec![3, 4]));
+    }
+
+    #[test]
+    fn what_changed_since_the_reading_before_is_marked() {
+        let mut memory = Memory::default();
+        memory.take(at("0x66"), &[0x4B]);
+        assert!(!memory.has_changed(at("0x66")), "nothing to compare with");
+        memory.take(at("0x66"), &[0x4C]);
+        assert!(memory.has_changed(at("0x66")));
+        memory.take(at("0x66"), &[0x4C]);
+        assert!(!memory.has_changed(at("0x66")));
+    }
+}

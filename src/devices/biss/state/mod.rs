@@ -1,0 +1,31 @@
+//! BiSS C: an encoder on the desk, its registers beside what the user has made of them.
+
+mod act;
+mod action;
+mod connect_form;
+mod decoded;
+mod drafts;
+mod encoder;
+pub mod explain;
+pub mod forms;
+mod guide;
+mod log;
+mod mark;
+mod meaning;
+mod memory;
+mod news;
+mod record;
+mod review;
+mod table;
+pub mod words;
+mod write;
+
+pub use action::Action;
+pub use connect_form::{BissForm, BissWay};
+pub use encoder::Encoder;
+pub use guide::{End, Guide, GuideStep, Reached};
+pub use mark::Mark;
+pub use memory::{Memory, MemoryError, Runs, places};
+pub use record::{Record, Streamed};
+pub use review::{Review, ReviewState};
+pub use table::{Group, Row, Shown, Table};

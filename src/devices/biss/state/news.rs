@@ -1,0 +1,197 @@
+//! What the line to an encoder tells: results of jobs, live samples, and its loss.
+
+use super::drafts::Edits;
+use super::encoder::Encoder;
+use super::words;
+use crate::app::action::{Attempt, Done, Opened};
+use crate::app::review::told;
+use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::session::{Cut, Kind, OnLine, WithMemory, first};
+use crate::app::{Severity, Text};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, JobError, Remark};
+use crate::devices::biss::procedures::{Error, Sample};
+use crate::devices::biss::protocol::KIND;
+use crate::devices::biss::state::explain as explained;
+use crate::link::TraceEntry;
+use crate::sim::Motor;
+use crate::worker::Session;
+
+impl Kind for Biss {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
+    type Aside = Option<Motor>;
+
+    fn aside(session: &Session<Self>) -> Option<Motor> {
+        session.motor()
+    }
+
+    fn opener(world: &World) -> &Opener<Self> {
+        &world.open_biss
+    }
+
+    fn opened(attempt: Attempt<Self>) -> Done {
+        Done::OpenedBiss(attempt)
+    }
+
+    fn job(job: &BissJob) -> Text {
+        words::job(job)
+    }
+
+    fn writes(job: &BissJob) -> bool {
+        matches!(job, BissJob::Commit(_) | BissJob::LeadBack)
+    }
+
+    fn survey() -> BissJob {
+        BissJob::Survey
+    }
+
+    fn doing(what: &Doing) -> Text {
+        explained::doing(what)
+    }
+
+    fn told(output: &BissOutput) -> Option<(Severity, Vec<Text>)> {
+        match output {
+            BissOutput::Committed(committed) => Some(told::<Biss>(committed)),
+            _ => None,
+        }
+    }
+
+    fn why(error: &JobError) -> Vec<Text> {
+        explained::job(error)
+    }
+
+    fn loss(error: &JobError) -> Option<Text> {
+        explained::loss(error)
+    }
+
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
+    }
+}
+
+impl Encoder {
+    /// The link is open: the encoder is read.
+    pub(crate) fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.motor = opened.aside.clone();
+        self.session.take_line(opened, services);
+        self.wish_watched();
+        self.submit(BissJob::Survey, services);
+    }
+
+    /// Reads the next of the banks that were written.
+    fn read_written(&mut self, services: &mut Services) {
+        if let Some(bank) = self.read_after.pop_first() {
+            self.submit(BissJob::ReadBank(bank), services);
+        }
+    }
+}
+
+impl OnLine for Encoder {
+    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+        self.record.add(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        let meaning = &mut self.meaning;
+        self.session.trace.add(frames, missed, |entry| meaning.of(entry));
+    }
+
+    fn progressed(&mut self, what: Doing) {
+        let running = self.guide.as_mut().filter(|guide| guide.is_running());
+        if let (Doing::Operation { news, .. }, Some(guide)) = (what, running) {
+            guide.tell(*news);
+        }
+    }
+
+    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+        match remark {
+            Remark::CrcErrors(count) => self.record.add_crc_errors(count),
+            remark => services.tell(Severity::Warning, explained::remark(&remark), None),
+        }
+    }
+
+    fn finished(&mut self, output: BissOutput, services: &mut Services) {
+        match output {
+            BissOutput::Surveyed(survey) => {
+                self.take_survey(*survey, services);
+                self.read_written(services);
+            }
+            BissOutput::Status(status) => {
+                if let Some(position) = status.position {
+                    self.record.add_position(position);
+                }
+                self.status = Some(*status);
+            }
+            BissOutput::Check(lines) => self.check = Some(explained::check(&lines)),
+            BissOutput::Position(reading) => self.record.add_position(reading),
+            BissOutput::Registers(read) => {
+                self.memory.take(read.start, &read.bytes);
+                if read.start.bank().is_some() {
+                    self.see_mode(read.unsaved);
+                }
+                self.read_written(services);
+            }
+            BissOutput::Area { banks, unsaved } => {
+                self.see_mode(unsaved);
+                for bank in banks {
+                    bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
+                }
+            }
+            BissOutput::Saved(profile) => self.saved(*profile, services),
+            BissOutput::Prepared(prepared) => self.planned(prepared, services),
+            BissOutput::Committed(committed) => {
+                self.log_outcomes(&committed.written.outcomes, services);
+                self.committed(*committed, services);
+            }
+            BissOutput::LedBack(mode) => {
+                self.led_back();
+                let text = Text::new("guide.led_back").with_text("mode", explained::mode(mode));
+                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                self.submit(BissJob::Survey, services);
+            }
+            // The survey tells more.
+            BissOutput::Identity(_) => {}
+        }
+    }
+
+    /// Neither the encoder nor the adapter answers.
+    fn is_silence(&self, error: &JobError) -> bool {
+        let is_lost = match error {
+            JobError::Device(cause) => cause.is_lost(),
+            JobError::Interrupted { interrupted, .. } => interrupted.cause.is_lost(),
+            _ => false,
+        };
+        is_lost && explained::loss(error).is_none()
+    }
+
+    fn forget_asked(&mut self) {
+        self.seen.clear();
+        self.read_after.clear();
+        self.forget_plan();
+    }
+
+    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
+        let moves = matches!(how, Cut::Failed(JobError::Device(Error::Moving { .. })));
+        let stands_there = self.cut_guide(&how, texts) || self.cut_write(how, texts);
+        if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
+            return stands_there;
+        }
+        // It stands on the pages that show data.
+        self.refusal = Some(first(texts));
+        true
+    }
+
+    fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
+        // What is wanted next decides anew.
+        self.refusal = None;
+        self.session.submit(job, services)
+    }
+
+    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        self.motor = None;
+        self.forget_asked();
+        self.session.let_go(end, services);
+    }
+}

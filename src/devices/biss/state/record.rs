@@ -1,0 +1,375 @@
+//! What is recorded of a BiSS encoder while it is polled: its positions, and registers that are watched.
+
+use std::time::Duration;
+
+use jiff::Zoned;
+
+use crate::analysis::history::Value;
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample, WatchedReading};
+use crate::devices::biss::protocol::{Decoded, Decoding, Register};
+use crate::devices::biss::state::explain as words;
+
+/// Positions of the same widths that came one after the other.
+#[derive(Default)]
+struct Batch {
+    widths: Option<Widths>,
+    sightings: Vec<Sighting>,
+}
+
+/// Bits of turns and of steps, and whether it is known which are which.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Widths {
+    multiturn: u8,
+    singleturn: u8,
+    is_split_known: bool,
+}
+
+impl From<&PositionReading> for Widths {
+    fn from(reading: &PositionReading) -> Self {
+        let PositionReading { multiturn_bits: multiturn, singleturn_bits: singleturn, is_split_known, .. } = *reading;
+        Widths { multiturn, singleturn, is_split_known }
+    }
+}
+
+/// The recorder of an encoder, and what it said last.
+#[derive(Debug, Default)]
+pub struct Record {
+    track: Track<Register>,
+    last: Option<PositionReading>,
+    crc_errors: u64,
+    lost: u64,
+    /// The stream that came last.
+    stream: Option<Streamed>,
+}
+
+/// A stream of frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Streamed {
+    /// Number of the next frame.
+    next: u64,
+    period_ns: i64,
+    /// The clock of the bus in hertz.
+    pub clock_hz: u32,
+    /// More frames were wished than the clock allows.
+    pub is_limited: bool,
+}
+
+impl Streamed {
+    /// Frames a second.
+    pub fn hz(&self) -> f64 {
+        1e9 / self.period_ns.max(1) as f64
+    }
+}
+
+impl Record {
+    /// Position, speed and acceleration as lines, and what is watched.
+    pub fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    /// A session has begun; what was recorded before stays.
+    pub(super) fn begin(&mut self, began: &Zoned) {
+        (self.last, self.crc_errors, self.stream) = (None, 0, None);
+        self.track.begin(began);
+    }
+
+    /// Positions are wished at this interval from now on.
+    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+        if interval.is_none() {
+            self.stream = None;
+        }
+    }
+
+    pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
+        match self.stream {
+            // Whatever was dropped, the numbers of the frames tell how many there were.
+            Some(_) if dropped > 0 => self.track.gap(),
+            _ => self.track.lose(dropped),
+        }
+        // Thousands a second, with the same widths: recorded together.
+        let mut batch = Batch::default();
+        for sample in samples {
+            match sample {
+                Sample::Position(reading) => {
+                    self.see(&reading, &mut batch);
+                }
+                Sample::Missed { at, crc_errors } => {
+                    self.add_crc_errors(crc_errors);
+                    batch.sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                }
+                Sample::Frames(run) => self.see_frames(&run, &mut batch),
+                Sample::Watched(reading) => self.add_watched(&reading),
+            }
+        }
+        self.keep(&mut batch);
+    }
+
+    /// Records a position.
+    pub(super) fn add_position(&mut self, reading: PositionReading) {
+        let mut batch = Batch::default();
+        self.see(&reading, &mut batch);
+        self.keep(&mut batch);
+    }
+
+    fn see(&mut self, reading: &PositionReading, batch: &mut Batch) {
+        self.stream = None;
+        self.add_crc_errors(reading.crc_errors);
+        let widths = Widths::from(reading);
+        if batch.widths.is_some_and(|own| own != widths) {
+            self.keep(batch);
+        }
+        batch.widths = Some(widths);
+        batch.sightings.push(sighting(reading));
+        self.last = Some(*reading);
+    }
+
+    /// What an adapter streams; frames that are missing are told and never joined.
+    fn see_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
+        let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
+        let missing = before.unwrap_or(run.lost);
+        if run.begins() || missing > 0 {
+            self.keep(batch);
+            self.track.gap();
+        }
+        self.lost += missing;
+        let FrameRun { period_ns, clock_hz, is_limited, .. } = *run;
+        self.stream = Some(Streamed { next: run.first + run.frames.len() as u64, period_ns, clock_hz, is_limited });
+        self.add_crc_errors(u32::try_from(run.crc_errors()).unwrap_or(u32::MAX));
+        let (multiturn, singleturn) = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
+        let widths = Widths { multiturn, singleturn, is_split_known: run.is_split_known };
+        if batch.widths.is_some_and(|own| own != widths) {
+            self.keep(batch);
+        }
+        batch.widths = Some(widths);
+        for (at, frame) in run.timed() {
+            let Ok(reading) = frame else {
+                batch.sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                continue;
+            };
+            let reading = PositionReading::in_frame(at, reading, &run.layout);
+            let reading = PositionReading { is_split_known: run.is_split_known, ..reading };
+            batch.sightings.push(sighting(&reading));
+            self.last = Some(reading);
+        }
+    }
+
+    fn keep(&mut self, batch: &mut Batch) {
+        if batch.sightings.is_empty() {
+            return;
+        }
+        let before = self.last.as_ref().map(Widths::from);
+        // Where nothing was read in this session, it goes on as what it was in the one before.
+        let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::of_steps(None));
+        let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
+        self.track.add(&batch.sightings, &meaning);
+        *batch = Batch::default();
+    }
+
+    /// Frames with a wrong checksum came.
+    pub(super) fn add_crc_errors(&mut self, count: u32) {
+        self.crc_errors += u64::from(count);
+    }
+
+    fn add_watched(&mut self, reading: &WatchedReading) {
+        let watched = self.track.watched().into_iter().find(|own| own.address == reading.what.start());
+        let Some(register) = watched else { return };
+        let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
+        let never = match &reading.value {
+            Err(Error::NoSuchRegister { .. }) => Some(Text::new("recorder.absent")),
+            Err(Error::NotWatched { .. }) => Some(Text::new("recorder.data")),
+            _ => None,
+        };
+        let watching = Watching { at: reading.at, value, is_warned: false, never };
+        self.track.add_watched(&register, &watching);
+    }
+
+    /// Records these registers too, and no others beside the position.
+    pub(super) fn watch(&mut self, wished: &[Register]) {
+        self.track.watch(wished);
+    }
+
+    /// The registers that are recorded beside the position.
+    pub fn watched(&self) -> Vec<Register> {
+        self.track.watched()
+    }
+
+    /// The last position.
+    pub fn last(&self) -> Option<&PositionReading> {
+        self.last.as_ref()
+    }
+
+    /// Frames with a wrong CRC since the link was opened.
+    pub fn crc_errors(&self) -> u64 {
+        self.crc_errors
+    }
+
+    /// The stream that came last; `None` where positions came one by one since.
+    pub(super) fn streamed(&self) -> Option<&Streamed> {
+        self.stream.as_ref()
+    }
+
+    /// Samples that came too fast to be recorded, and frames that an adapter could not send.
+    pub fn dropped(&self) -> u64 {
+        self.track.dropped().saturating_add(self.lost)
+    }
+
+    /// Positions that are recorded.
+    pub fn positions(&self) -> u64 {
+        self.track.positions()
+    }
+
+    /// Another encoder: nothing of what was recorded is about it.
+    pub(super) fn forget(&mut self) {
+        self.track.forget();
+        (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
+    }
+}
+
+fn sighting(reading: &PositionReading) -> Sighting {
+    Sighting {
+        at: reading.at,
+        position: i64::try_from(reading.position()).ok(),
+        is_bad: !reading.is_valid(),
+        is_warned: reading.warning == Some(true),
+    }
+}
+
+/// What positions of such widths are, multiturn and singleturn.
+fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Meaning {
+    let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
+    if !is_split_known {
+        return Meaning::of_steps(range);
+    }
+    Meaning::of_turns(range, f64::from(singleturn).exp2())
+}
+
+fn value_of(register: &Register, bytes: &[u8]) -> Option<Value> {
+    match register.decode(bytes)? {
+        Decoded::Scaled(value) => Some(Value::Real(value)),
+        _ => register.number(bytes).and_then(|number| i64::try_from(number).ok()).map(Value::Whole),
+    }
+}
+
+impl Watchable for Register {
+    fn is_whole(&self) -> bool {
+        !matches!(self.decoding, Decoding::Scaled { .. })
+    }
+
+    fn line(&self, group: GroupId) -> Line {
+        let name = if self.name.is_empty() { plain(self.address) } else { words::name(&self.name) };
+        let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { plain(&self.unit) };
+        let decimals = if self.is_whole() { 0 } else { 1 };
+        let heading = format!("{} {}", self.address, self.name).trim_end().to_owned();
+        Line::of(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals }])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::devices::biss::profile::RegisterRange;
+    use crate::devices::biss::protocol::{Descriptions, Layout, Reading, Role};
+    use crate::units::Moment;
+
+    fn run(first: u64, count: u64, lost: u64) -> FrameRun {
+        let frame = |at| Ok(Reading { multiturn: 0, singleturn: at as u32, error: false, warning: false });
+        FrameRun {
+            first,
+            at: Moment::after_start(Duration::from_micros(50 * first)),
+            period_ns: 50_000,
+            lost,
+            frames: (first..first + count).map(frame).collect(),
+            layout: Arc::default(),
+            is_split_known: true,
+            clock_hz: 2_000_000,
+            is_limited: false,
+        }
+    }
+
+    /// Reference 2: turn 1234h and 270°.
+    #[test]
+    fn raw_is_the_position_word_also_in_a_stream() {
+        let mut record = Record::default();
+        let reading = Reading { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
+        record.add(vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], ..run(0, 1, 0) })], 0);
+        let last = record.last().unwrap();
+        assert_eq!((last.raw().to_string(), last.raw().bits), ("024698000".to_owned(), 33));
+        assert_eq!((last.error, last.warning), (Some(false), Some(true)));
+        let bare = Layout::new(0, 12, false, false, None).unwrap();
+        let reading = Reading { singleturn: 0x00A, ..Reading::default() };
+        record.add(
+            vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], layout: Arc::new(bare), ..run(1, 1, 0) })],
+            0,
+        );
+        let last = record.last().unwrap();
+        assert_eq!((last.raw().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
+    }
+
+    /// Issue 22.20: a position of which nothing tells what a turn is has no turns and no degrees.
+    #[test]
+    fn what_is_not_known_to_be_an_angle_is_recorded_in_steps() {
+        let mut record = Record::default();
+        let units = |record: &Record| -> Vec<String> {
+            let lines = record.recorder().lines();
+            lines.iter().flat_map(|line| line.scales().iter().map(|scale| scale.unit.id().to_owned())).collect()
+        };
+        record.add(vec![Sample::Frames(FrameRun { is_split_known: false, ..run(0, 10, 0) })], 0);
+        assert_eq!(record.last().unwrap().angle(), None);
+        assert_eq!(units(&record), ["unit.steps", "unit.steps_per_second", "unit.steps_per_second_squared"]);
+        record.add(vec![Sample::Frames(run(10, 10, 0))], 0);
+        assert!(units(&record).contains(&"unit.degrees".to_owned()) && record.last().unwrap().angle().is_some());
+    }
+
+    #[test]
+    fn a_register_that_never_has_a_value_says_why() {
+        let descriptions = Descriptions::built_in();
+        let kit = descriptions.named("POSITAL IXARC kit encoder").unwrap();
+        let register = kit.with_role(Role::Temperature).unwrap().clone();
+        let address = register.address;
+        let mut record = Record::default();
+        record.watch(std::slice::from_ref(&register));
+        let what = RegisterRange::new(address, 1).unwrap();
+        for (error, said) in [
+            (Error::NoSuchRegister { address }, Some("recorder.absent")),
+            (Error::NotWatched { address }, Some("recorder.data")),
+            (Error::NeverSilent, None),
+        ] {
+            let reading = WatchedReading { at: Moment::START, what, value: Err(error) };
+            record.add(vec![Sample::Watched(reading)], 0);
+            let line = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
+            assert_eq!(line.unwrap().remark, said.map(Text::new));
+        }
+    }
+
+    #[test]
+    fn frames_that_are_missing_are_counted_wherever_they_were_lost() {
+        let mut record = Record::default();
+        let add = |record: &mut Record, run: FrameRun, dropped| record.add(vec![Sample::Frames(run)], dropped);
+        add(&mut record, run(0, 100, 0), 0);
+        assert_eq!(
+            (record.positions(), record.dropped(), record.streamed().map(Streamed::hz)),
+            (100, 0, Some(20_000.0))
+        );
+        add(&mut record, run(110, 90, 10), 0);
+        assert_eq!((record.positions(), record.dropped()), (190, 10), "at the adapter");
+        add(&mut record, run(500, 10, 0), 3);
+        assert_eq!((record.positions(), record.dropped()), (200, 310), "nobody took three runs of them");
+        // Another stream begins at zero.
+        let later = FrameRun { at: Moment::after_start(Duration::from_secs(1)), ..run(5, 5, 5) };
+        add(&mut record, later, 0);
+        assert_eq!((record.positions(), record.dropped()), (205, 315));
+        record.poll(None, false);
+        assert_eq!(record.streamed(), None);
+    }
+}

@@ -1,0 +1,135 @@
+//! The review of a write into a BiSS encoder: what its plan needs, warns of and costs.
+
+use crate::app::review::{self, Manner, OpWords, Permit, Reviewed};
+use crate::app::{Text, explain};
+use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
+use crate::devices::biss::procedures::write::Written;
+use crate::devices::biss::profile::{Base, Op};
+use crate::devices::biss::state::explain as words;
+use crate::profile::Plan;
+
+/// A write on its way.
+pub type Review = review::Review<Biss>;
+/// How far it is.
+pub type ReviewState = review::ReviewState<Biss>;
+
+/// A person has to be there for it, or may lead it.
+pub(super) fn is_guided(op: &Op) -> bool {
+    op.turns() || matches!(op, Op::FirePreset { .. })
+}
+
+impl Reviewed for Biss {
+    type Change = Change;
+    type Base = Base;
+    type Op = Op;
+    type Prepared = Prepared;
+    type Written = Written;
+
+    fn change(change: &Change) -> Text {
+        words::change(change)
+    }
+
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        let Change::Restore { options, .. } = change else { return None };
+        match permit {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate | Permit::Copy(_) => None,
+        }
+    }
+
+    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
+        &prepared.plan
+    }
+
+    fn op(prepared: &Prepared, op: &Op) -> OpWords {
+        words::op(op, &prepared.identity.layout)
+    }
+
+    fn leaves_mounting(prepared: &Prepared) -> bool {
+        !prepared.mounting_left.is_empty()
+    }
+
+    fn redo(prepared: &Prepared) -> Vec<Text> {
+        prepared.mounting_written.iter().map(explain::plain).collect()
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
+        let mut warnings = Vec::new();
+        warnings.extend(prepared.other_type.as_ref().map(words::other_type));
+        warnings.extend(words::wear(prepared));
+        if prepared.plan.ops.contains(&Op::Calibrate) {
+            warnings.push(Text::new("biss_review.table"));
+        }
+        warnings.extend(prepared.unsaved.map(words::profile_unsaved_in));
+        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        warnings.extend(review::left_alone("biss_review.missing", &prepared.missing, mounting));
+        warnings
+    }
+
+    fn needs(change: &Change, prepared: &Prepared) -> Vec<Text> {
+        let ops = &prepared.plan.ops;
+        let mut needs = Vec::new();
+        if ops.iter().any(Op::turns) {
+            needs.push(Text::new("biss_review.needs_motor"));
+        }
+        if ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::FirePreset { .. })) {
+            let turns = ops.iter().any(Op::turns);
+            let id = if turns { "biss_review.needs_rest" } else { "biss_review.needs_standstill" };
+            needs.push(Text::new(id));
+        }
+        let restarts = |op: &Op| matches!(op, Op::SelectFilter { .. } | Op::StorePreset { .. } | Op::FirePreset { .. });
+        if ops.iter().any(restarts) {
+            needs.push(Text::new("biss_review.needs_restart"));
+        }
+        needs.extend(left_out(change, ops));
+        needs
+    }
+
+    fn cost(prepared: &Prepared) -> Text {
+        let cycles = prepared.plan.write_cycles();
+        if cycles == 0 {
+            return Text::new("biss_review.cost_nothing");
+        }
+        match prepared.cycles_seen {
+            Some(seen) => Text::new("biss_review.cost").with("cycles", cycles).with("seen", seen),
+            None => Text::new("biss_review.cost_unknown").with("cycles", cycles),
+        }
+        .with("limit", WEAR_LIMIT)
+    }
+
+    fn is_worn(prepared: &Prepared) -> bool {
+        prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles()) > WEAR_LIMIT
+    }
+
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.cycles_seen
+    }
+
+    fn written(written: &Written) -> Text {
+        words::written(written)
+    }
+
+    fn manner(prepared: &Prepared) -> Manner {
+        match prepared.plan.ops.iter().any(is_guided) {
+            false => Manner::Writes,
+            true if prepared.plan.write_cycles() == 0 => Manner::Tests,
+            true => Manner::Leads,
+        }
+    }
+}
+
+/// What was chosen for a mounting and is not in its plan, because it is so already.
+fn left_out(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
+    let run = match change {
+        Change::Guided { run, .. } => Some(run),
+        _ => None,
+    };
+    let preset = run.is_some_and(|run| run.preset.is_some());
+    let data = run.is_some_and(|run| run.data.is_some());
+    let stores = ops.iter().any(|op| matches!(op, Op::StorePreset { .. }));
+    let writes = ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::WriteRegister { .. }));
+    let preset = (preset && !stores).then(|| Text::new("biss_review.preset_stored"));
+    preset.into_iter().chain((data && !writes).then(|| Text::new("biss_review.data_equal")))
+}

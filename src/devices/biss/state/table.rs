@@ -1,0 +1,209 @@
+//! The registers of an encoder as a table: the direct ones, then bank after bank, each register of the description in one
+//! row and every other byte in a row of its own.
+
+use super::memory::Memory;
+use crate::bits::ByteOrder;
+use crate::devices::biss::protocol::{Access, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
+
+/// The banks of an encoder that nobody has described: as many as the kit encoder has.
+const LAST_BANK: u8 = 0x43;
+
+/// The rows of all banks.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    groups: Vec<Group>,
+}
+
+/// The direct registers, or a bank.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// The bank; `None`: the direct registers.
+    pub bank: Option<u8>,
+    /// What it is called, where the description says so.
+    pub name: Option<Name>,
+    rows: Vec<Row>,
+}
+
+/// One row.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The register; a byte that is not described is one of a width of 1, without a name.
+    pub register: Register,
+    /// It belongs to an area of plain data.
+    pub is_data: bool,
+}
+
+/// A row with its value.
+#[derive(Clone, Debug)]
+pub struct Shown<'a> {
+    /// The register.
+    pub row: &'a Row,
+    /// Its bytes in the order of their addresses, as the user wants them; `None`: not read.
+    pub bytes: Option<Vec<u8>>,
+    /// It has another value than at the reading before.
+    pub has_changed: bool,
+    /// The user wants another value than the encoder has.
+    pub is_edited: bool,
+}
+
+impl Table {
+    /// The rows of an encoder. `last` is its last bank, where the data sheet tells it.
+    pub(super) fn of(description: &Description, last: Option<u8>) -> Self {
+        let registers = description.registers().iter().filter_map(|own| own.address.bank());
+        let areas = description.areas().iter().map(|area| area.last);
+        let described = registers.chain(areas).chain(last).max();
+        let last = described.filter(|last| *last > EdsBank::Encoder.number()).unwrap_or(LAST_BANK);
+        let groups = std::iter::once(None).chain((0..=last).map(Some));
+        Table { groups: groups.map(|bank| Group::of(description, bank)).collect() }
+    }
+
+    /// The direct registers, then the banks.
+    pub fn groups(&self) -> &[Group] {
+        &self.groups
+    }
+
+    /// The group of a bank, or of the direct registers.
+    pub fn position(&self, bank: Option<u8>) -> Option<usize> {
+        self.groups.iter().position(|group| group.bank == bank)
+    }
+}
+
+impl Group {
+    fn of(description: &Description, bank: Option<u8>) -> Self {
+        let area = bank.and_then(|bank| description.areas().iter().find(|area| area.contains(bank)));
+        let mut rows: Vec<Row> = Vec::new();
+        for at in addresses(bank) {
+            if rows.last().is_some_and(|row| row.register.contains(at)) {
+                continue;
+            }
+            let described = description.registers().iter().find(|own| own.address == at).cloned();
+            let access = area.map_or(Access::R, |area| area.access);
+            rows.push(Row { register: described.unwrap_or_else(|| plain(at, access)), is_data: area.is_some() });
+        }
+        let name = bank.and_then(|bank| description.bank_name(bank).cloned().or_else(|| usual_name(bank)));
+        Group { bank, name, rows }
+    }
+
+    /// Its rows.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Its first register.
+    pub fn start(&self) -> Option<RegisterAddress> {
+        addresses(self.bank).next()
+    }
+
+    /// All of its registers have been read.
+    pub fn is_read(&self, memory: &Memory) -> bool {
+        self.rows.iter().all(|row| memory.read(row.register.address).is_some() || row.register.access == Access::W)
+    }
+
+    /// A row with its value.
+    pub fn shown<'a>(&'a self, row: usize, memory: &Memory) -> Option<Shown<'a>> {
+        let row = self.rows.get(row)?;
+        let places = || {
+            let first = row.register.address.global();
+            (first..first + u16::from(row.register.width)).filter_map(RegisterAddress::from_global)
+        };
+        Some(Shown {
+            row,
+            bytes: places().map(|at| memory.wanted(at)).collect(),
+            has_changed: places().any(|at| memory.has_changed(at)),
+            is_edited: places().any(|at| memory.is_edited(at)),
+        })
+    }
+}
+
+impl Shown<'_> {
+    /// It has another value than an encoder as delivered, as far as the description tells that.
+    pub fn is_not_as_delivered(&self) -> bool {
+        let default = &self.row.register.default;
+        !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
+    }
+
+    /// Its bytes as a number.
+    pub fn number(&self) -> Option<u64> {
+        self.row.register.number(self.bytes.as_ref()?)
+    }
+}
+
+fn addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
+    let size = RegisterAddress::BANK_SIZE;
+    (0..size).filter_map(move |offset| match bank {
+        Some(bank) => RegisterAddress::banked(bank, offset),
+        None => RegisterAddress::direct(size + offset),
+    })
+}
+
+/// A byte that nobody has described.
+fn plain(address: RegisterAddress, access: Access) -> Register {
+    Register {
+        address,
+        width: 1,
+        name: Name::default(),
+        role: None,
+        access,
+        order: ByteOrder::HighFirst,
+        default: Vec::new(),
+        decoding: Decoding::Number,
+        unit: String::new(),
+        saves: Vec::new(),
+        since: crate::devices::biss::protocol::Firmware::new(0, 0, 0),
+    }
+}
+
+/// Banks that BP3 gives a place, on every encoder that keeps to it.
+fn usual_name(bank: u8) -> Option<Name> {
+    [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
+        .into_iter()
+        .find(|(own, _)| own.number() == bank)
+        .map(|(_, name)| Name::new(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::biss::protocol::Descriptions;
+
+    fn kit() -> Table {
+        let all = Descriptions::built_in();
+        Table::of(all.named("POSITAL IXARC kit encoder").unwrap(), None)
+    }
+
+    /// Manual, appendix 9.1: 68 banks of 64 registers, and 64 direct ones.
+    #[test]
+    fn every_register_stands_once() {
+        let table = kit();
+        assert_eq!(table.groups().len(), 1 + 68);
+        for group in table.groups() {
+            let bytes: usize = group.rows().iter().map(|row| usize::from(row.register.width)).sum();
+            assert_eq!(bytes, 64, "{:?}", group.bank);
+        }
+        assert_eq!(table.position(None), Some(0));
+        assert_eq!(table.position(Some(0x43)), Some(68));
+        assert_eq!(table.groups()[1 + 0x24].rows().len(), 64);
+        assert!(table.groups()[1 + 0x24].rows().iter().all(|row| row.is_data && row.register.access == Access::Rw));
+    }
+
+    #[test]
+    fn a_row_shows_what_is_wanted_and_whether_it_is_read() {
+        let (table, mut memory) = (kit(), Memory::default());
+        let direct = &table.groups()[0];
+        let serial = direct.rows().iter().position(|row| row.register.name.english() == "serial number").unwrap();
+        assert_eq!(direct.shown(serial, &memory).unwrap().bytes, None);
+        assert!(!direct.is_read(&memory));
+        memory.take(direct.start().unwrap(), &[7; 64]);
+        let shown = direct.shown(serial, &memory).unwrap();
+        assert_eq!(shown.number(), Some(0x0707_0707));
+        assert!(direct.is_read(&memory) && !shown.is_edited && !shown.has_changed);
+    }
+
+    #[test]
+    fn an_encoder_that_nobody_has_described_has_its_banks() {
+        let all = Descriptions::built_in();
+        let unknown = all.iter().find(|own| own.identity().is_none()).unwrap();
+        assert_eq!(Table::of(unknown, None).groups().len(), 69);
+        assert_eq!(Table::of(unknown, Some(0x10)).groups().len(), 18);
+    }
+}

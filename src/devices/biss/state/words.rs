@@ -1,0 +1,112 @@
+//! What a BiSS encoder says, and what is done with it, in words.
+
+use std::sync::LazyLock;
+
+use super::memory::MemoryError;
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::devices::biss::jobs::BissJob;
+use crate::devices::biss::protocol::{
+    Description, Descriptions, EDS_TICK, EdsBank, EdsError, EdsField, EdsValue, Feedback, Filter, RegisterAddress,
+};
+use crate::devices::biss::state::explain as words;
+
+/// A job.
+pub(super) fn job(job: &BissJob) -> Text {
+    match job {
+        BissJob::Survey | BissJob::Identify => Text::new("job.survey"),
+        BissJob::Status => Text::new("job.biss_status"),
+        BissJob::Check => Text::new("job.check"),
+        BissJob::Position => Text::new("job.position"),
+        BissJob::Read(range) => Text::new("job.read").with("item", range),
+        BissJob::ReadDirect => Text::new("job.read_direct"),
+        BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("0x{bank:02X}")),
+        BissJob::ReadArea(area) => Text::new("job.read").with_text("item", words::name(&area.name)),
+        BissJob::Save | BissJob::SaveToCompare => Text::new("job.save"),
+        BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
+        BissJob::Commit(_) => Text::new("job.write"),
+        BissJob::LeadBack => Text::new("job.lead_back"),
+    }
+}
+
+/// Why an edit was not taken.
+pub(super) fn not_edited(error: MemoryError) -> Text {
+    match error {
+        MemoryError::NotRead(at) => Text::new("registers.unread").with("address", at),
+        MemoryError::NoData(at) => Text::new("registers.no_data").with("address", at),
+    }
+}
+
+/// A filter of the position.
+pub fn filter(filter: Filter) -> Text {
+    match filter {
+        Filter::Balanced => Text::new("biss_status.balanced"),
+        Filter::Dynamic => Text::new("biss_status.dynamic"),
+        Filter::Unknown(code) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
+    }
+}
+
+/// Why a bank of the data sheet cannot be relied upon.
+pub fn sheet(error: &EdsError) -> Text {
+    match error {
+        EdsError::Checksum { expected, got, .. } => Text::new("sheet_card.bad_sum")
+            .with("expected", format!("0x{expected:02X}"))
+            .with("got", format!("0x{got:02X}")),
+        other => plain(other),
+    }
+}
+
+/// What a field of the data sheet says.
+pub fn eds(value: EdsValue) -> Text {
+    let text = |id| Text::new(id);
+    match value {
+        EdsValue::Number(1, "banks") => text("eds.one_bank"),
+        EdsValue::Number(1, "slave addresses") => text("eds.one_address"),
+        EdsValue::Number(number, "banks") => text("eds.banks").with("count", number),
+        EdsValue::Number(number, "slave addresses") => text("eds.addresses").with("count", number),
+        EdsValue::Number(number, "") => plain(number),
+        EdsValue::Number(number, unit) => plain(format!("{number} {unit}")),
+        EdsValue::Bank(bank) => plain(format!("0x{bank:02X}")),
+        EdsValue::NotAvailable => text("eds.none"),
+        EdsValue::Ticks(ticks) => Text::new("eds.ticks").with("ticks", ticks).with_text("time", ticks_long(value)),
+        EdsValue::Adaptive => text("eds.adaptive"),
+        EdsValue::NoLimit => text("eds.no_limit"),
+        EdsValue::Kelvin(kelvin) => plain(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
+        EdsValue::Polynomial(0) => text("eds.no_crc"),
+        EdsValue::Polynomial(polynomial) => plain(format!("0x{polynomial:X}")),
+        EdsValue::Profile(profile) => plain(profile),
+        EdsValue::Feedback(Feedback::None) => text("eds.no_bit"),
+        EdsValue::Feedback(Feedback::Error) => text("eds.error_bit"),
+        EdsValue::Feedback(Feedback::Warning) => text("eds.warning_bit"),
+        EdsValue::Feedback(Feedback::Unknown(code)) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
+        EdsValue::EncoderType(0) => text("eds.rotary"),
+        EdsValue::EncoderType(code) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
+        EdsValue::Code(code) => plain(format!("0x{code:X}")),
+    }
+}
+
+/// What a field of the data sheet says beyond its number, which stands beside it; `None`: nothing.
+pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
+    match value {
+        EdsValue::Number(_, "") => None,
+        EdsValue::Ticks(_) => Some(ticks_long(value)),
+        _ => Some(eds(value)),
+    }
+}
+
+/// What a field of the data sheet is called, as the manual has it.
+pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
+    let at = RegisterAddress::banked(bank.number(), field.offset);
+    let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
+    described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
+}
+
+/// The description with the manual's names, in both languages, of what every data sheet has.
+static KIT: LazyLock<Option<Description>> =
+    LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());
+
+/// How long a number of ticks is.
+fn ticks_long(value: EdsValue) -> Text {
+    let microseconds = value.duration(EDS_TICK).map_or(0.0, |own| own.as_secs_f64() * 1e6);
+    Text::new("eds.ticks_long").with_number("time", microseconds, 2)
+}

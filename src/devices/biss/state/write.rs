@@ -1,0 +1,212 @@
+//! What is written into an encoder: the edits or a profile as a wish, its jobs, a person at the motor where a plan needs
+//! one, and what is read again after it.
+
+use std::time::Duration;
+
+use super::encoder::Encoder;
+use super::guide::{End, Guide};
+use super::review::{Review, ReviewState, is_guided};
+use crate::app::services::Services;
+use crate::app::session::{Agreed, Cut, Kind, Known, Saved, WithMemory, without_edits};
+use crate::app::{Severity, Text};
+use crate::devices::biss::jobs::{
+    Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key,
+};
+use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, Unattended};
+use crate::devices::biss::procedures::write::Left;
+use crate::devices::biss::procedures::{Error, profile_of};
+use crate::devices::biss::profile::{
+    Bank, BissProfile, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type,
+};
+use crate::devices::biss::protocol::RegisterAddress;
+use crate::devices::biss::state::explain as words;
+use crate::profile::{Body, PlanId, ProfileError};
+use crate::store::DeviceKey;
+
+/// How long a shaft that has to stand, with nobody asked to stop it, is waited for.
+const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
+
+impl Encoder {
+    pub(super) fn review_edits(&mut self, services: &mut Services) {
+        if !self.memory.is_dirty() {
+            let text = Text::new("session.nothing_edited");
+            services.tell(Severity::Note, vec![text], Some(&self.session.name()));
+            return;
+        }
+        let runs = self.memory.changes();
+        let edit = |(start, _, bytes): (_, _, Vec<u8>)| {
+            let range = RegisterRange::new(start, u8::try_from(bytes.len()).ok()?)?;
+            Some((range, bytes))
+        };
+        let edits = runs.into_iter().filter_map(edit).collect();
+        self.plan(Change::Write(edits), services);
+    }
+
+    pub(crate) fn plan_restore(&mut self, profile: BissProfile, services: &mut Services) {
+        let options = RestoreOptions::default();
+        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
+    }
+
+    /// Answers what a procedure asks.
+    pub(super) fn answer(&mut self, task: Task, answer: Answer) {
+        if let Some(guide) = &mut self.guide {
+            guide.answer(task, answer);
+        }
+    }
+
+    /// Puts a procedure that is over away.
+    pub(super) fn close_guide(&mut self) {
+        if self.guide.as_ref().is_some_and(|guide| !guide.is_running()) {
+            self.guide = None;
+        }
+    }
+
+    /// The encoder was led back into operation: nothing is left to be done about it.
+    pub(super) fn led_back(&mut self) {
+        if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
+            *may_lead_back = false;
+        }
+    }
+
+    /// A procedure that is followed step by step has ended early; true where one runs.
+    pub(super) fn cut_guide(&mut self, how: &Cut<JobError>, texts: &[Text]) -> bool {
+        let error = match how {
+            Cut::Failed(error) | Cut::Cancelled(error) => Some(*error),
+            Cut::Lost => None,
+        };
+        if !self.guide.as_ref().is_some_and(Guide::is_running) {
+            return false;
+        }
+        if error.is_some_and(Biss::has_begun) {
+            self.reads_again();
+        }
+        let Some(guide) = &mut self.guide else { return false };
+        let (before, may_lead_back) = match error {
+            None => (Vec::new(), true),
+            Some(JobError::Interrupted { interrupted, .. }) => {
+                guide.cut = Some(interrupted.at);
+                (interrupted.done.outcomes.clone(), interrupted.left != Left::Operation)
+            }
+            Some(JobError::Device(Error::NotInOperation { .. })) => (Vec::new(), true),
+            Some(_) => (Vec::new(), false),
+        };
+        let cancelled = matches!(error, Some(JobError::Interrupted { interrupted, .. })
+            if matches!(interrupted.cause, Failure::Device(Error::Cancelled)));
+        guide.end = Some(End::Failed { texts: texts.to_vec(), before, may_lead_back, cancelled });
+        true
+    }
+}
+
+impl WithMemory for Encoder {
+    fn review(&self) -> Option<&Review> {
+        self.review.as_ref()
+    }
+
+    fn review_mut(&mut self) -> &mut Option<Review> {
+        &mut self.review
+    }
+
+    fn is_for_another(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        check_device(profile, &own.profile()).is_err()
+    }
+
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        other_type(&profile.identity, &own.profile()).is_some()
+    }
+
+    fn is_of_another(&self, prepared: &Prepared) -> bool {
+        self.is_another(&prepared.identity)
+    }
+
+    fn prepare(change: Change) -> BissJob {
+        BissJob::Prepare(change)
+    }
+
+    fn commit(&mut self, agreed: Agreed<Biss>) -> BissJob {
+        commit(agreed, Attendance::Nobody(UNATTENDED))
+    }
+
+    fn forget_steps(&mut self) {
+        self.memory.forget_steps();
+    }
+
+    /// A plan that needs somebody at the motor is followed step by step from here on.
+    fn write(&mut self, shown: PlanId, services: &mut Services) {
+        let Some(agreed) = self.agree(shown) else { return };
+        let ops = &agreed.prepared.plan.ops;
+        let guide = ops.iter().any(is_guided).then(|| Guide::new(ops.clone()));
+        let job = match &guide {
+            Some(guide) => commit(agreed, Attendance::Seat(guide.seat.clone())),
+            None => self.commit(agreed),
+        };
+        if self.begin_write(job, services) && guide.is_some() {
+            (self.guide, self.review) = (guide, None);
+        }
+    }
+
+    fn reads_again(&mut self) {
+        let ops: &[Op] = match (&self.guide, self.review.as_ref().map(|review| &review.state)) {
+            (Some(guide), _) if guide.is_running() => guide.ops(),
+            (_, Some(ReviewState::Writing(prepared))) => &prepared.plan.ops,
+            _ => return,
+        };
+        let banks = ops.iter().flat_map(Op::ranges).filter_map(|range| range.start().bank());
+        self.read_after.extend(banks);
+    }
+
+    fn carried_out(&mut self, committed: &Committed, _: &mut Services) {
+        if let Some(guide) = self.guide.as_mut().filter(|guide| guide.is_running()) {
+            guide.end = Some(End::Done(committed.written.outcomes.clone()));
+        }
+    }
+
+    fn log_begin(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
+        self.log_operations(what, prepared, services);
+    }
+}
+
+impl Saved for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> BissJob {
+        BissJob::Save
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        self.wanted_profile().map(Body::new)
+    }
+
+    fn known_body(&self) -> Option<Known> {
+        let survey = self.survey.as_ref()?;
+        let (mut data, mut missing) = (Vec::new(), Vec::new());
+        for area in survey.identity.description.areas().iter().filter(|area| area.access.reads()) {
+            let bank = |number| {
+                let bytes = self.memory.bytes(RegisterAddress::start_of(number), Bank::SIZE);
+                bytes.and_then(|bytes| Some(Bank { number, bytes: bytes.try_into().ok()? }))
+            };
+            match area.banks().map(bank).collect::<Option<Vec<Bank>>>() {
+                Some(banks) => data.push(DataImage::of(area, banks)),
+                None => missing.push(words::name(&area.name)),
+            }
+        }
+        if !missing.is_empty() {
+            return Some(Err(missing));
+        }
+        let profile = profile_of(survey, data, survey.status.unsaved_mode());
+        let remarks = without_edits(self.edits()).into_iter().chain(words::saved_unsaved(&profile)).collect();
+        Some(Ok((Body::new(profile), remarks)))
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_profile()?, services);
+        Ok(())
+    }
+}
+
+fn commit(Agreed { prepared, consent, force_wear }: Agreed<Biss>, attendance: Attendance) -> BissJob {
+    BissJob::Commit(Box::new(Commit { prepared, consent, force_wear, attendance }))
+}

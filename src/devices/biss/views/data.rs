@@ -1,0 +1,135 @@
+//! Motor and OEM data: the bytes of an area in the hex editor, what they mean, and the way to write the edits.
+
+use egui::{RichText, ScrollArea, Ui};
+
+use crate::app::{Action, AnyDevice, Studio, Text};
+use crate::devices::biss::protocol::{Area, RegisterAddress};
+use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::{Action as Biss, Encoder, places};
+use crate::ui::controls::{empty, enabled_button, name, paragraph};
+use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, typed_view};
+use crate::ui::{Skin, foot, icons};
+
+/// What the page remembers.
+#[derive(Default)]
+pub(super) struct View {
+    area: usize,
+    hex: HexView,
+}
+
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let areas = encoder.description.as_ref().map(|own| own.areas()).unwrap_or_default();
+    let Some(area) = areas.get(view.area).or_else(|| areas.first()) else {
+        let words = if encoder.description.is_some() { "data.none" } else { "registers.nothing" };
+        empty(ui, skin, &skin.say(words), None);
+        return;
+    };
+    egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
+        foot::foot_ui(ui, skin, studio, device, actions);
+    });
+    let shown = encoder.shown(area);
+    ui.horizontal_wrapped(|ui| {
+        for (at, own) in areas.iter().enumerate() {
+            let word = skin.words(&words::name(&own.name));
+            let response = ui.add(egui::Button::selectable(own == area, &word));
+            if name(response, true, &word).clicked() && at != view.area {
+                *view = View { area: at, ..View::default() };
+            }
+        }
+        let ready = encoder.session.is_ready();
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("data.read")).clicked() {
+            actions.push(Action::Biss(encoder.session.id, Biss::ReadArea(area.first)));
+        }
+        let shown = shown.as_ref().unwrap_or(area);
+        let text = Text::new("data.banks")
+            .with("first", format!("0x{:02X}", shown.first))
+            .with("last", format!("0x{:02X}", shown.last))
+            .with("bytes", shown.size());
+        ui.label(skin.caption(skin.words(&text)));
+    });
+    ui.add_space(skin.space.inside);
+    super::unsaved_ui(ui, skin, encoder, actions);
+    super::refusal_ui(ui, skin, encoder, actions);
+    match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
+        Some(((read, wanted), own)) => bytes(ui, skin, encoder, &own, (&read, &wanted), view, actions),
+        None if encoder.profile().is_some() => {
+            empty(ui, skin, &skin.say("data.not_in_profile"), None);
+        }
+        None => {
+            let read = (icons::ARROW_CLOCKWISE, skin.say("data.read"), encoder.session.is_ready());
+            if empty(ui, skin, &skin.say("data.not_read"), Some((read.0, &read.1, read.2))) {
+                actions.push(Action::Biss(encoder.session.id, Biss::ReadArea(area.first)));
+            }
+        }
+    }
+}
+
+fn bytes(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    area: &Area,
+    (read, wanted): (&[u8], &[u8]),
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let read_only = encoder.why_not_editable(area);
+    if let Some(why) = &read_only {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icons::LOCK_SIMPLE).color(skin.palette.warn));
+            paragraph(ui, skin.words(why));
+        });
+    }
+    let beside = ui.available_width() >= 820.0;
+    let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
+    let model = HexModel { device: read, wanted, marks: &[], read_only: read_only.as_ref(), lines };
+    let mut edits = Vec::new();
+    let label = skin.words(&words::name(&area.name));
+    if beside {
+        ui.horizontal_top(|ui| {
+            ui.vertical(|ui| edits = hex_editor(ui, skin, &label, &model, &mut view.hex));
+            ui.add_space(skin.space.between);
+            ui.vertical(|ui| {
+                place_ui(ui, skin, area, view);
+                typed_view(ui, skin, view.hex.to_read(wanted));
+            });
+        });
+    } else {
+        ScrollArea::vertical().id_salt("area").auto_shrink(false).show(ui, |ui| {
+            // Room for the ring around what has the keyboard.
+            ui.add_space(skin.space.inside);
+            edits = hex_editor(ui, skin, &label, &model, &mut view.hex);
+            place_ui(ui, skin, area, view);
+            typed_view(ui, skin, view.hex.to_read(wanted));
+        });
+    }
+    // The buttons at the foot undo as well as the keys do.
+    if actions.iter().any(|own| matches!(own, Action::Biss(_, Biss::Undo | Biss::Redo))) {
+        view.hex.follow(wanted);
+    }
+    let start = |offset: usize| -> Option<RegisterAddress> { places(area).nth(offset) };
+    for edit in edits {
+        let action = match edit {
+            HexEdit::Put { address, bytes } => start(address).map(|start| Biss::Put { start, bytes }),
+            HexEdit::Undo => Some(Biss::Undo),
+            HexEdit::Redo => Some(Biss::Redo),
+            HexEdit::Revert { range } => start(range.start).map(|start| Biss::Revert { start, count: range.len() }),
+        };
+        actions.extend(action.map(|action| Action::Biss(encoder.session.id, action)));
+    }
+}
+
+/// Where the cursor stands, as a register.
+fn place_ui(ui: &mut Ui, skin: &Skin, area: &Area, view: &View) {
+    if let Some(at) = places(area).nth(view.hex.cursor()) {
+        let text = Text::new("data.at").with("address", at);
+        ui.label(skin.caption(skin.words(&text)));
+    }
+}

@@ -1,0 +1,106 @@
+//! The single-cycle frame as it came last: a cell a bit, and what its fields say.
+
+use egui::Ui;
+
+use crate::analysis::quality::Verdict;
+use crate::app::{Action, Text};
+use crate::devices::biss::procedures::PositionReading;
+use crate::devices::biss::protocol::{Layout, Reading};
+use crate::devices::biss::state::Action as Biss;
+use crate::devices::biss::state::Encoder;
+use crate::ui::Skin;
+use crate::ui::controls::{card_with, enabled_button, paragraph, row};
+use crate::ui::icons;
+use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
+
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(identity) = encoder.identity() else { return };
+    let read = |ui: &mut Ui| {
+        let ready = encoder.session.is_ready();
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("frame_card.read")).clicked() {
+            actions.push(Action::Biss(encoder.session.id, Biss::ReadPosition));
+        }
+    };
+    card_with(ui, skin, "frame_card.title", read, |ui| {
+        let reading = encoder.record.last();
+        let (fields, bits) = strip(skin, &identity.layout, reading);
+        let label = skin.say("frame_card.title");
+        frame_strip(ui, skin, &FrameStrip { label: &label, fields: &fields, bits: &bits });
+        if let Some(reading) = reading {
+            row(ui, skin, &skin.say("live.raw"), skin.mono(skin.word(reading.raw())));
+            if let Some(frame) = reading.frame {
+                row(ui, skin, &skin.say("frame_card.frame"), skin.mono(skin.word(frame)));
+            }
+        }
+        if reading.is_some_and(|reading| reading.frame.is_none()) {
+            paragraph(ui, skin.caption(skin.say("frame_card.pin")));
+        }
+        let errors = encoder.record.crc_errors();
+        if errors > 0 {
+            let text = Text::new("frame_card.crc_errors").with("count", errors);
+            paragraph(ui, egui::RichText::new(skin.words(&text)).color(skin.palette.warn));
+        }
+    });
+}
+
+fn as_sent(reading: &PositionReading) -> Reading {
+    Reading {
+        multiturn: reading.turns,
+        singleturn: reading.steps,
+        error: reading.error == Some(true),
+        warning: reading.warning == Some(true),
+    }
+}
+
+/// The fields of a frame with their bits. Over the configuration pin only the position comes.
+fn strip(skin: &Skin, layout: &Layout, reading: Option<&PositionReading>) -> (Vec<StripField>, Vec<Option<bool>>) {
+    let mut fields = Vec::new();
+    let mut bits = Vec::new();
+    let mut add = |field: StripField, value: Option<u64>| {
+        bits.extend((0..field.bits).rev().map(|bit| value.map(|value| value >> bit & 1 == 1)));
+        fields.push(field);
+    };
+    let number = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
+    let field = |name: &str, bits: u8, colour| StripField {
+        name: name.to_owned(),
+        bits: usize::from(bits),
+        colour: Some(colour),
+        ..StripField::default()
+    };
+    let turns = reading.map(|own| u64::from(own.turns));
+    let is_split_known = reading.is_none_or(|own| own.is_split_known);
+    if !is_split_known {
+        let position = reading.map(|own| own.position());
+        let value = number(position);
+        let bits = layout.multiturn_bits() + layout.singleturn_bits();
+        add(StripField { value, ..field("MT + ST", bits, 0) }, position);
+    }
+    if is_split_known && layout.multiturn_bits() > 0 {
+        let value = format!("{} {}", skin.say("live.turns"), number(turns));
+        add(StripField { value, ..field("MT", layout.multiturn_bits(), 0) }, turns);
+    }
+    if is_split_known && layout.singleturn_bits() > 0 {
+        let steps = reading.map(|own| u64::from(own.steps));
+        let value = reading.map(|own| format!("{} °", skin.number(own.degrees(), 3))).unwrap_or_default();
+        add(StripField { value, ..field("ST", layout.singleturn_bits(), 1) }, steps);
+    }
+    if reading.is_some_and(|own| own.frame.is_none()) {
+        return (fields, bits);
+    }
+    for (is_there, name, is_set, verdict) in [
+        (layout.has_error_bit(), "nERR", reading.and_then(|own| own.error), Verdict::Fault),
+        (layout.has_warning_bit(), "nWARN", reading.and_then(|own| own.warning), Verdict::Warn),
+    ] {
+        if is_there {
+            let lit = is_set.map(|set| if set { verdict } else { Verdict::Ok });
+            add(StripField { lit, ..field(name, 1, 2) }, is_set.map(|set| u64::from(!set)));
+        }
+    }
+    if layout.crc_bits() > 0 {
+        // Only frames whose checksum fits are shown: what it says follows from the rest.
+        let crc = reading.map(|own| layout.emit(&as_sent(own)) & ((1 << layout.crc_bits().min(63)) - 1));
+        let value = crc.map(|crc| format!("0x{crc:02X}")).unwrap_or_default();
+        add(StripField { value, ..field("CRC", layout.crc_bits(), 3) }, crc);
+    }
+    (fields, bits)
+}

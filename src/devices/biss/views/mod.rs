@@ -1,0 +1,154 @@
+//! The BiSS tab: its pages, each about one thing that a person wants of an encoder.
+
+pub(crate) mod connect_form;
+mod data;
+mod encoder;
+mod frame;
+pub(crate) mod live;
+mod motor;
+mod procedures;
+mod registers;
+mod run;
+mod sheet;
+mod wiring;
+
+use egui::Ui;
+
+use crate::app::{Action, AnyDevice, Studio};
+use crate::devices::biss::state::{Action as Biss, Encoder};
+use crate::ui::controls::{enabled_button, paragraph};
+use crate::ui::{Skin, backups, icons, page};
+
+/// A page of the tab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Page {
+    /// Who it is, how it is, its frame, and how it is wired.
+    #[default]
+    Encoder,
+    /// Registers, bank after bank.
+    Registers,
+    /// Motor and OEM data.
+    Data,
+    /// Calibration, Wiegand test, preset, filter: step by step.
+    Procedures,
+    /// Profiles, backups and what was written.
+    Backups,
+}
+
+impl Page {
+    pub(crate) const ALL: [Page; 5] = [Page::Encoder, Page::Registers, Page::Data, Page::Procedures, Page::Backups];
+
+    pub(crate) fn icon(self) -> &'static str {
+        match self {
+            Page::Encoder => icons::CPU,
+            Page::Registers => icons::TABLE,
+            Page::Data => icons::MEMORY,
+            Page::Procedures => icons::LIST_CHECKS,
+            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
+        }
+    }
+
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Page::Encoder => "page.encoder",
+            Page::Registers => "page.registers",
+            Page::Data => "page.data",
+            Page::Procedures => "page.procedures",
+            Page::Backups => "page.backups",
+        }
+    }
+
+    pub(crate) fn help(self) -> &'static str {
+        match self {
+            Page::Encoder => "help.biss_encoder",
+            Page::Registers => "help.biss_registers",
+            Page::Data => "help.biss_data",
+            Page::Procedures => "help.biss_procedures",
+            Page::Backups => "help.backups",
+        }
+    }
+
+    /// It scrolls by itself; its buttons stay where they are.
+    fn is_fixed(self) -> bool {
+        matches!(self, Page::Registers | Page::Data)
+    }
+}
+
+/// What the tab remembers of one session while the window is open: text buffers and selections.
+#[derive(Default)]
+pub(crate) struct View {
+    /// The open page.
+    pub page: Page,
+    /// The encoder that the rest is about.
+    serial_number: Option<String>,
+    registers: registers::View,
+    data: data::View,
+    procedures: procedures::View,
+}
+
+impl View {
+    /// What was selected for another encoder is not for this one.
+    pub(crate) fn follow(&mut self, encoder: &Encoder) {
+        let Some(own) = encoder.serial_number() else { return };
+        if self.serial_number.as_deref().is_some_and(|before| before != own) {
+            *self = View { page: self.page, ..View::default() };
+        }
+        self.serial_number = Some(own.to_owned());
+    }
+}
+
+/// Why data were not read, where somebody wanted it.
+fn refusal_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(why) = &encoder.refusal else { return };
+    ui.horizontal_top(|ui| {
+        ui.label(egui::RichText::new(icons::WARNING).color(skin.palette.warn));
+        paragraph(ui, skin.words(why));
+    });
+    motor::turning_ui(ui, skin, encoder, actions);
+}
+
+/// Registers that may show what was never saved, with the way back to operation.
+fn unsaved_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(why) = encoder.unsaved() else { return };
+    ui.horizontal_top(|ui| {
+        ui.label(egui::RichText::new(icons::WARNING).color(skin.palette.warn));
+        paragraph(ui, skin.words(&why));
+    });
+    if encoder.profile().is_none() {
+        lead_back_ui(ui, skin, encoder, actions);
+    }
+    ui.add_space(skin.space.inside);
+}
+
+/// The button that leads back to operation.
+fn lead_back_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let word = skin.say("lead_back_card.button");
+    if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
+        actions.push(Action::Biss(encoder.session.id, Biss::LeadBack));
+    }
+}
+
+/// Draws the open page.
+pub(crate) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    if view.page.is_fixed() {
+        // Tables fill what there is.
+        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
+        frame.show(ui, |ui| match view.page {
+            Page::Data => data::page_ui(ui, skin, (studio, device), encoder, &mut view.data, actions),
+            _ => registers::page_ui(ui, skin, encoder, &mut view.registers, actions),
+        });
+        return;
+    }
+    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| match view.page {
+        Page::Backups => backups::page_ui(ui, skin, device, actions),
+        Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
+        _ => encoder::page_ui(ui, skin, encoder, actions),
+    });
+}

@@ -1,0 +1,44 @@
+//! What turns the virtual encoder's shaft, wherever that matters, and that something turns it still.
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::biss::state::{Action as Biss, Encoder};
+use crate::sim::Motor;
+use crate::ui::controls::{card, enabled_button, paragraph};
+use crate::ui::{Skin, icons};
+
+/// Speeds that the procedures ask for, and rest.
+const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
+
+/// The motor and its speed.
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
+    card(ui, skin, "motor_card.title", |ui| {
+        paragraph(ui, skin.caption(skin.say("motor_card.words")));
+        ui.horizontal_wrapped(|ui| {
+            for rpm in SPEEDS {
+                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
+                if ui.add(egui::Button::selectable(motor.rpm() == rpm, word)).clicked() {
+                    actions.push(Action::Biss(encoder.session.id, Biss::Turn(rpm)));
+                }
+            }
+        });
+    });
+}
+
+/// The virtual motor turns still, and a way to stop it; a motor of the world only its person can stop.
+pub(super) fn turning_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(motor) = &encoder.motor else { return };
+    if motor.rpm() == 0.0 {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        let id = if motor.rpm() > 0.0 { "motor_card.turns_cw" } else { "motor_card.turns_ccw" };
+        let text = Text::new(id).with_number("rpm", motor.rpm().abs(), 0);
+        ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+        ui.label(skin.words(&text));
+        if enabled_button(ui, true, icons::STOP, &skin.say("motor_card.stop")).clicked() {
+            actions.push(Action::Biss(encoder.session.id, Biss::Turn(0.0)));
+        }
+    });
+}

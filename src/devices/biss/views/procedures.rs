@@ -1,0 +1,277 @@
+//! Guided procedures: what is to be done, what turns the motor, and then step by step what to do now, how it stands, and
+//! what came of it. Filter and preset beside them.
+
+use egui::{RichText, Ui};
+
+use super::{motor, run};
+use crate::app::session::Phase;
+use crate::app::{Action, AnyDevice, SessionId, Studio, Text};
+use crate::devices::biss::jobs::Change;
+use crate::devices::biss::profile::{MotorSource, MountingRun, PresetParts};
+use crate::devices::biss::protocol::{DeviceMode, Filter, ProcedureKind};
+use crate::devices::biss::state::explain as explained;
+use crate::devices::biss::state::{Action as Biss, Encoder, forms::PresetForm, words};
+use crate::ui::controls::{
+    allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem, row, two_columns,
+};
+use crate::ui::{Skin, icons};
+
+/// What the page remembers.
+#[derive(Default)]
+pub(super) struct View {
+    motor: Option<MotorSource>,
+    calibrate: bool,
+    wiegand: bool,
+    save_result: bool,
+    with_preset: bool,
+    data: Option<SessionId>,
+    preset: Option<PresetForm>,
+}
+
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    studio: &Studio,
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    if let Some(guide) = &encoder.guide {
+        run::guide_ui(ui, skin, encoder, guide, actions);
+        return;
+    }
+    let Some(description) = encoder.description.as_ref().filter(|_| encoder.session.phase != Phase::Offline) else {
+        empty(ui, skin, &skin.say("procedures.nothing"), None);
+        return;
+    };
+    if description.procedures().is_empty() {
+        empty(ui, skin, &skin.say("procedures.none"), None);
+        return;
+    }
+    left_behind(ui, skin, encoder, actions);
+    let form = view.preset.get_or_insert_with(|| stored(encoder));
+    let mut mounting = Mounting {
+        motor: &mut view.motor,
+        calibrate: &mut view.calibrate,
+        wiegand: &mut view.wiegand,
+        save_result: &mut view.save_result,
+        with_preset: &mut view.with_preset,
+        data: &mut view.data,
+        form,
+    };
+    two_columns(
+        ui,
+        skin,
+        (actions, &mut mounting),
+        |ui, (actions, mounting)| {
+            mounting_ui(ui, skin, studio, encoder, mounting, actions);
+        },
+        |ui, (actions, mounting)| {
+            preset_ui(ui, skin, encoder, mounting.form, actions);
+            ui.add_space(skin.space.groups);
+            if let Some(motor) = &encoder.motor {
+                motor::card_ui(ui, skin, encoder, motor, actions);
+                ui.add_space(skin.space.groups);
+            }
+            filter_ui(ui, skin, encoder, actions);
+        },
+    );
+}
+
+/// The choices of a mounting run.
+struct Mounting<'v> {
+    motor: &'v mut Option<MotorSource>,
+    calibrate: &'v mut bool,
+    wiegand: &'v mut bool,
+    save_result: &'v mut bool,
+    with_preset: &'v mut bool,
+    data: &'v mut Option<SessionId>,
+    form: &'v mut PresetForm,
+}
+
+/// The stored preset value, to begin with.
+fn stored(encoder: &Encoder) -> PresetForm {
+    let value = encoder.survey.as_ref().and_then(|survey| survey.preset);
+    let layout = encoder.identity().map(|identity| &identity.layout);
+    value.zip(layout).map(|(value, layout)| PresetForm::of(value, layout)).unwrap_or_default()
+}
+
+/// Somebody left the encoder in a device mode, or the password set.
+fn left_behind(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let Some(status) = &encoder.status else { return };
+    let elsewhere = status.mode.is_some_and(|mode| mode != DeviceMode::OPERATION);
+    if !elsewhere && status.protection.is_none_or(|protection| protection == 0) {
+        return;
+    }
+    card(ui, skin, "lead_back_card.title", |ui| {
+        let mode = explained::mode(status.mode.unwrap_or_default());
+        let text = Text::new("lead_back_card.words").with_text("mode", mode);
+        paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
+        super::lead_back_ui(ui, skin, encoder, actions);
+    });
+    ui.add_space(skin.space.groups);
+}
+
+fn mounting_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    studio: &Studio,
+    encoder: &Encoder,
+    own: &mut Mounting<'_>,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, skin, "mounting_card.title", |ui| {
+        paragraph(ui, skin.label(skin.say("mounting_card.words")));
+        ui.add_space(skin.space.inside);
+        ui.label(skin.say("mounting_card.motor"));
+        let sources = [
+            (Some(MotorSource::Other), skin.say("mounting_card.other")),
+            (Some(MotorSource::ThisEncoder), skin.say("mounting_card.this_encoder")),
+        ];
+        options(ui, &skin.say("mounting_card.motor"), own.motor, sources);
+        let refused = *own.motor == Some(MotorSource::ThisEncoder);
+        if refused {
+            paragraph(ui, RichText::new(skin.say("mounting_card.refused")).color(skin.palette.bad));
+        }
+        ui.add_space(skin.space.between);
+        ui.label(skin.say("mounting_card.what"));
+        choice(ui, skin, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
+        choice(ui, skin, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
+        ui.add_enabled_ui(*own.wiegand, |ui| {
+            ui.horizontal(|ui| {
+                ui.add_space(skin.space.groups);
+                ui.checkbox(own.save_result, skin.say("mounting_card.save"));
+            });
+        });
+        ui.checkbox(own.with_preset, skin.say("mounting_card.preset"));
+        data_ui(ui, skin, studio, own.data);
+        ui.add_space(skin.space.between);
+        let wish = wish(encoder, own);
+        let ready = if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
+        let allowed = ready.and(wish.as_ref().map(|_| ()).map_err(Clone::clone));
+        if allowed_button(ui, skin, &allowed, icons::LIST_CHECKS, &skin.say("mounting_card.review")).clicked()
+            && let Ok(run) = wish
+        {
+            let motor = own.motor.unwrap_or(MotorSource::Other);
+            let plan = Biss::PlanMounting { run: Box::new(run), motor, data: *own.data };
+            actions.push(Action::Biss(encoder.session.id, plan));
+        }
+    });
+}
+
+/// Something that may be done, and what it takes.
+fn choice(ui: &mut Ui, skin: &Skin, on: &mut bool, id: &'static str, words: &Text) {
+    ui.checkbox(on, skin.say(id));
+    ui.horizontal_top(|ui| {
+        ui.add_space(skin.space.groups);
+        paragraph(ui, skin.caption(skin.words(words)));
+    });
+}
+
+/// What is wished, or why it cannot be reviewed yet.
+fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
+    let turns = *own.calibrate || *own.wiegand;
+    match own.motor {
+        None if turns => return Err(Text::new("mounting_card.no_motor")),
+        Some(MotorSource::ThisEncoder) if turns => return Err(Text::new("mounting_card.refused")),
+        _ => {}
+    }
+    let preset = if *own.with_preset {
+        let layout = encoder.identity().map(|identity| &identity.layout);
+        let layout = layout.ok_or_else(|| Text::new("session.not_ready"))?;
+        Some((own.form.value(layout)?, PresetParts::Both))
+    } else {
+        None
+    };
+    if !turns && preset.is_none() && own.data.is_none() {
+        return Err(Text::new("mounting_card.nothing"));
+    }
+    let wiegand = own.wiegand.then_some(*own.save_result);
+    Ok(MountingRun { calibrate: *own.calibrate, wiegand, preset, data: None })
+}
+
+/// Whose data is written: that of a profile which is open.
+fn data_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, data: &mut Option<SessionId>) {
+    let profiles: Vec<&AnyDevice> =
+        studio.devices().iter().filter(|own| own.biss().is_some_and(|own| own.profile().is_some())).collect();
+    if data.is_some_and(|own| profiles.iter().all(|other| other.id() != own)) {
+        *data = None;
+    }
+    if profiles.is_empty() {
+        ui.add_enabled(false, egui::Checkbox::new(&mut false, skin.say("mounting_card.data")))
+            .on_disabled_hover_text(skin.say("mounting_card.no_profile"));
+        return;
+    }
+    for profile in profiles {
+        let mut on = *data == Some(profile.id());
+        let text = Text::new("mounting_card.data_of").with("name", profile.name());
+        if ui.checkbox(&mut on, skin.words(&text)).changed() {
+            *data = on.then(|| profile.id());
+        }
+    }
+}
+
+fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm, actions: &mut Vec<Action>) {
+    card(ui, skin, "preset_card.title", |ui| {
+        paragraph(ui, skin.label(skin.say("preset_card.words")));
+        let Some(identity) = encoder.identity() else { return };
+        let layout = &identity.layout;
+        // What is wrong with an entry stands under it.
+        labelled_entry(ui, skin, "preset_card.degrees", &mut form.degrees, 96.0, "270");
+        problem(ui, skin, form.singleturn(layout).err().as_ref());
+        labelled_entry(ui, skin, "preset_card.turns", &mut form.turns, 96.0, "0");
+        problem(ui, skin, form.multiturn(layout).err().as_ref());
+        let value = form.value(layout);
+        let ready = encoder.session.is_ready();
+        let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));
+        ui.horizontal_wrapped(|ui| {
+            let word = skin.say("preset_card.store");
+            if enabled_button(ui, ready && value.is_ok(), icons::FLOPPY_DISK, &word).clicked() {
+                actions.push(Action::Biss(encoder.session.id, plan(value.ok(), None)));
+            }
+        });
+        ui.add_space(skin.space.inside);
+        if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
+            let words = skin.words(&explained::preset(stored, layout.singleturn_bits()));
+            row(ui, skin, &skin.say("preset_card.stored"), skin.mono(words));
+        }
+        paragraph(ui, skin.label(skin.say("preset_card.fire_words")));
+        ui.horizontal_wrapped(|ui| {
+            for (parts, id) in [
+                (PresetParts::Both, "preset_card.both"),
+                (PresetParts::Singleturn, "preset_card.singleturn"),
+                (PresetParts::Multiturn, "preset_card.multiturn"),
+            ] {
+                if enabled_button(ui, ready, icons::TARGET, &skin.say(id)).clicked() {
+                    actions.push(Action::Biss(encoder.session.id, plan(None, Some(parts))));
+                }
+            }
+        });
+    });
+}
+
+fn filter_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let has = encoder.description.as_ref().is_some_and(|own| own.procedure(ProcedureKind::FilterSelection).is_some());
+    if !has {
+        return;
+    }
+    card(ui, skin, "filter_card.title", |ui| {
+        paragraph(ui, skin.label(skin.say("filter_card.words")));
+        let own = encoder.status.as_ref().and_then(|status| status.filter);
+        for (filter, hint) in [(Filter::Balanced, "filter_card.balanced"), (Filter::Dynamic, "filter_card.dynamic")] {
+            ui.horizontal_wrapped(|ui| {
+                let word = skin.words(&words::filter(filter));
+                let is_own = own == Some(filter);
+                let ready = encoder.session.is_ready() && !is_own;
+                if is_own {
+                    ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
+                    ui.label(&word);
+                } else if enabled_button(ui, ready, icons::SLIDERS, &word).clicked() {
+                    let change = Box::new(Change::SelectFilter(filter));
+                    actions.push(Action::Biss(encoder.session.id, Biss::Plan(change)));
+                }
+                ui.label(skin.caption(skin.say(hint)));
+            });
+        }
+    });
+}

@@ -1,0 +1,256 @@
+//! The registers, bank after bank: a list of the banks, and the table.
+
+use egui::{RichText, ScrollArea, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::biss::protocol::{Access, Decoding, Name};
+use crate::devices::biss::state::explain as words;
+use crate::devices::biss::state::{Action as Biss, Encoder, Group, Shown};
+use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
+use crate::ui::widgets::{
+    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterRow, RegisterTable, RegisterView,
+    register_table,
+};
+use crate::ui::{Skin, icons};
+
+/// What the page remembers.
+#[derive(Default)]
+pub(super) struct View {
+    table: RegisterView,
+    folded: bool,
+}
+
+/// Width of the list of banks, and the width of the page from which it stands beside the table; below that a choice above
+/// the table does the same.
+const BANKS: f32 = 176.0;
+const BESIDE: f32 = 860.0;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    if encoder.description.is_none() {
+        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
+        if empty(ui, skin, &skin.say("registers.nothing"), Some((read.0, &read.1, read.2))) {
+            actions.push(Action::Biss(encoder.session.id, Biss::Read));
+        }
+        return;
+    }
+    let groups: Vec<RegisterGroup> = encoder.table.groups().iter().map(|own| group(skin, encoder, own)).collect();
+    if !std::mem::replace(&mut view.folded, true) {
+        // One bank at a time is what a person looks for; the direct registers are what everybody does.
+        (1..groups.len()).for_each(|at| view.table.fold(at, true));
+    }
+    let beside = ui.available_width() >= BESIDE;
+    head(ui, skin, encoder, (&groups, beside), view, actions);
+    super::unsaved_ui(ui, skin, encoder, actions);
+    super::refusal_ui(ui, skin, encoder, actions);
+    ui.add_space(skin.space.inside);
+    let height = ui.available_height();
+    if !beside {
+        table(ui, skin, encoder, &groups, height, view, actions);
+        return;
+    }
+    ui.horizontal_top(|ui| {
+        ui.allocate_ui_with_layout(egui::vec2(BANKS, height), egui::Layout::top_down(egui::Align::Min), |ui| {
+            ui.set_min_width(BANKS);
+            banks(ui, skin, encoder, &groups, view);
+        });
+        ui.vertical(|ui| table(ui, skin, encoder, &groups, height, view, actions));
+    });
+}
+
+/// What can be done with the bank and the register that are selected, and what is said to that.
+fn head(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    (groups, beside): (&[RegisterGroup], bool),
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let mut at = view.table.group().unwrap_or_default();
+    ui.horizontal(|ui| {
+        if !beside {
+            let label = skin.say("registers.bank");
+            if choice(ui, &label, &mut at, groups.iter().map(|own| own.title.clone()).enumerate()) {
+                view.table.select(Place { group: at, row: 0 });
+            }
+        }
+        if let Some(own) = encoder.table.groups().get(at) {
+            let word = skin.words(&read_words(own.bank));
+            if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &word).clicked() {
+                actions.push(Action::Biss(encoder.session.id, Biss::ReadBank(own.bank)));
+            }
+        }
+        watching(ui, skin, encoder, view, actions);
+        if let Some(problem) = view.table.problem(skin) {
+            let words = format!("{} {problem}", icons::WARNING_CIRCLE);
+            ui.add(egui::Label::new(RichText::new(words).color(skin.palette.bad)).truncate());
+        } else if encoder.memory.is_dirty() {
+            ui.add(egui::Label::new(skin.caption(skin.say("registers.edited"))).truncate());
+        } else if !encoder.record.watched().is_empty() && encoder.session.is_polling() {
+            ui.add(egui::Label::new(skin.caption(skin.say("registers.watching"))).truncate());
+        }
+    });
+}
+
+fn read_words(bank: Option<u8>) -> Text {
+    match bank {
+        None => Text::new("registers.read_direct"),
+        Some(bank) => Text::new("registers.read_bank").with("bank", format!("0x{bank:02X}")),
+    }
+}
+
+/// Watching the register that is selected, and what is watched.
+fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &mut Vec<Action>) {
+    let selected = view.table.selected();
+    let group = selected.and_then(|place| encoder.table.groups().get(place.group));
+    let row = selected.zip(group).and_then(|(place, group)| group.rows().get(place.row));
+    let watched = encoder.record.watched();
+    if let Some(row) = row {
+        let on = watched.iter().any(|own| own.address == row.register.address);
+        let word = Text::new(if on { "registers.unwatch" } else { "registers.watch" });
+        let word = skin.words(&word.with("address", row.register.address));
+        let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
+        if button.on_hover_text(skin.words(&words::name(&row.register.name))).clicked() {
+            let register = Box::new(row.register.clone());
+            actions.push(Action::Biss(encoder.session.id, Biss::Watch(register, !on)));
+        }
+    }
+    if !watched.is_empty() {
+        let word = skin.words(&Text::new("registers.watched").with("count", watched.len()));
+        icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
+            ui.label(skin.heading(&word));
+            for own in watched {
+                let name = format!("{}  {}", own.address, skin.words(&words::name(&own.name)));
+                if ui.button(format!("{}  {name}", icons::X)).clicked() {
+                    actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(own), false)));
+                }
+            }
+        });
+    }
+}
+
+fn banks(ui: &mut Ui, skin: &Skin, encoder: &Encoder, groups: &[RegisterGroup], view: &mut View) {
+    let selected = view.table.group();
+    ScrollArea::vertical().id_salt("banks").auto_shrink(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for (at, own) in encoder.table.groups().iter().enumerate() {
+            let title = groups.get(at).map(|group| group.title.clone()).unwrap_or_default();
+            let ink = if own.is_read(&encoder.memory) { skin.palette.text } else { skin.palette.muted };
+            let text = RichText::new(&title).color(ink);
+            let button = egui::Button::selectable(selected == Some(at), (text, egui::Atom::grow()));
+            let response = ui.add(button.truncate().min_size(egui::vec2(BANKS - 16.0, 24.0)));
+            if response.on_hover_text(&title).clicked() {
+                view.table.select(Place { group: at, row: 0 });
+            }
+        }
+    });
+}
+
+fn table(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    groups: &[RegisterGroup],
+    height: f32,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let none = skin.say("registers.elsewhere");
+    let row = |place: Place| {
+        let shown = encoder.table.groups().get(place.group).and_then(|own| own.shown(place.row, &encoder.memory));
+        shown.map(|own| row_of(skin, encoder, &own, &none)).unwrap_or_default()
+    };
+    let label = skin.say("page.registers");
+    let widest = encoder.description.iter().flat_map(|own| own.registers()).map(|own| usize::from(own.width)).max();
+    let kind = RegisterKind::Bytes { widest: widest.unwrap_or(1) };
+    let table = RegisterTable { label: &label, groups, row: &row, kind };
+    let mut typed = Vec::new();
+    let output = register_table(ui, skin, &table, height, &mut view.table, &mut |place, text| {
+        let byte = parse(text)?;
+        typed.push((place, byte));
+        Ok(())
+    });
+    let start = |place: Place| {
+        let row = encoder.table.groups().get(place.group)?.rows().get(place.row)?;
+        Some(row.register.address)
+    };
+    for (place, byte) in typed {
+        let put = start(place).map(|start| Biss::Put { start, bytes: vec![byte] });
+        actions.extend(put.map(|put| Action::Biss(encoder.session.id, put)));
+    }
+    if let Some(RegisterEvent::Revert(place)) = output.event {
+        let revert = start(place).map(|start| Biss::Revert { start, count: 1 });
+        actions.extend(revert.map(|revert| Action::Biss(encoder.session.id, revert)));
+    }
+    // What comes in sight is read once by itself, when nothing else is to be done.
+    let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
+    let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.wants(own);
+    if let Some((_, own)) = in_sight.into_iter().find(unread) {
+        actions.push(Action::Biss(encoder.session.id, Biss::SeeBank(own.bank)));
+    }
+}
+
+fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
+    let title = match (own.bank, &own.name) {
+        (None, _) => skin.say("registers.direct"),
+        (Some(bank), None) => format!("0x{bank:02X}"),
+        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", skin.words(&words::name(name))),
+    };
+    let note = if own.is_read(&encoder.memory) { String::new() } else { skin.say("registers.not_read") };
+    RegisterGroup { title, note, rows: own.rows().len() }
+}
+
+fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
+    let register = &shown.row.register;
+    let name =
+        if register.name.is_empty() { skin.say("registers.byte") } else { skin.words(&words::name(&register.name)) };
+    // A code is no quantity.
+    let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
+    RegisterRow {
+        address: register.address.to_string(),
+        name,
+        value: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
+        decimal: shown.number().filter(|_| is_quantity).map(|own| own.to_string()).unwrap_or_default(),
+        meaning: encoder.meaning(shown).map(|own| skin.words(&own)).unwrap_or_default(),
+        access: match register.access {
+            Access::R => "R",
+            Access::W => "W",
+            Access::Rw => "RW",
+        }
+        .to_owned(),
+        default: crate::bits::hex(&register.default),
+        differs: shown.is_not_as_delivered(),
+        changed: shown.has_changed,
+        edited: shown.is_edited,
+        cost: (!register.saves.is_empty()).then(|| skin.say("registers.cost")),
+        read_only: (!shown.row.is_data).then(|| elsewhere.to_owned()),
+        fields: fields(skin, shown),
+        ..RegisterRow::default()
+    }
+}
+
+/// The bits of a register that has names for them.
+fn fields(skin: &Skin, shown: &Shown<'_>) -> Vec<RegisterBits> {
+    let Decoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
+    let number = shown.number();
+    let bit = |(bit, name): &(u8, Name)| {
+        let is_set = number.map(|number| number >> bit & 1 == 1);
+        RegisterBits {
+            bits: format!("b{bit}"),
+            name: skin.words(&words::name(name)),
+            value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
+            meaning: is_set
+                .map(|set| skin.say(if set { "registers.set" } else { "registers.clear" }))
+                .unwrap_or_default(),
+            lit: is_set == Some(true),
+        }
+    };
+    names.iter().map(bit).collect()
+}
+
+/// A byte as a person types it: hexadecimal, as it is shown.
+fn parse(text: &str) -> Result<u8, Text> {
+    let digits = text.trim().trim_start_matches("0x").trim_end_matches(['h', 'H']);
+    let byte = u8::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));
+    byte.ok_or_else(|| Text::new("registers.no_byte").with("text", text.trim()))
+}

@@ -1,0 +1,207 @@
+//! A guided procedure on its way: its steps, what to do now, what is measured against what is allowed, and the end with its
+//! report.
+
+use egui::{RichText, Ui};
+
+use super::motor;
+use crate::app::{Action, Severity, Text};
+use crate::devices::biss::procedures::procedure::{Advice, Answer, Demand, Detail, Run, Task};
+use crate::devices::biss::profile::Op;
+use crate::devices::biss::state::explain as says;
+use crate::devices::biss::state::{Action as Biss, Encoder, End, Guide, Reached};
+use crate::ui::controls::{button, card, paragraph, severity};
+use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
+use crate::ui::{Skin, icons};
+
+pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
+    let id = encoder.session.id;
+    // What came of it is looked at when it is there.
+    let is_over = guide.end.is_some();
+    let seen = ui.scope_id().with("end");
+    if is_over && !ui.data(|data| data.get_temp(seen)).unwrap_or(false) {
+        ui.scroll_to_cursor(Some(egui::Align::Min));
+    }
+    ui.data_mut(|data| data.insert_temp(seen, is_over));
+    if let Some(end) = &guide.end {
+        end_ui(ui, skin, encoder, guide.ops(), end, actions);
+        ui.add_space(skin.space.groups);
+    }
+    if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
+        motor::card_ui(ui, skin, encoder, motor, actions);
+        ui.add_space(skin.space.groups);
+    }
+    card(ui, skin, "guide.title", |ui| {
+        let list: Vec<Step> =
+            guide.steps().iter().map(|own| step(skin, guide, own.op, own.is_first, own.step, own.reached)).collect();
+        let demand = guide.demand();
+        let why = demand.and_then(|own| own.blockers.first()).map(|own| skin.words(&says::blocker(*own)));
+        let word = skin.say(match demand.map(|own| own.task) {
+            Some(Task::Stand | Task::StandAtPlace) => "guide.go_on",
+            _ => "guide.start",
+        });
+        let start = demand.map(|_| (word.as_str(), why.as_deref().map_or(Ok(()), Err)));
+        let skip = skin.say("guide.skip");
+        let model = Steps { steps: &list, start, skip: demand.map(|_| skip.as_str()) };
+        let event = steps(ui, skin, &model);
+        match (event, demand) {
+            (Some(StepsEvent::Start), Some(own)) => {
+                actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Go)));
+            }
+            (Some(StepsEvent::Skip), Some(own)) => {
+                actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Skip)));
+            }
+            _ => {}
+        }
+    });
+}
+
+#[allow(clippy::too_many_arguments, reason = "a step is told what it is of")]
+fn step(
+    skin: &Skin,
+    guide: &Guide,
+    op: &Op,
+    is_first: bool,
+    own: crate::devices::biss::procedures::procedure::Step,
+    reached: Reached,
+) -> Step {
+    let what = skin.words(&says::step(own));
+    let title = if is_first { format!("{} · {what}", skin.words(&says::procedure(op))) } else { what };
+    let (state, word) = match reached {
+        Reached::Done => (StepState::Done, "guide.done"),
+        Reached::Waits => (StepState::Waiting, "guide.waits"),
+        Reached::Runs => (StepState::Running, "guide.runs"),
+        Reached::Skipped => (StepState::Skipped, "guide.left_out"),
+        Reached::Failed => (StepState::Failed, "guide.failed"),
+        Reached::Cancelled => (StepState::Skipped, "guide.cancelled"),
+        Reached::Ahead => (StepState::ToCome, "guide.ahead"),
+    };
+    let mut step = Step { title, state, word: skin.say(word), ..Step::default() };
+    match (reached, guide.detail()) {
+        (Reached::Waits, Some(Detail::Demand(demand))) => {
+            // What is best of the speed the gauges say, which do not come and go.
+            let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
+            let notes: Vec<String> = lasting.map(|own| skin.words(&says::advice(*own))).collect();
+            step.note = notes.join("\n");
+            step.gauges = gauges(skin, demand);
+        }
+        (Reached::Runs, Some(Detail::Count { done, total })) => {
+            step.progress = Some(*done as f32 / (*total).max(1) as f32);
+            step.note = format!("{done}/{total}");
+        }
+        (Reached::Runs, Some(Detail::Lasts { elapsed, expected })) => {
+            step.progress = expected.map(|expected| (elapsed.as_secs_f32() / expected.as_secs_f32().max(0.1)).min(1.0));
+            step.note = format!("{} s", skin.number(elapsed.as_secs_f64(), 0));
+        }
+        _ => {}
+    }
+    step
+}
+
+/// What is measured while a person is to turn the motor. The marks say what the start does: both go by the same limits.
+fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
+    let Task::Turn(run) = demand.task else { return Vec::new() };
+    let mut gauges = vec![speed(skin, run, demand)];
+    if let Some(fluctuation) = run.fluctuation() {
+        let unit = skin.say("unit.revolutions_per_minute");
+        let spread = demand.motion.map(|own| own.spread);
+        let accepted = run.accepted_fluctuation(demand.motion.map_or(run.recommended().middle(), |own| own.rpm));
+        gauges.push(Gauge {
+            name: skin.say("guide.fluctuation"),
+            value: spread,
+            shown: spread.map(|spread| format!("±{} {unit}", skin.number(spread, 1))).unwrap_or_default(),
+            allowed: 0.0..=accepted,
+            best: Some(0.0..=fluctuation),
+            limits: format!("±{} {unit}", skin.number(fluctuation, 0)),
+            scale: 0.0..=accepted * 2.0,
+        });
+    }
+    if run.calibrates() {
+        let celsius = demand.celsius.map(f64::from);
+        let (coldest, warmest) = (*Demand::CELSIUS.start(), *Demand::CELSIUS.end());
+        gauges.push(Gauge {
+            name: skin.say("biss_status.temperature"),
+            value: celsius,
+            shown: celsius.map(|celsius| format!("{} °C", skin.number(celsius, 0))).unwrap_or_default(),
+            allowed: f64::from(coldest)..=f64::from(warmest),
+            best: None,
+            limits: format!("{coldest}…{warmest} °C"),
+            scale: f64::from(coldest) - 15.0..=f64::from(warmest) + 15.0,
+        });
+    }
+    gauges
+}
+
+/// The speed in the direction that is asked for.
+fn speed(skin: &Skin, run: Run, demand: &Demand) -> Gauge {
+    let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
+    let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended());
+    // Standing is 0, whichever way it is looked at.
+    let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
+    let is_best = best != allowed;
+    let limits = Text::new(if is_best { "guide.rpm_range_best" } else { "guide.rpm_range" })
+        .with_number("least", allowed.least, 0)
+        .with_number("greatest", allowed.greatest, 0)
+        .with_number("best", best.middle(), 0);
+    let unit = skin.say("unit.revolutions_per_minute");
+    Gauge {
+        name: skin.say(if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
+        value: rpm,
+        shown: rpm.map(|rpm| format!("{} {unit}", skin.number(rpm, 1))).unwrap_or_default(),
+        allowed: accepted.least..=accepted.greatest,
+        best: is_best.then_some(best.least..=best.greatest),
+        limits: skin.words(&limits),
+        scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
+    }
+}
+
+fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, actions: &mut Vec<Action>) {
+    let id = encoder.session.id;
+    let title = match end {
+        End::Done(_) => "guide.report",
+        End::Failed { .. } => "guide.ended_early",
+    };
+    card(ui, skin, title, |ui| {
+        let outcomes = match end {
+            End::Done(outcomes) => outcomes,
+            End::Failed { before, .. } => before,
+        };
+        if let End::Failed { texts, .. } = end {
+            texts.iter().for_each(|text| line(ui, skin, says::weight(text), &skin.words(text)));
+        }
+        let lines: Vec<(Severity, String)> = ops
+            .iter()
+            .zip(outcomes)
+            .flat_map(|(op, own)| says::report(op, own))
+            .map(|(severity, text)| (severity, skin.words(&text)))
+            .collect();
+        lines.iter().for_each(|(severity, words)| line(ui, skin, *severity, words));
+        if encoder.motor.is_some() {
+            motor::turning_ui(ui, skin, encoder, actions);
+        } else if ops.iter().any(Op::turns) {
+            line(ui, skin, Severity::Note, &skin.say("guide.stop_motor"));
+        }
+        ui.add_space(skin.space.inside);
+        ui.horizontal_wrapped(|ui| {
+            if let End::Failed { may_lead_back: true, .. } = end {
+                super::lead_back_ui(ui, skin, encoder, actions);
+            }
+            if !lines.is_empty() && button(ui, icons::COPY, &skin.say("guide.copy_report")).clicked() {
+                let head = format!("{}\n{}\n", encoder.session.name(), skin.say("guide.report"));
+                let lines: Vec<&str> = lines.iter().map(|(_, words)| words.as_str()).collect();
+                ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
+            }
+            if button(ui, icons::CHECK, &skin.say("guide.close")).clicked() {
+                actions.push(Action::Biss(id, Biss::CloseGuide));
+            }
+        });
+    });
+}
+
+/// A line of the end: how much it matters, and what it is.
+fn line(ui: &mut Ui, skin: &Skin, own: Severity, words: &str) {
+    let (icon, ink) = severity(skin, own);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(ink));
+        paragraph(ui, words);
+    });
+}
