@@ -11,7 +11,7 @@ mod ssi_recordings;
 use std::hint::black_box;
 use std::time::Instant;
 
-use encoder_studio::protocol::ssi::{Families, Flags, Layout, Reading, Settings, find};
+use encoder_studio::devices::ssi::protocol::{Families, Flags, Layout, Reading, Settings, find};
 
 const FRAMES: usize = 1 << 14;
 const PASSES: usize = 64;

@@ -11,7 +11,6 @@ use super::keep::{SettingsRead, SettingsWritten};
 use super::recorder::{self, Exported};
 use super::review::Permit;
 use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
-use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::{Language, Picture, Settings, Text, Theme};
@@ -21,14 +20,15 @@ use crate::devices::biss::state as biss;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::state as hiperface;
+use crate::devices::ssi::jobs::Ssi;
+use crate::devices::ssi::protocol::Families;
+use crate::devices::ssi::state as ssi;
 use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
-use crate::protocol::ssi::Families;
 use crate::signals::state as signals;
 use crate::store::{DeviceKey, FileError, StoreError};
 use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::interbus::Interbus;
-use crate::worker::ssi::Ssi;
 use crate::worker::{OpenError, Worker};
 
 /// Something to be done.

@@ -21,12 +21,12 @@ use super::services::{JobEnd, Services};
 use super::session::{
     DraftDone, Drafted, Listed, OnLine, Opening, Phase, ProfileFile, Saved, Saving, Source, WithMemory,
 };
-use super::ssi;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::trace::TraceLog;
 use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state as hiperface;
+use crate::devices::ssi::state as ssi;
 use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::store::{Backup, DeviceKey, Entry, FileError, StatusEntry};
@@ -100,7 +100,9 @@ impl AnyDevice {
             crate::devices::biss::protocol::KIND => {
                 AnyDevice::Biss(Box::new(biss::Encoder::in_file(id, file, document, &known.biss, services)))
             }
-            crate::protocol::ssi::KIND => AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services))),
+            crate::devices::ssi::protocol::KIND => {
+                AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services)))
+            }
             crate::protocol::interbus::KIND => {
                 AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
             }

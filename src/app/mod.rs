@@ -34,7 +34,6 @@ pub(crate) mod services;
 pub mod session;
 mod settings;
 mod sine_cosine;
-pub mod ssi;
 pub(crate) mod studio;
 pub(crate) mod tab;
 pub(crate) mod tasks;

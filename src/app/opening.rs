@@ -10,13 +10,14 @@ use super::session::{Kind, Opening, Phase, Source, without_codes};
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
-use super::{AnyDevice, Severity, Text, explain, ssi};
+use super::{AnyDevice, Severity, Text, explain};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::hiperface::jobs::{Hiperface, may_have_other_master};
+use crate::devices::ssi::jobs::Ssi;
+use crate::devices::ssi::state as ssi;
 use crate::link::{LinkUrl, Scheme, TraceEntry};
 use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::interbus::Interbus;
-use crate::worker::ssi::Ssi;
 use crate::worker::{Ring, Session, Worker};
 
 /// Frames that wait for the window, at most.

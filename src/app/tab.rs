@@ -2,12 +2,13 @@
 
 use super::hiperdrive::HiperdriveForm;
 use super::interbus::InterbusForm;
-use super::ssi::SsiForm;
 use crate::devices::biss::jobs as biss;
 use crate::devices::biss::state::BissForm;
 use crate::devices::hiperface::jobs as hiperface;
+use crate::devices::ssi::jobs as ssi;
+use crate::devices::ssi::state::SsiForm;
 use crate::link::LinkUrl;
-use crate::worker::{OpenError, hiperdrive, interbus, ssi};
+use crate::worker::{OpenError, hiperdrive, interbus};
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]

@@ -15,8 +15,8 @@ pub(super) use analyse::Analyse;
 pub(crate) use decode::{Decode, Direction, Protocol, Words};
 
 use super::hiperdrive::{Move, listed_parameters};
-use super::ssi::Ssi;
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
+use crate::devices::ssi::commands::Ssi;
 use crate::link::LinkUrl;
 
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the

@@ -4,10 +4,11 @@
 use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
 use super::simulate::Simulated;
-use super::{Failure, Result, hiperdrive, interbus, ssi};
+use super::{Failure, Result, hiperdrive, interbus};
 use crate::app::Text;
 use crate::devices::biss::commands as biss;
 use crate::devices::hiperface::commands as hiperface;
+use crate::devices::ssi::commands as ssi;
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// A kind of device on the command line: the commands by their names.

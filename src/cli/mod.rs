@@ -18,9 +18,9 @@ pub(crate) mod positions;
 pub(crate) mod profiles;
 pub(crate) mod runner;
 pub(crate) mod simulate;
-mod ssi;
 
 use crate::buses::ethernet_ip::commands as ethernet_ip;
+use crate::devices::ssi::commands as ssi;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -5,7 +5,6 @@ pub mod hiperdrive;
 pub mod interbus;
 pub(crate) mod line;
 mod replies;
-pub mod ssi;
 pub(crate) mod written;
 
 pub use line::{Echo, LineQuality, LineState};

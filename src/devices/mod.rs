@@ -2,3 +2,4 @@
 
 pub mod biss;
 pub mod hiperface;
+pub mod ssi;

@@ -16,7 +16,6 @@ mod restore;
 mod rewrite;
 pub(crate) mod ron_text;
 mod source;
-pub mod ssi;
 #[cfg(test)]
 pub(crate) mod testing;
 #[cfg(test)]

@@ -2,4 +2,3 @@
 
 pub mod hiperdrive;
 pub mod interbus;
-pub mod ssi;

@@ -1,9 +1,9 @@
 //! The virtual encoders that hang on the virtual adapter, a line each.
 
-use super::ssi;
 use crate::buses::bridge::sim::Attachable;
 use crate::devices::biss::sim as biss;
 use crate::devices::hiperface::sim as hiperface;
+use crate::devices::ssi::sim as ssi;
 
 /// Which encoders there are. The settings of the last one are named last.
 pub const AT_ADAPTER: [&dyn Attachable; 3] = [&hiperface::AtAdapter, &ssi::AtAdapter::DELIVERED, &biss::AtAdapter];

@@ -12,7 +12,6 @@ pub(crate) mod line;
 mod motor;
 pub(crate) mod setting;
 pub mod sine_cosine;
-pub mod ssi;
 
 pub use at_adapter::AT_ADAPTER;
 pub use fault::{Carried, FaultError, Faults, Passage};

@@ -30,7 +30,7 @@ pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, 
 
 use crate::devices::biss::protocol::{DescriptionError, Descriptions};
 use crate::devices::hiperface::protocol::{EncoderTypes, TypeTableError};
-use crate::protocol::ssi::{Families, FamilyError};
+use crate::devices::ssi::protocol::{Families, FamilyError};
 
 /// Where the program keeps what outlives it.
 #[derive(Clone, Debug, PartialEq, Eq)]

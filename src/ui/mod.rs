@@ -21,7 +21,6 @@ pub mod plot;
 mod review;
 mod run;
 mod skin;
-mod ssi;
 pub(crate) mod stopping;
 pub mod widgets;
 mod window;
@@ -30,6 +29,7 @@ mod workspace;
 
 use crate::devices::biss::views as biss;
 use crate::devices::hiperface::views as hiperface;
+use crate::devices::ssi::views as ssi;
 use crate::signals::views as signals;
 pub use run::run;
 pub use skin::{Skin, install_fonts};

@@ -11,11 +11,12 @@ use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Skin, header, hiperdrive, interbus, review, ssi, stopping};
+use super::{Skin, header, hiperdrive, interbus, review, stopping};
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 use crate::devices::biss::views as biss;
 use crate::devices::hiperface::state::Encoder;
 use crate::devices::hiperface::views as hiperface;
+use crate::devices::ssi::views as ssi;
 use crate::signals::views as signals;
 
 /// What views remember while the window is open: text buffers and selections, nothing of the state.
@@ -60,7 +61,7 @@ impl Views {
     }
 
     /// The SSI tab of a session.
-    pub(super) fn ssi(&mut self, encoder: &crate::app::ssi::Encoder) -> &mut ssi::View {
+    pub(super) fn ssi(&mut self, encoder: &crate::devices::ssi::state::Encoder) -> &mut ssi::View {
         self.ssi.entry(encoder.session.id).or_default()
     }
 

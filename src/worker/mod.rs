@@ -19,7 +19,6 @@ pub(crate) mod open;
 mod outbox;
 mod ring;
 mod session;
-pub mod ssi;
 pub mod stream;
 mod thread;
 

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use encoder_studio::protocol::ssi::{
+use encoder_studio::devices::ssi::protocol::{
     Code, Coded, Descriptor, ErrorBit, Families, Layout, Meaning, Parity, Range, Reading, Repeat, Settings, c99,
     structured_text,
 };
@@ -77,7 +77,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     let mut rng = fastrand::Rng::with_seed(11);
     let mut frames = vec![0, u64::MAX, 0xFF_FFFE, 0x0F_FFFE];
     for _ in 0..500 {
-        let flags = encoder_studio::protocol::ssi::Flags::error(rng.usize(..4));
+        let flags = encoder_studio::devices::ssi::protocol::Flags::error(rng.usize(..4));
         let frame = layout.encode(rng.u64(..=layout.coding().last()), flags).unwrap();
         frames.extend([frame, frame ^ 1 << rng.u8(..layout.clocks()), rng.u64(..)]);
     }
@@ -85,7 +85,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
 }
 
 fn told(layout: &Layout, reading: Reading) -> String {
-    use encoder_studio::protocol::ssi::Place;
+    use encoder_studio::devices::ssi::protocol::Place;
     let (turns, steps) = match layout.descriptor().range.place(reading.position) {
         Place::Shaft { turns, steps, .. } => (turns, steps),
         Place::Length { .. } => (0, reading.position),

@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::ssi::strip::Handle;
-use encoder_studio::app::ssi::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, Severity, Tab, Wish};
-use encoder_studio::device::ssi::check::Verdict;
-use encoder_studio::protocol::ssi::{Code, Doubt, Place, Range};
+use encoder_studio::devices::ssi::procedures::check::Verdict;
+use encoder_studio::devices::ssi::protocol::{Code, Doubt, Place, Range};
+use encoder_studio::devices::ssi::state::strip::Handle;
+use encoder_studio::devices::ssi::state::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
 
 use crate::support::Desk;
 

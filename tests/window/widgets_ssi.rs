@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::ssi::{Action as Ssi, Try};
 use encoder_studio::app::{Action, Tab};
+use encoder_studio::devices::ssi::state::{Action as Ssi, Try};
 
 use crate::screen::Screen;
 use crate::support::Outside;

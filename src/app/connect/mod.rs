@@ -14,13 +14,13 @@ use std::path::PathBuf;
 use super::hiperdrive::{Discovery, HiperdriveForm};
 use super::interbus::InterbusForm;
 use super::services::Services;
-use super::ssi::SsiForm;
 use super::tab::Tab;
 use super::{Text, explain};
 use crate::app::action::Done;
 use crate::devices::biss::state::BissForm;
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::state::{LinkForm, Search};
+use crate::devices::ssi::state::SsiForm;
 use crate::link::LinkUrl;
 
 /// What can be done in the dialog.

@@ -1,16 +1,17 @@
 //! A device on the desk as what it is, for those who know one kind, and what only some kinds can do.
 
 use super::AnyDevice;
-use crate::app::{SineCosineSource, hiperdrive, interbus, ssi};
+use crate::app::{SineCosineSource, hiperdrive, interbus};
 use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state as hiperface;
+use crate::devices::ssi::state as ssi;
 
 impl AnyDevice {
     /// The kinds of devices that there are, by their words in profiles.
     pub(in crate::app) const KINDS: [&'static str; 5] = [
         crate::devices::hiperface::protocol::KIND,
         crate::devices::biss::protocol::KIND,
-        crate::protocol::ssi::KIND,
+        crate::devices::ssi::protocol::KIND,
         crate::protocol::interbus::KIND,
         crate::protocol::hiperdrive::KIND,
     ];

@@ -4,9 +4,10 @@
 #[cfg(test)]
 mod tests;
 
-use super::{file, plain, ssi};
+use super::{file, plain};
 use crate::app::Text;
 use crate::devices::hiperface::protocol::TypeTableError;
+use crate::devices::ssi::state::explain as ssi;
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
 use crate::sim::ConfigError;

@@ -5,7 +5,6 @@ mod detail;
 pub mod hiperdrive;
 pub mod interbus;
 pub mod signal;
-pub mod ssi;
 
 use std::path::Path;
 

@@ -2,8 +2,8 @@
 
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Capabilities, Operation};
-use encoder_studio::device::ssi::{Asking, Error, Identity, Supply};
-use encoder_studio::worker::ssi::{SsiJob, SsiOutput};
+use encoder_studio::devices::ssi::jobs::{SsiJob, SsiOutput};
+use encoder_studio::devices::ssi::procedures::{Asking, Error, Identity, Supply};
 
 use super::support::{QUICK, Stand};
 

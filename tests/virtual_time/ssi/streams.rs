@@ -5,10 +5,10 @@ use std::time::Duration;
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::Operation;
 use encoder_studio::buses::bridge::sim::Adapter;
-use encoder_studio::device::ssi::{Asking, Error, Words};
+use encoder_studio::devices::ssi::jobs::SsiJob;
+use encoder_studio::devices::ssi::procedures::{Asking, Error, Words};
 use encoder_studio::link::Clock;
 use encoder_studio::sim::AT_ADAPTER;
-use encoder_studio::worker::ssi::SsiJob;
 
 use super::support::{QUICK, Stand};
 use crate::biss::support::pairs;

@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use encoder_studio::buses::bridge::protocol::{Operation, Packet, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
-use encoder_studio::device::ssi::{Asking, Station, Words};
+use encoder_studio::devices::ssi::jobs::{Ssi, SsiJob, SsiOutput};
+use encoder_studio::devices::ssi::procedures::{Asking, Station, Words};
 use encoder_studio::link::{Clock, VirtualClock};
 use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
-use encoder_studio::worker::ssi::{Ssi, SsiJob, SsiOutput};
 
 use crate::biss::support::pairs;
 use crate::support::{MARGIN, Tap, TestLink};

@@ -4,16 +4,16 @@ use super::*;
 use std::time::Duration;
 
 use crate::app::Language::{English, German};
-use crate::device::ssi;
 use crate::devices::biss::procedures as biss;
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::hiperface::procedures::Station;
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::sim::Config;
+use crate::devices::ssi::procedures as ssi;
+use crate::devices::ssi::profile::SsiProfile;
 use crate::link::{LinkUrl, Query, read_trace};
 use crate::profile::interbus::InterbusProfile;
-use crate::profile::ssi::SsiProfile;
 use crate::profile::{Document, Profile};
 
 /// English is what the lower floor says, and German is not.

@@ -1,0 +1,59 @@
+//! `ssi export`: a layout for other programs, and as a profile.
+
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::args::{SsiExport, SsiFormat};
+use super::layout::{Chosen, choose};
+use super::profiles::{document, write};
+use crate::cli::output::Output;
+use crate::cli::{Done, Failure, Result};
+use crate::devices::ssi::protocol::{
+    Reads, bit_table, c99, frame_svg, settings_sheet, structured_text, timing_svg, to_linuxcnc,
+};
+use crate::devices::ssi::state::explain as words;
+
+pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
+    let SsiExport { layout: spec, format, file, clock, pause, cable, synchronous } = arguments;
+    let is_timed = clock.is_some() || pause.is_some() || cable.is_some() || *synchronous;
+    if is_timed && *format != SsiFormat::Timing {
+        return Err(Failure::Usage("--clock, --pause, --cable and --synchronous are for --format timing".to_owned()));
+    }
+    let chosen = choose(output, spec)?;
+    let Chosen { layout, times, title, .. } = &chosen;
+    let text = match format {
+        SsiFormat::C => c99(layout, title),
+        SsiFormat::St => structured_text(layout, title),
+        SsiFormat::Linuxcnc => to_linuxcnc(layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
+        SsiFormat::Csv => bit_table(layout),
+        SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title),
+        SsiFormat::Svg => frame_svg(layout, None, title),
+        SsiFormat::Profile => document(chosen.profile).emit(),
+        SsiFormat::Timing => {
+            let unknown = || Failure::Usage("the times of this layout are not known; name a family".to_owned());
+            let times = times.as_ref().ok_or_else(unknown)?;
+            // What is not asked for is as the profile has it.
+            let own = chosen.profile.reads();
+            let reads = Reads {
+                clock_hz: clock.map_or(own.clock_hz, f64::from),
+                pause: pause.map_or(own.pause, |micros| Duration::from_micros(micros.into())),
+                cable_metres: cable.map(f64::from).or(own.cable_metres),
+                synchronous: *synchronous || own.synchronous,
+                ..own
+            };
+            for warning in times.reckon(&reads).warnings {
+                output.remark(&words::timing(&warning).terminal());
+            }
+            timing_svg(layout, times, &reads, title)
+        }
+    };
+    match file {
+        None => output.show(&json!({ "text": text }), &text)?,
+        Some(path) => {
+            write(path, &text)?;
+            output.show(&json!({ "file": path.display().to_string() }), "")?;
+        }
+    }
+    Ok(Done::Well)
+}

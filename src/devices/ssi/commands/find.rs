@@ -1,0 +1,106 @@
+//! `ssi find`: layouts that fit recorded frames, the best first, and what would decide among them.
+
+use serde_json::{Value as Json, json};
+
+use super::args::SsiFind;
+use super::layout::families;
+use crate::cli::output::{Lines, Output, count};
+use crate::cli::runner::failed;
+use crate::cli::{Done, Result};
+use crate::devices::ssi::protocol::{self, Class, Families, Search};
+use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::{Frames, read_frames};
+
+/// Bits of a frame in hex where nothing says how many: as many as there can be.
+const MOST_CLOCKS: u8 = 64;
+
+pub(super) fn find(output: &Output, SsiFind { file, clocks }: &SsiFind) -> Result {
+    let families = families(output)?;
+    let Frames { clocks: read, frames, .. } =
+        read_frames(file, clocks.unwrap_or(MOST_CLOCKS)).map_err(|why| failed(&why))?;
+    let clocks = match clocks {
+        // Hex digits do not tell how many bits come before the highest 1.
+        None if read == MOST_CLOCKS => {
+            let any = frames.iter().fold(1, |any, frame| any | frame);
+            let clocks = (u64::BITS - any.leading_zeros()) as u8;
+            output.remark(&format!(
+                "Frames in hex do not say how many clocks they have: taken as {clocks}. --clocks N says it."
+            ));
+            clocks
+        }
+        _ => read,
+    };
+    let search = protocol::find(&frames, clocks, &families);
+    output.show(&json(&search, &families), &text(&search, &families))?;
+    if search.classes.is_empty() {
+        return Err(failed(&words::doubt(search.doubt)));
+    }
+    Ok(Done::Well)
+}
+
+fn json(search: &Search, families: &Families) -> Json {
+    let layouts: Vec<Json> = search
+        .classes
+        .iter()
+        .map(|class| {
+            let others: Vec<String> = class.members.iter().skip(1).map(|member| member.spec(families)).collect();
+            json!({
+                "spec": spec(class, families),
+                "score": class.evidence.score,
+                "explained": class.evidence.explained,
+                "why": why(class),
+                "same": others,
+            })
+        })
+        .collect();
+    json!({
+        "frames": search.frames,
+        "layouts": layouts,
+        "ambiguous": search.doubt.is_some(),
+        "next": next(search).filter(|_| search.doubt.is_some()),
+    })
+}
+
+fn text(search: &Search, families: &Families) -> String {
+    if search.classes.is_empty() {
+        return String::new();
+    }
+    let mut lines = Lines::default();
+    lines.add("frames", search.frames);
+    for (number, class) in (1..).zip(&search.classes) {
+        lines.add(format!("layout {number}"), spec(class, families));
+        lines.add("  score", format!("{:.2}", class.evidence.score));
+        lines.add("  why", why(class));
+        let others = class.members.len().saturating_sub(1);
+        if others > 0 {
+            let shown: Vec<String> = class.members.iter().skip(1).take(3).map(|member| member.spec(families)).collect();
+            let same = format!("{}, as {}", count(others, "layout"), shown.join(" or "));
+            lines.add("  the same here", same);
+        }
+    }
+    let verdict = words::doubt(search.doubt).terminal();
+    let next = next(search).map_or_else(String::new, |next| next + "\n");
+    format!("{}{verdict}\n{next}", lines.text())
+}
+
+/// The most probable layout of a class.
+fn spec(class: &Class, families: &Families) -> String {
+    class.members.first().map_or_else(String::new, |member| member.spec(families))
+}
+
+/// What speaks for a class.
+fn why(class: &Class) -> String {
+    let frame = class.members.first().map(|member| words::frame(&member.layout).terminal());
+    let evidence = words::evidence(&class.evidence).terminal();
+    frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
+}
+
+/// Which motion would decide; none where nothing is open.
+fn next(search: &Search) -> Option<String> {
+    let doubt = search.doubt.filter(|doubt| *doubt != protocol::Doubt::Open);
+    let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal());
+    let open = search.classes.first().into_iter().flat_map(|class| &class.open);
+    let open = open.map(|open| words::open(*open).terminal());
+    let all: Vec<String> = doubt.into_iter().chain(open).collect();
+    (!all.is_empty()).then(|| all.join(" "))
+}

@@ -1,0 +1,211 @@
+//! `ssi decode` and `ssi encode`: what frames say, and how they are made.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::args::{SsiDecode, SsiEncode};
+use super::layout::choose;
+use crate::cli::number::{out_of_range, parse_number};
+use crate::cli::output::{Lines, Output};
+use crate::cli::{Done, Failure, Result};
+use crate::devices::ssi::protocol::{
+    Finding, Flags, FrameTextError, Layout, Meaning, Place, Reading, Role, frame_bits, parse_frame,
+};
+use crate::devices::ssi::state::explain as words;
+
+pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
+    let layout = choose(output, spec)?.layout;
+    // All are looked at before any is told.
+    let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
+    for frame in frames {
+        let told = Told::new(&layout, frame);
+        output.show(&told.json(), &told.text())?;
+    }
+    Ok(Done::Well)
+}
+
+/// The bits of a frame, right-justified.
+fn frame(layout: &Layout, text: &str) -> Result<u64> {
+    parse_frame(text, layout.clocks()).map_err(|error| match error {
+        FrameTextError::Form(_) => Failure::Usage(error.to_string()),
+        FrameTextError::Bits { .. } => Failure::Failed(vec![format!("{error}.")]),
+    })
+}
+
+/// A frame with what it says.
+pub(super) struct Told<'a> {
+    pub(super) layout: &'a Layout,
+    pub(super) frame: u64,
+    pub(super) reading: Reading,
+}
+
+impl<'a> Told<'a> {
+    pub(super) fn new(layout: &'a Layout, frame: u64) -> Self {
+        Told { layout, frame, reading: layout.decode(frame) }
+    }
+
+    pub(super) fn is_valid(&self) -> bool {
+        self.layout.is_valid(self.reading)
+    }
+
+    /// The position, if the bits are one, and what it is.
+    pub(super) fn place(&self) -> Option<(u64, Place)> {
+        let range = self.layout.descriptor().range;
+        let is_none = self.reading.flags.has(Flags::CODE);
+        (!is_none).then(|| (self.reading.position, range.place(self.reading.position)))
+    }
+
+    fn bits(&self) -> String {
+        frame_bits(self.frame, self.layout.clocks())
+    }
+
+    pub(super) fn names(&self, meaning: Meaning) -> Vec<String> {
+        let findings = self.layout.findings(self.reading);
+        findings.iter().filter(|finding| finding.meaning() == meaning).map(name).collect()
+    }
+
+    fn json(&self) -> Json {
+        let place = self.place();
+        let mut json = Map::new();
+        json.insert("raw_bits".to_owned(), json!(self.bits()));
+        json.insert("position".to_owned(), json!(place.map(|(position, _)| position)));
+        let (turns, steps, degrees) = match place {
+            Some((_, Place::Shaft { turns, steps, degrees })) => (json!(turns), json!(steps), json!(degrees)),
+            _ => (Json::Null, Json::Null, Json::Null),
+        };
+        json.extend([("turns".to_owned(), turns), ("steps".to_owned(), steps), ("degrees".to_owned(), degrees)]);
+        if let Some((_, Place::Length { millimetres })) = place {
+            json.insert("millimetres".to_owned(), json!(millimetres));
+        }
+        json.insert("valid".to_owned(), json!(self.is_valid()));
+        json.insert("errors".to_owned(), json!(self.names(Meaning::Invalid)));
+        json.insert("warnings".to_owned(), json!(self.names(Meaning::Warning)));
+        Json::Object(json)
+    }
+
+    fn text(&self) -> String {
+        let mut lines = Lines::default();
+        lines.add("frame", fields(self.layout, self.frame));
+        match self.place() {
+            Some((position, Place::Shaft { turns, steps, degrees })) => {
+                lines.add("position", position);
+                lines.add("turns", turns).add("steps", steps).add("degrees", format!("{degrees:.4}"));
+            }
+            Some((position, Place::Length { millimetres })) => {
+                lines.add("position", position).add("millimetres", format!("{millimetres:.4}"));
+            }
+            None => {
+                lines.add("position", "none");
+            }
+        }
+        let findings = self.layout.findings(self.reading);
+        let told = findings.iter().map(|finding| format!("{}\n", words::finding(finding).terminal()));
+        lines.text() + &told.collect::<String>()
+    }
+}
+
+/// The bits, those that belong together in one word: `MT 000100100011  ST 10101011110000  ERROR 0`.
+fn fields(layout: &Layout, frame: u64) -> String {
+    let mut words: Vec<(String, String)> = Vec::new();
+    for cell in layout.cells(frame) {
+        let name = match cell.role {
+            Role::Zero => "0".to_owned(),
+            Role::Multiturn(_) => "MT".to_owned(),
+            Role::Singleturn(_) => "ST".to_owned(),
+            Role::Position(_) => "P".to_owned(),
+            Role::Again(_) => "again".to_owned(),
+            Role::Error(_) | Role::Parity => layout.role_name(cell.role),
+        };
+        let bit = if cell.bit { '1' } else { '0' };
+        match words.last_mut() {
+            Some((last, bits)) if *last == name => bits.push(bit),
+            _ => words.push((name, bit.to_string())),
+        }
+    }
+    let words: Vec<String> = words.into_iter().map(|(name, bits)| format!("{name} {bits}")).collect();
+    words.join("  ")
+}
+
+/// What a script calls a finding.
+pub(super) fn name(finding: &Finding) -> String {
+    match finding {
+        Finding::Error { name, .. } | Finding::Pattern { name, .. } => name.clone(),
+        Finding::StuckHigh { .. } => "line stuck high".to_owned(),
+        Finding::StuckLow { .. } => "line stuck low".to_owned(),
+        Finding::Code => "invalid code".to_owned(),
+        Finding::Padding => "format mismatch".to_owned(),
+        Finding::Parity => "parity".to_owned(),
+        Finding::Repeat => "repetition".to_owned(),
+    }
+}
+
+pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
+    let layout = choose(output, &arguments.layout)?.layout;
+    let position = position(&layout, arguments)?;
+    let errors = &layout.descriptor().errors;
+    let mut flags = Flags::NONE;
+    for name in &arguments.errors {
+        let Some(index) = errors.iter().position(|bit| bit.name.eq_ignore_ascii_case(name)) else {
+            let known: Vec<&str> = errors.iter().map(|bit| bit.name.as_str()).collect();
+            let known = if known.is_empty() { "this layout has none".to_owned() } else { known.join(", ") };
+            return Err(Failure::Usage(format!("there is no error bit {name:?}: {known}")));
+        };
+        flags = flags.with(Flags::error(index));
+    }
+    let last = layout.coding().last();
+    let frame = layout.encode(position, flags).ok_or_else(|| beyond("position", &position.to_string(), last))?;
+    if layout.loses_lowest_bit() && position % 2 == 1 {
+        output.remark("Shifting to the right pushes the lowest bit out: the frame is that of the position before.");
+    }
+    let clocks = usize::from(layout.clocks());
+    let bits = format!("{frame:0clocks$b}");
+    let hex = format!("{frame:0digits$X}", digits = clocks.div_ceil(4));
+    let mut lines = Lines::default();
+    lines.add("bits", &bits).add("hex", &hex).add("frame", fields(&layout, frame));
+    output.show(&json!({ "bits": bits, "hex": hex }), &lines.text())?;
+    Ok(Done::Well)
+}
+
+/// What `--position`, or `--turns` and `--steps`, name; where both do, they have to be the same.
+fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
+    let last = layout.coding().last();
+    let range = layout.descriptor().range;
+    let SsiEncode { position, turns, steps, .. } = arguments;
+    let named = position.as_deref().map(|text| number("position", text, last)).transpose()?;
+    let of_shaft = turns.is_some() || steps.is_some();
+    match (named, range.place(named.unwrap_or(last))) {
+        (_, Place::Length { .. }) if of_shaft => {
+            Err(Failure::Usage("a length has no turns and steps; give --position".to_owned()))
+        }
+        (Some(position), Place::Shaft { turns: own_turns, steps: own_steps, .. }) => {
+            for (what, text, own) in [("turns", turns, own_turns), ("steps", steps, own_steps)] {
+                let Some(text) = text else { continue };
+                if number(what, text, u64::MAX)? != own {
+                    return Err(Failure::Usage(format!(
+                        "--position {position} is turn {own_turns}, step {own_steps}, and not --{what} {text}: give one of them"
+                    )));
+                }
+            }
+            Ok(position)
+        }
+        (Some(position), Place::Length { .. }) => Ok(position),
+        (None, Place::Length { .. }) => Err(Failure::Usage("give --position".to_owned())),
+        (None, Place::Shaft { turns: most, .. }) => {
+            let turns = turns.as_deref().map_or(Ok(0), |text| number("turns", text, most))?;
+            // The last step of this turn: one before the next turn begins, or the last position of all.
+            let begins = range.position(turns, 0).unwrap_or(0);
+            let next = range.position(turns + 1, 0).map_or(last, |next| next - 1);
+            let steps = steps.as_deref();
+            let text = steps.ok_or_else(|| Failure::Usage("give --position, or --steps".to_owned()))?;
+            Ok(begins + number("steps", text, next - begins)?)
+        }
+    }
+}
+
+fn number(what: &str, text: &str, last: u64) -> Result<u64> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("--{what}: {text:?} is not a number")))?;
+    u64::try_from(number).ok().filter(|number| *number <= last).ok_or_else(|| beyond(what, text, last))
+}
+
+fn beyond(what: &str, text: &str, last: u64) -> Failure {
+    out_of_range(what, text, 0, i64::try_from(last).unwrap_or(i64::MAX))
+}

@@ -1,0 +1,118 @@
+//! The layout that `--layout` names: a profile in a file, a family with its settings, any frame in one word, or a format
+//! string of LinuxCNC.
+
+use std::path::Path;
+
+use super::args::SsiLayout;
+use crate::app::explain;
+use crate::cli::output::Output;
+use crate::cli::profiles::load;
+use crate::cli::runner::failed;
+use crate::cli::{Failure, Result};
+use crate::devices::ssi::profile::SsiProfile;
+use crate::devices::ssi::protocol::{
+    Descriptor, Families, Family, Layout, Resolved, Settings, SpecError, Times, from_linuxcnc,
+};
+use crate::devices::ssi::state::explain as words;
+use crate::store::Store;
+
+/// A layout to work with.
+pub(crate) struct Chosen {
+    /// All that is known of it.
+    pub(crate) profile: SsiProfile,
+    /// Its frame, checked.
+    pub(crate) layout: Layout,
+    /// The times of its family; `None` where it has none, or one that is not known here.
+    pub(crate) times: Option<Times>,
+    /// What to call it.
+    pub(crate) title: String,
+}
+
+/// What `--layout` names. What the manual does not speak of is a remark.
+pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Chosen> {
+    if let Some(format) = spec.strip_prefix("linuxcnc:") {
+        let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
+        let profile = SsiProfile::new(layout.descriptor().clone());
+        return Ok(Chosen { profile, layout, times: None, title: spec.clone() });
+    }
+    if let Some(frame) = Descriptor::parse(spec) {
+        return of_frame(spec, frame);
+    }
+    let families = families(output)?;
+    if is_file(spec, &families) { in_file(output, spec, &families) } else { of_family(output, spec, &families) }
+}
+
+/// The families that ship, with the user's own before them; of those that cannot be used is said why.
+pub(super) fn families(output: &Output) -> Result<Families> {
+    let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
+    let (families, broken) = store.ssi_families();
+    for error in broken {
+        output.remark(&explain::store(&error).terminal());
+    }
+    Ok(families)
+}
+
+/// It names a file: by a path, by its ending, or because there is one and no family of this name. Behind the first comma
+/// stand settings, in which `/` is a fraction.
+fn is_file(spec: &str, families: &Families) -> bool {
+    let key = spec.split(',').next().unwrap_or(spec);
+    let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);
+    let ends = Path::new(spec).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ron"));
+    is_path || ends || (families.named(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
+}
+
+/// Any frame in one word.
+fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Result<Chosen> {
+    let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
+    let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
+    let profile = SsiProfile::new(layout.descriptor().clone());
+    Ok(Chosen { profile, layout, times: None, title: spec.to_owned() })
+}
+
+fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
+    let path = Path::new(spec);
+    let told = |error| failed(&explain::profile(path, &error));
+    let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(told)?;
+    let frame = profile.descriptor.clone();
+    let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
+    let family = profile.family.as_deref().and_then(|key| families.named(key));
+    match (profile.family.as_deref(), family) {
+        (Some(key), None) => {
+            output
+                .remark(&format!("{spec} names the family {key:?}, which is not known here: its times are not known."));
+        }
+        (_, Some(family)) => beside_family(output, family, &profile),
+        (None, None) => {}
+    }
+    let times = family.map(|family| family.times);
+    let name = if profile.name.is_empty() { spec } else { &profile.name };
+    Ok(Chosen { title: name.to_owned(), profile, layout, times })
+}
+
+/// What a frame that was written down has beyond its family.
+fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
+    let settings = family.settings_of(&profile.descriptor);
+    match settings.and_then(|settings| settings.resolve(family).ok()) {
+        Some(resolved) => advise(output, &resolved),
+        None => output.remark(&format!("No setting of {} makes this frame; only its times are used.", family.name)),
+    }
+}
+
+fn advise(output: &Output, resolved: &Resolved) {
+    for advice in &resolved.advice {
+        output.remark(&words::advice(advice).terminal());
+    }
+}
+
+fn of_family(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
+    let (key, settings) = Settings::parse(spec).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
+    let Some(family) = families.named(&key) else {
+        let known: Vec<&str> = families.iter().map(|family| family.key.as_str()).collect();
+        let known = known.join(" ");
+        return Err(Failure::Usage(format!("--layout: there is no file and no family {key:?}; families: {known}")));
+    };
+    let resolved = settings.resolve(family).map_err(|error| Failure::Failed(vec![format!("{error}.")]))?;
+    advise(output, &resolved);
+    let profile = SsiProfile::of_family(family, &resolved);
+    Ok(Chosen { profile, layout: resolved.layout, times: Some(family.times), title: spec.to_owned() })
+}

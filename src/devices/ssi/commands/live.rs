@@ -1,0 +1,179 @@
+//! `position` and `status` of an SSI encoder behind an adapter.
+
+use serde_json::{Value as Json, json};
+
+use super::args::SsiLayout;
+use super::frames::{Told, name};
+use super::layout::{Chosen, choose};
+use super::run::{begin, words};
+use crate::analysis::Time;
+use crate::cli::args::{Common, Position, Status};
+use crate::cli::output::{Lines, Output, count, say};
+use crate::cli::positions::readings;
+use crate::cli::runner::Ended;
+use crate::cli::{Done, Failure, Result};
+use crate::devices::ssi::jobs::{Ssi, SsiJob};
+use crate::devices::ssi::protocol::{Finding, Layout, Meaning, Place, Tally};
+use crate::devices::ssi::state::explain as explained;
+use crate::units::Moment;
+
+/// The layout, which nobody but the user knows.
+fn layout(output: &Output, command: &str, spec: Option<&String>) -> Result<Chosen> {
+    let Some(spec) = spec.cloned() else {
+        let why = "ssi needs --layout FILE|SPEC: an SSI encoder cannot tell how its frame is made";
+        return Err(Failure::Usage(format!("{command} {why}")));
+    };
+    choose(output, &SsiLayout { spec })
+}
+
+pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+    let chosen = layout(output, "position", position.layout.as_ref())?;
+    let mut runner = begin(common, output, &chosen)?;
+    if position.csv {
+        output.print("t_s,raw,turns,steps,degrees,millimetres,valid\n")?;
+    }
+    let mut tally = Tally::default();
+    let mut first = None;
+    let ended = readings(
+        &mut runner,
+        position,
+        || SsiJob::Read,
+        |_, came| {
+            let came = came.map_err(|error| Ended::<Ssi>::Job(error).into_failure())?;
+            for (at, word) in words(came)?.timed() {
+                let told = Told::new(&chosen.layout, word);
+                let first = *first.get_or_insert(Time::from(at));
+                let begun = tally.note(&chosen.layout, told.reading, at.into());
+                for finding in begun.iter().filter(|one| is_told(one, first == at.into())) {
+                    say(&format!("{}: {}\n", seconds(at.into()), explained::finding(finding).terminal()));
+                }
+                if position.csv {
+                    output.print(&row(at, &told))?;
+                } else {
+                    show(output, at, &told)?;
+                }
+            }
+            Ok(true)
+        },
+    );
+    for noted in tally.noted().iter().filter(|noted| is_told(&noted.finding, Some(noted.first) == first)) {
+        let times = count(usize::try_from(noted.count).unwrap_or(usize::MAX), "time");
+        say(&format!("{}: {times}, last at {}\n", name(&noted.finding), seconds(noted.last)));
+    }
+    ended
+}
+
+/// Whoever passes a position that looks like a line that does not move makes no news; whoever begins with one does.
+fn is_told(finding: &Finding, is_first: bool) -> bool {
+    is_first || !matches!(finding, Finding::StuckHigh { sure: false } | Finding::StuckLow { sure: false })
+}
+
+fn seconds(at: Time) -> String {
+    format!("{:.3} s", at.seconds_since(Time::ORIGIN))
+}
+
+/// Turns, steps and degrees of a shaft; steps and millimetres of a scale.
+struct Columns {
+    turns: Option<u64>,
+    steps: Option<u64>,
+    degrees: Option<f64>,
+    millimetres: Option<f64>,
+}
+
+impl Columns {
+    fn of(told: &Told<'_>) -> Self {
+        let none = Columns { turns: None, steps: None, degrees: None, millimetres: None };
+        match told.place() {
+            Some((_, Place::Shaft { turns, steps, degrees })) => {
+                Columns { turns: Some(turns), steps: Some(steps), degrees: Some(degrees), ..none }
+            }
+            Some((position, Place::Length { millimetres })) => {
+                Columns { steps: Some(position), millimetres: Some(millimetres), ..none }
+            }
+            None => none,
+        }
+    }
+}
+
+fn show(output: &Output, at: Moment, told: &Told<'_>) -> Result<()> {
+    let t = at.since_start().as_secs_f64();
+    let Columns { turns, steps, degrees, millimetres } = Columns::of(told);
+    let mut json = json!({
+        "t_s": t,
+        "raw": told.frame,
+        "turns": turns,
+        "steps": steps,
+        "degrees": degrees,
+        "valid": told.is_valid(),
+        "errors": told.names(Meaning::Invalid),
+        "warnings": told.names(Meaning::Warning),
+    });
+    if let (Some(millimetres), Some(keys)) = (millimetres, json.as_object_mut()) {
+        keys.insert("millimetres".to_owned(), json!(millimetres));
+    }
+    let digits = usize::from(told.layout.clocks()).div_ceil(4);
+    let valid = if told.is_valid() { "" } else { "  not valid" };
+    output.show(&json, &format!("{t:10.3} s  0x{:0digits$X}  {}{valid}\n", told.frame, place(told)))
+}
+
+fn place(told: &Told<'_>) -> String {
+    match told.place() {
+        Some((_, Place::Shaft { turns, steps, degrees })) => format!("turn {turns}, step {steps}, {degrees:.6}°"),
+        Some((position, Place::Length { millimetres })) => format!("step {position}, {millimetres:.6} mm"),
+        None => "no position".to_owned(),
+    }
+}
+
+fn row(at: Moment, told: &Told<'_>) -> String {
+    fn cell<T: ToString>(value: Option<T>) -> String {
+        value.map_or_else(String::new, |value| value.to_string())
+    }
+    let Columns { turns, steps, degrees, millimetres } = Columns::of(told);
+    format!(
+        "{:.6},{},{},{},{},{},{}\n",
+        at.since_start().as_secs_f64(),
+        told.frame,
+        cell(turns),
+        cell(steps),
+        cell(degrees),
+        cell(millimetres),
+        told.is_valid(),
+    )
+}
+
+pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Result {
+    let chosen = layout(output, "status", status.layout.as_ref())?;
+    let mut runner = begin(common, output, &chosen)?;
+    let words = words(runner.run(SsiJob::Read)?)?;
+    let Some((_, word)) = words.timed().next() else {
+        return Err(Failure::Failed(vec!["The adapter gave no word. Try again.".to_owned()]));
+    };
+    let told = Told::new(&chosen.layout, word);
+    let findings = chosen.layout.findings(told.reading);
+    let of = |meaning| findings.iter().filter(move |finding| finding.meaning() == meaning);
+    let list = |meaning| of(meaning).map(|finding| item(&chosen.layout, finding)).collect::<Vec<_>>();
+    let (errors, warnings) = (list(Meaning::Invalid), list(Meaning::Warning));
+    let json = json!({"ok": errors.is_empty(), "errors": errors, "warnings": warnings});
+    let named = |meaning| {
+        let names = of(meaning).map(name).collect::<Vec<_>>();
+        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+    };
+    let mut lines = Lines::default();
+    lines.add("errors", named(Meaning::Invalid)).add("warnings", named(Meaning::Warning));
+    if chosen.layout.descriptor().errors.is_empty() {
+        lines.add("", "This frame has no error bits.");
+    }
+    lines.add("position", place(&told));
+    let told = findings.iter().map(|finding| format!("{}\n", explained::finding(finding).terminal()));
+    output.show(&json, &(lines.text() + &told.collect::<String>()))?;
+    Ok(Done::Well)
+}
+
+/// With the number of its clock, where it has one.
+fn item(layout: &Layout, finding: &Finding) -> Json {
+    let clock = match finding {
+        Finding::Error { name, .. } => layout.descriptor().errors.iter().find(|bit| bit.name == *name),
+        _ => None,
+    };
+    json!({"code": clock.map(|bit| bit.clock), "text": name(finding)})
+}

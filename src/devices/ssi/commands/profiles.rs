@@ -1,0 +1,46 @@
+//! Profiles of SSI encoders: made of a layout, since the encoder cannot tell its own, and compared.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::args::SsiLayout;
+use super::layout::choose;
+use crate::app::explain;
+use crate::cli::args::{Common, Save};
+use crate::cli::output::{Output, count};
+use crate::cli::runner::failed;
+use crate::cli::{Done, Failure, Result};
+use crate::devices::ssi::profile::{self, SsiProfile};
+use crate::profile::{Body, Comparison, Document, ProfileError};
+use crate::store::write_atomically;
+
+pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+    let Some(spec) = save.layout.clone() else {
+        let why = "save ssi needs --layout FILE|SPEC: an SSI encoder cannot tell how its frame is made";
+        return Err(Failure::Usage(why.to_owned()));
+    };
+    if common.link.is_some() {
+        return Err(Failure::Usage("save ssi saves the layout of --layout and asks no encoder: no --link".to_owned()));
+    }
+    let profile = choose(output, &SsiLayout { spec })?.profile;
+    let clocks = profile.descriptor.clocks;
+    write(&save.file, &document(profile).emit())?;
+    let json = json!({"file": save.file, "clocks": clocks});
+    output.show(&json, &format!("{}: {}\n", save.file.display(), count(clocks.into(), "clock")))?;
+    Ok(Done::Well)
+}
+
+/// The document of a layout. It was read from no device, so that nothing in it tells when.
+pub(super) fn document(profile: SsiProfile) -> Document {
+    Document { saved: None, ..Document::new(String::new(), Body::new(profile)) }
+}
+
+pub(super) fn write(path: &Path, text: &str) -> Result<()> {
+    write_atomically(path, text.as_bytes()).map_err(|error| failed(&explain::file(&error)))
+}
+
+/// What differs between two profiles.
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
+}

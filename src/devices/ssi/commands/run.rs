@@ -1,0 +1,83 @@
+//! Running jobs on an SSI encoder behind an adapter.
+
+use std::convert::Infallible;
+
+use super::layout::Chosen;
+use crate::app::Text;
+use crate::cli::Result;
+use crate::cli::args::{Code, Common};
+use crate::cli::output::Output;
+use crate::cli::runner::{self, Runs, unexpected};
+use crate::devices::ssi::jobs::{Doing, JobError, Ssi, SsiJob, SsiOutput, open};
+use crate::devices::ssi::procedures::{Asking, Words};
+use crate::devices::ssi::protocol::Reads;
+use crate::devices::ssi::state::explain as words;
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::worker::{OpenError, Session};
+
+/// A session with an adapter before an SSI encoder on its thread.
+pub(super) type Runner = runner::Runner<Ssi>;
+
+impl Runs for Ssi {
+    /// How words are taken where nothing else says so: as the link does.
+    type Kept = Asking;
+    const HAS_CODES: bool = false;
+
+    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
+        open(url, store)
+    }
+
+    /// Access codes of the environment are for other devices.
+    fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Asking {
+        session.station().asking
+    }
+
+    fn say(remark: &Infallible) {
+        match *remark {}
+    }
+
+    fn doing(_: &Doing) -> String {
+        "words".to_owned()
+    }
+
+    fn failure(error: &JobError) -> Vec<Text> {
+        words::job(error)
+    }
+}
+
+/// Opens the link and has words taken as the layout needs them; clock and pause are the link's where it names them, else
+/// those of the profile. What the times of the encoder do not allow is a remark.
+pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result<Runner> {
+    let mut runner = Runner::open(common)?;
+    let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());
+    let (own, reading) = (runner.kept, chosen.profile.reading);
+    let asking = Asking {
+        clocks: chosen.layout.clocks(),
+        clock_hz: if names("clock") { own.clock_hz } else { reading.clock_hz },
+        pause_us: if names("pause") { own.pause_us } else { reading.pause_us },
+    };
+    let identity = match runner.run(SsiJob::Set(asking))? {
+        SsiOutput::Set(identity) => identity,
+        other => return Err(unexpected(&other)),
+    };
+    if let Some(times) = &chosen.times {
+        let reads = Reads {
+            clock_hz: identity.clock_hz.into(),
+            pause: std::time::Duration::from_micros(asking.pause_us.into()),
+            ..chosen.profile.reads()
+        };
+        for warning in times.reckon(&reads).warnings {
+            output.remark(&words::timing(&warning).terminal());
+        }
+    }
+    Ok(runner)
+}
+
+/// The word that a job gave.
+pub(super) fn words(came: SsiOutput) -> Result<Words> {
+    match came {
+        SsiOutput::Read(words) => Ok(words),
+        other => Err(unexpected(&other)),
+    }
+}

@@ -1,0 +1,179 @@
+//! An SSI encoder behind an adapter, at the end of a session, and its jobs. The encoder has no memory: nothing is ever
+//! written into it.
+
+mod open;
+
+use std::convert::Infallible;
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+pub use open::{check, open};
+
+use crate::devices::ssi::procedures::{Asking, Error, Identity, Master, Station, Words, check};
+use crate::devices::ssi::protocol::Layout;
+use crate::link::{ByteLink, Clock, LinkError};
+use crate::sim::Motor;
+use crate::store::Store;
+use crate::worker::{Desk, Device, Progress, Session, Tell, Watched};
+
+/// An SSI encoder behind its adapter.
+pub struct Ssi {
+    wire: Box<dyn ByteLink>,
+    station: Station,
+    /// What turns a virtual encoder.
+    motor: Option<Motor>,
+    /// Microseconds between the words of a stream, where they are wished closer than one can ask for them.
+    streamed_us: Option<u32>,
+}
+
+/// What can be asked of an adapter before an SSI encoder.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SsiJob {
+    /// Who the adapter is; the encoder's supply switched on where that is wished, and words taken as the station says.
+    Hello,
+    /// Words are taken like this from now on; a stream that is wished goes on with it.
+    Set(Asking),
+    /// One word.
+    Read,
+    /// The device check, with what the layout says of words.
+    Check(Box<Layout>),
+}
+
+/// What a job gives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SsiOutput {
+    /// Who the adapter is.
+    Hello(Box<Identity>),
+    /// How words are taken now.
+    Set(Box<Identity>),
+    /// The word, a run of one.
+    Read(Words),
+    /// What the device check found.
+    Check(Vec<check::Line>),
+}
+
+/// The step that is told of a job: words are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Doing;
+
+/// Why a job ended early.
+pub type JobError = Error;
+
+/// Words that are wished as close as this come as a stream.
+const STREAMED: Duration = Duration::from_millis(2);
+
+impl fmt::Debug for Ssi {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Ssi({})", self.station)
+    }
+}
+
+impl Ssi {
+    /// The host's side of the line.
+    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    }
+}
+
+impl Session<Ssi> {
+    /// A session on an open wire. With a motor the encoder lives in this process.
+    pub fn to_adapter(
+        wire: Box<dyn ByteLink>,
+        clock: Arc<dyn Clock>,
+        station: Station,
+        store: Store,
+        motor: Option<Motor>,
+    ) -> Self {
+        let is_virtual = motor.is_some();
+        Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
+    }
+
+    /// Words are taken like this from the beginning.
+    pub fn ask_like(&mut self, asking: Asking) {
+        self.device.station.asking = asking;
+    }
+
+    /// What is known about the line and the adapter.
+    pub fn station(&self) -> &Station {
+        &self.device.station
+    }
+
+    /// What turns the shaft, where the encoder lives in this process.
+    pub fn motor(&self) -> Option<Motor> {
+        self.device.motor.clone()
+    }
+}
+
+impl Device for Ssi {
+    type Job = SsiJob;
+    type Output = SsiOutput;
+    type Error = JobError;
+    /// Whatever there is to say stands in the words.
+    type Remark = Infallible;
+    type Sample = Words;
+    /// There is nothing but words.
+    type Watch = Infallible;
+    type Doing = Doing;
+
+    fn run(
+        &mut self,
+        desk: &mut Desk,
+        job: SsiJob,
+        tell: &mut dyn FnMut(Tell<Infallible, Doing>),
+    ) -> Result<SsiOutput, JobError> {
+        let mut master = self.master(desk);
+        Ok(match job {
+            SsiJob::Hello => SsiOutput::Hello(Box::new(master.hello()?)),
+            SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
+            SsiJob::Read => SsiOutput::Read(master.word()?),
+            SsiJob::Check(layout) => {
+                let progress = &mut |done, total| tell(Tell::Progress(Progress { done, total, what: Doing }));
+                SsiOutput::Check(check::check(&mut master, &layout, progress)?)
+            }
+        })
+    }
+
+    fn pace(&mut self, desk: &mut Desk, interval: Option<Duration>) {
+        let streamed = interval.filter(|interval| *interval <= STREAMED);
+        let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
+        self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
+        if interval.is_none() {
+            self.station.count_anew();
+        }
+        if self.streamed_us.is_none()
+            && let Err(error) = self.master(desk).end_words()
+        {
+            tracing::warn!("the adapter's stream could not be ended: {error}");
+        }
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Words, JobError> {
+        match self.streamed_us {
+            Some(period_us) => self.master(desk).words(period_us),
+            None => self.master(desk).next_word(),
+        }
+    }
+
+    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Words>, JobError> {
+        match *what {}
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        *error == Error::Cancelled
+    }
+
+    fn take_remark(&mut self) -> Option<Infallible> {
+        None
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+
+    fn leave(&mut self, desk: &mut Desk) {
+        if let Err(error) = self.master(desk).leave_supply() {
+            tracing::warn!("the encoder's supply could not be switched off: {error}");
+        }
+    }
+}

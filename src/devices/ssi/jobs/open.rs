@@ -1,0 +1,92 @@
+//! From a link URL to a session with an SSI encoder.
+
+use std::sync::Arc;
+
+use super::Ssi;
+use crate::buses::bridge::jobs::FORMAT;
+use crate::buses::bridge::sim::Adapter;
+use crate::devices::ssi::procedures::{PARAMETERS, Station};
+use crate::link::{Clock, LinkUrl, RealClock, Scheme};
+use crate::sim::AT_ADAPTER;
+use crate::store::Store;
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
+use crate::worker::{OpenError, Session};
+
+/// Everything about a link to an SSI encoder that can be told without opening it.
+///
+/// # Errors
+/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    read(url).map(|_| ())
+}
+
+/// Opens a link to an SSI encoder: `bridge:` leads to the adapter before it, `sim:` to a virtual one, `replay:` to a
+/// recording of one.
+///
+/// # Errors
+/// See [`OpenError`]; nothing has been sent.
+pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
+    let (station, adapter) = read(url)?;
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let mut motor = None;
+    // What a serial port of an adapter is set to matters only behind a converter; it is that of all adapters.
+    let wire = open_bytes(url, FORMAT, &clock, || {
+        motor = adapter.motor();
+        Ok(inside(adapter, &clock))
+    })?;
+    Ok(Session::to_adapter(wire, clock, station, store, motor))
+}
+
+/// The line, and the virtual adapter, which counts for a link to it alone.
+fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
+    let query = match url.scheme {
+        Scheme::Sim => url.query.without(&PARAMETERS),
+        Scheme::Bridge | Scheme::Replay => {
+            check_parameters(&url.query, url.scheme, &PARAMETERS)?;
+            Vec::new()
+        }
+        Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => {
+            return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));
+        }
+    };
+    let adapter = Adapter::from_pairs(&query, &AT_ADAPTER)?;
+    Ok((Station::from_query(&url.query, margin(url.scheme))?, adapter))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_to_an_adapter_or_say_why_not() {
+        for text in [
+            "sim:",
+            "sim:?ssi=atm60,code=gray&rpm=60&seed=7&fault=drop:0.01",
+            "sim:?supply=switched&voltage=24&clock=1500000&pause=25&margin=7",
+            "bridge:/dev/ttyACM0",
+            "bridge:tcp:host:4001?margin=2000&voltage=5",
+            "replay:words.trace?clock=1000000",
+        ] {
+            assert!(check(&text.parse().unwrap()).is_ok(), "{text}");
+        }
+        for (text, why) in [
+            (
+                "serial:/dev/ttyUSB0",
+                "serial: links do not lead to this device; those that do are sim:, bridge:, replay:",
+            ),
+            ("modbus:host", "modbus: links do not lead to this device; those that do are sim:, bridge:, replay:"),
+            ("tcp:host:1", "tcp: links do not lead to this device; those that do are sim:, bridge:, replay:"),
+            (
+                "bridge:/dev/x?rpm=1",
+                "rpm is not a parameter of bridge: links; known are margin, clock, pause, voltage, leave-supply",
+            ),
+            ("bridge:/dev/x?layout=atm60", "layout is not a parameter of bridge: links"),
+            ("bridge:/dev/x?clock=5", "clock=5: hertz from 80000 to 10000000"),
+            ("sim:?ssi=atm61", "`ssi=atm61` cannot be used: allowed is a family of SSI encoders"),
+            ("sim:?what=1", "a virtual adapter has no setting `what`"),
+        ] {
+            let error = check(&text.parse().unwrap()).unwrap_err().to_string();
+            assert!(error.starts_with(why), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! The device check: the adapter, the encoder's supply, and words that are taken one after the other, beside what the layout
+//! says of them; with a verdict a line. Nothing is written: the encoder has no memory.
+
+use std::collections::BTreeSet;
+
+use super::{Error, Identity, Master};
+use crate::device::check;
+use crate::devices::ssi::protocol::{Finding as Said, Flags, Layout, Meaning};
+
+pub use crate::device::check::Verdict;
+
+/// Words that are taken.
+pub const WORDS: u64 = 50;
+/// Positions that follow each other this close are a shaft that stands: it may tremble by a step or two.
+const TREMBLES: u64 = 4;
+
+/// One line of the check.
+pub type Line = check::Line<Step, Finding>;
+
+/// A step of the check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Who the adapter is, and at which clock it takes words.
+    Adapter,
+    /// What it supplies the encoder with.
+    Supply,
+    /// The data line moves.
+    Line,
+    /// Words are frames of the layout.
+    Layout,
+    /// Error bits and patterns.
+    Errors,
+    /// How the position moves from word to word.
+    Motion,
+}
+
+/// One fact that the check found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// The adapter's name and firmware.
+    Adapter(String, String),
+    /// The clock in hertz as it was asked for, and as it is.
+    Clock {
+        /// Asked for.
+        asked: u32,
+        /// As it is.
+        got: u32,
+    },
+    /// Millivolts wished and measured, and milliamperes.
+    Supply {
+        /// Millivolts wished.
+        wished: u16,
+        /// Millivolts measured.
+        measured: u16,
+        /// Milliamperes measured.
+        milliampere: u16,
+    },
+    /// The encoder is supplied from elsewhere.
+    SuppliedElsewhere,
+    /// Words that were taken, and how many of them are different.
+    Words {
+        /// How many.
+        taken: u64,
+        /// Different ones.
+        different: usize,
+    },
+    /// What a word gave cause to say, and in how many.
+    Said {
+        /// What.
+        what: Said,
+        /// In how many words.
+        count: u64,
+    },
+    /// Every word is a frame of the layout.
+    Fits,
+    /// No error bit spoke.
+    Silent,
+    /// The shaft stands: its position, and how many steps it trembles.
+    Stands {
+        /// The last position.
+        position: u64,
+        /// Steps between the lowest and the highest.
+        steps: u64,
+    },
+    /// The shaft turns: the most steps from one word to the next.
+    Turns {
+        /// Steps, the short way round.
+        most: u64,
+    },
+}
+
+/// Takes words and looks at them.
+///
+/// # Errors
+/// Why no words come.
+pub fn check(master: &mut Master<'_>, layout: &Layout, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Line>, Error> {
+    let identity = master.hello()?;
+    let mut words = Vec::new();
+    for done in 0..WORDS {
+        progress(done, WORDS);
+        words.extend(master.next_word()?.words);
+    }
+    Ok(judge(&identity, layout, &words))
+}
+
+/// What there is to say of an adapter and of words that were taken one after the other.
+fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<Line> {
+    let mut said: Vec<(Said, u64)> = Vec::new();
+    let mut positions = Vec::new();
+    for word in words {
+        let reading = layout.decode(*word);
+        if !reading.flags.has(Flags::CODE) {
+            positions.push(reading.position);
+        }
+        for finding in layout.findings(reading) {
+            match said.iter_mut().find(|(own, _)| *own == finding) {
+                Some((_, count)) => *count += 1,
+                None => said.push((finding, 1)),
+            }
+        }
+    }
+    let different = words.iter().collect::<BTreeSet<_>>().len();
+    let taken = Finding::Words { taken: words.len() as u64, different };
+    let among = |wanted: fn(&Said) -> bool| {
+        let wanted = said.iter().filter(move |(what, _)| wanted(what));
+        wanted.map(|(what, count)| Finding::Said { what: what.clone(), count: *count })
+    };
+    let verdict = |wanted: fn(&Said) -> bool| {
+        let worst = said.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
+            Meaning::Invalid => Verdict::Bad,
+            Meaning::Warning => Verdict::Attention,
+        });
+        worst.max().unwrap_or(Verdict::Good)
+    };
+    let is_stuck = |what: &Said| matches!(what, Said::StuckHigh { .. } | Said::StuckLow { .. });
+    let is_of_the_form = |what: &Said| matches!(what, Said::Code | Said::Padding | Said::Parity | Said::Repeat);
+    let is_error = |what: &Said| matches!(what, Said::Error { .. } | Said::Pattern { .. });
+    let or = |findings: Vec<Finding>, none: Finding| if findings.is_empty() { vec![none] } else { findings };
+    // A wrong layout is bad even where each of its signs is a warning.
+    let form = verdict(is_of_the_form);
+    let form = if form == Verdict::Good { Verdict::Good } else { Verdict::Bad };
+    vec![
+        adapter(identity),
+        supply(identity),
+        Line {
+            step: Step::Line,
+            verdict: verdict(is_stuck),
+            findings: std::iter::once(taken).chain(among(is_stuck)).collect(),
+        },
+        Line { step: Step::Layout, verdict: form, findings: or(among(is_of_the_form).collect(), Finding::Fits) },
+        Line {
+            step: Step::Errors,
+            verdict: verdict(is_error),
+            findings: or(among(is_error).collect(), Finding::Silent),
+        },
+        motion(layout, &positions),
+    ]
+}
+
+fn adapter(identity: &Identity) -> Line {
+    let Identity { hello, asking, clock_hz, .. } = identity;
+    let verdict = if *clock_hz == asking.clock_hz { Verdict::Good } else { Verdict::Attention };
+    let who = Finding::Adapter(hello.name.clone(), hello.firmware.clone());
+    Line {
+        step: Step::Adapter,
+        verdict,
+        findings: vec![who, Finding::Clock { asked: asking.clock_hz, got: *clock_hz }],
+    }
+}
+
+fn supply(identity: &Identity) -> Line {
+    let supplied = identity.supply.and_then(|supply| Some((supply.millivolt, supply.measured?)));
+    let (verdict, finding) = match supplied {
+        Some((wished, (measured, milliampere))) => {
+            // A tenth is what encoders for 5 V stand.
+            let is_near = measured.abs_diff(wished) <= wished / 10;
+            let verdict = if is_near && milliampere > 0 { Verdict::Good } else { Verdict::Attention };
+            (verdict, Finding::Supply { wished, measured, milliampere })
+        }
+        None => (Verdict::Good, Finding::SuppliedElsewhere),
+    };
+    Line { step: Step::Supply, verdict, findings: vec![finding] }
+}
+
+/// How the position goes from word to word, the short way round.
+fn motion(layout: &Layout, positions: &[u64]) -> Line {
+    let all = u128::from(layout.coding().last()) + 1;
+    let apart = |one: u64, other: u64| {
+        let apart = u128::from(one.abs_diff(other));
+        u64::try_from(apart.min(all - apart)).unwrap_or(u64::MAX)
+    };
+    let steps = positions.iter().zip(positions.iter().skip(1)).map(|(one, other)| apart(*one, *other));
+    let most = steps.max().unwrap_or(0);
+    let spread = positions
+        .first()
+        .map_or(0, |first| positions.iter().map(|position| apart(*first, *position)).max().unwrap_or(0));
+    let (verdict, finding) = match positions.last() {
+        None => return Line { step: Step::Motion, verdict: Verdict::Bad, findings: Vec::new() },
+        Some(position) if spread <= TREMBLES => (Verdict::Good, Finding::Stands { position: *position, steps: spread }),
+        // From a word to the next by more than a quarter of all positions: no shaft turns like that.
+        Some(_) if u128::from(most) * 4 > all => (Verdict::Attention, Finding::Turns { most }),
+        Some(_) => (Verdict::Good, Finding::Turns { most }),
+    };
+    Line { step: Step::Motion, verdict, findings: vec![finding] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::buses::bridge::protocol::{Capabilities, Hello};
+    use crate::devices::ssi::procedures::{Asking, Supply};
+    use crate::devices::ssi::protocol::{Families, Settings};
+
+    fn layout(text: &str) -> Layout {
+        let (key, settings) = Settings::parse(text).unwrap();
+        settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    }
+
+    fn identity(clock_hz: u32, supply: Option<Supply>) -> Identity {
+        let hello = Hello {
+            firmware: "1.0".to_owned(),
+            capabilities: Capabilities::SSI,
+            max_clock_hz: 1_000_000,
+            max_sample_hz: 0,
+            name: "bench".to_owned(),
+            serial: "7".to_owned(),
+        };
+        Identity { hello, asking: Asking::default(), clock_hz, supply }
+    }
+
+    fn verdicts(lines: &[Line]) -> Vec<Verdict> {
+        lines.iter().map(|line| line.verdict).collect()
+    }
+
+    use Verdict::{Attention, Bad, Good};
+
+    /// Reference section 8: AFS60, 18 bits, binary; ERRDIG, ERRSI and ERRSYNC on the last clocks.
+    #[test]
+    fn words_are_judged_step_by_step() {
+        let layout = layout("afs60");
+        let good = 0x15_5E68;
+        let judged = |words: &[u64]| verdicts(&judge(&identity(400_000, None), &layout, words));
+        assert_eq!(judged(&[good, good + 8, good]), [Good; 6]);
+        assert_eq!(judged(&[good, good | 1]), [Good, Good, Good, Good, Bad, Good]);
+        assert_eq!(judged(&[0x1F_FFFF; 3]), [Good, Good, Bad, Good, Bad, Good], "every bit is 1");
+        assert_eq!(judged(&[0x10 << 3, 0x2_0010 << 3]), [Good, Good, Good, Good, Good, Attention], "half a turn");
+        let lines = judge(&identity(400_000, None), &layout, &[good, good + 8]);
+        assert_eq!(lines[5].findings, [Finding::Stands { position: 0x2_ABCE, steps: 1 }]);
+        assert_eq!(lines[2].findings, [Finding::Words { taken: 2, different: 2 }]);
+    }
+
+    #[test]
+    fn a_wrong_layout_is_bad() {
+        // Zeros behind 12 bits in the 14 of an AHS36, in which the encoder sends bits.
+        let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
+        let lines = judge(&identity(400_000, None), &layout("ahs36,st=12"), &words);
+        assert_eq!(lines[3].verdict, Bad);
+        assert_eq!(lines[3].findings, [Finding::Said { what: Said::Padding, count: 2 }]);
+        assert_eq!(judge(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [Finding::Fits]);
+    }
+
+    #[test]
+    fn the_adapter_and_its_supply_are_judged_too() {
+        let judged = |clock_hz, measured: Option<(u16, u16)>| {
+            let supply = Some(Supply { millivolt: 5_000, measured });
+            verdicts(&judge(&identity(clock_hz, supply), &layout("afs60"), &[0x15_5E68]))[..2].to_vec()
+        };
+        assert_eq!(judged(400_000, Some((4_950, 60))), [Good, Good]);
+        assert_eq!(judged(333_333, Some((4_300, 60))), [Attention, Attention]);
+        assert_eq!(judged(400_000, Some((5_000, 0))), [Good, Attention], "nothing draws current");
+        assert_eq!(judged(400_000, None), [Good, Good]);
+    }
+}

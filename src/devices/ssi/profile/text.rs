@@ -1,0 +1,370 @@
+//! The text of an SSI profile: written for people, read from their hands. What is as usual is left out; what is wrong
+//! names its entry, and a frame that cannot work is refused with the reason.
+
+use std::collections::VecDeque;
+use std::str::FromStr;
+
+use ron::Value;
+
+use super::{Kept, ReadingSettings, SsiProfile};
+use crate::devices::ssi::protocol::{
+    self, Code, Coded, Coding, Descriptor, Direction, ErrorBit, Fraction, Layout, Parity, Pattern, Range, Repeat, Word,
+};
+use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::{Cause, Profile, ProfileError};
+
+const SMALL: &str = "a number from 0 to 255";
+const NUMBER: &str = "a whole number";
+const FLAG: &str = "true or false";
+const TEXT: &str = "a text";
+const CLOCK_HZ: &str = "a number from 1000 to 20000000";
+const PAUSE_US: &str = "a number from 1 to 65535";
+const METRES: &str = "a number from 0 to 65535";
+const REVOLUTIONS: &str = "a whole number, or a text such as \"25/2\"";
+const WORD: &str = "ones, or a number with the bits of a whole frame";
+/// The word for a frame of ones alone.
+const ONES: &str = "ones";
+
+impl Profile for SsiProfile {
+    const KIND: &'static str = protocol::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let name = entries.optional("name", TEXT)?.unwrap_or_default();
+        // Keys have small letters; a person may write the type's name.
+        let family = entries.optional("family", TEXT)?.map(|key: String| key.to_ascii_lowercase());
+        let mut unknown = Kept::default();
+        let path = entries.path_of("frame");
+        let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
+        let layout = Layout::new(descriptor.clone())
+            .map_err(|cause| ProfileError::Refused { path, cause: Cause::new(cause) })?;
+        let direction = word(entries, "direction")?.unwrap_or_default();
+        let preset = entries.optional("preset", NUMBER)?.unwrap_or(0);
+        let last = layout.coding().last();
+        if preset > last {
+            let what = format!("{preset} is not within 0 to {last}");
+            return Err(ProfileError::Value { path: entries.path_of("preset"), what });
+        }
+        let reading = match entries.optional_structure("reading")? {
+            Some(entries) => read_reading(entries, &mut unknown)?,
+            None => ReadingSettings::default(),
+        };
+        Ok(SsiProfile { name, family, descriptor, direction, preset, reading, unknown })
+    }
+
+    fn write(&self, writer: &mut Writer) {
+        if !self.name.is_empty() {
+            writer.text("name", &self.name);
+        }
+        if let Some(family) = &self.family {
+            writer.text("family", family);
+        }
+        self.write_frame(writer);
+        if self.direction != Direction::default() {
+            writer.text("direction", &self.direction.to_string());
+        }
+        if self.preset != 0 {
+            writer.entry("preset", &self.preset.to_string(), "");
+        }
+        self.write_reading(writer);
+    }
+}
+
+impl SsiProfile {
+    fn write_frame(&self, writer: &mut Writer) {
+        let frame = &self.descriptor;
+        writer.open("frame", '(');
+        number(writer, "clocks", frame.clocks);
+        write_range(writer, &frame.range);
+        if frame.code != Code::Binary {
+            writer.text("code", &frame.code.to_string());
+        }
+        if frame.coded != Coded::Position {
+            writer.text("over", &frame.coded.to_string());
+        }
+        if frame.area != usual_area(frame) {
+            number(writer, "area", frame.area);
+        }
+        for (name, zeros) in [("lead", frame.lead), ("between", frame.between)] {
+            if zeros > 0 {
+                number(writer, name, zeros);
+            }
+        }
+        for (name, is_set) in [("shift", frame.shift_right), ("inverted", frame.inverted)] {
+            if is_set {
+                writer.entry(name, "true", "");
+            }
+        }
+        self.write_errors(writer);
+        if let Some(Parity { clock, even }) = frame.parity {
+            let more = entries_text(&self.unknown.parity);
+            writer.entry("parity", &format!("(clock: {clock}, even: {even}{more})"), "");
+        }
+        if let Some(Repeat { word, gap }) = frame.repeat {
+            let more = entries_text(&self.unknown.repeat);
+            writer.entry("repeat", &format!("(word: {word}, gap: {gap}{more})"), "");
+        }
+        self.write_patterns(writer);
+        writer.unknown(&self.unknown.frame);
+        writer.close(')');
+    }
+
+    fn write_errors(&self, writer: &mut Writer) {
+        let mut kept: VecDeque<_> = self.unknown.errors.iter().collect();
+        let line = |bit: &ErrorBit| {
+            let (name, clock, meaning) = (quoted(&bit.name), bit.clock, bit.meaning);
+            let low = if bit.active_low { ", active_low: true" } else { "" };
+            let cleared = if bit.cleared_by_transfer { ", cleared_by_transfer: true" } else { "" };
+            let more = entries_text(&of_name(&mut kept, &bit.name));
+            format!("(name: {name}, clock: {clock}, meaning: \"{meaning}\"{low}{cleared}{more})")
+        };
+        write_list(writer, "errors", self.descriptor.errors.iter().map(line));
+    }
+
+    fn write_patterns(&self, writer: &mut Writer) {
+        let mut kept: VecDeque<_> = self.unknown.patterns.iter().collect();
+        let digits = usize::from(self.descriptor.clocks).div_ceil(4);
+        let line = |pattern: &Pattern| {
+            let (name, meaning) = (quoted(&pattern.name), pattern.meaning);
+            let word = match pattern.word {
+                Word::Ones => quoted(ONES),
+                Word::Bits(bits) => format!("0x{bits:0digits$X}"),
+            };
+            let more = entries_text(&of_name(&mut kept, &pattern.name));
+            format!("(name: {name}, word: {word}, meaning: \"{meaning}\"{more})")
+        };
+        write_list(writer, "patterns", self.descriptor.patterns.iter().map(line));
+    }
+
+    fn write_reading(&self, writer: &mut Writer) {
+        let (reading, usual) = (self.reading, ReadingSettings::default());
+        if reading == usual && self.unknown.reading.is_empty() {
+            return;
+        }
+        writer.open("reading", '(');
+        if reading.clock_hz != usual.clock_hz {
+            number(writer, "clock_hz", reading.clock_hz);
+        }
+        if reading.pause_us != usual.pause_us {
+            number(writer, "pause_us", reading.pause_us);
+        }
+        if let Some(metres) = reading.cable_metres {
+            number(writer, "cable_metres", metres);
+        }
+        if reading.synchronous {
+            writer.entry("synchronous", "true", "");
+        }
+        writer.unknown(&self.unknown.reading);
+        writer.close(')');
+    }
+}
+
+fn number(writer: &mut Writer, name: &str, value: impl Into<u64>) {
+    writer.entry(name, &value.into().to_string(), "");
+}
+
+fn write_range(writer: &mut Writer, range: &Range) {
+    match *range {
+        Range::Bits { multiturn, singleturn } => {
+            if multiturn > 0 {
+                number(writer, "multiturn", multiturn);
+            }
+            number(writer, "singleturn", singleturn);
+        }
+        Range::Steps { per_turn, turns } => {
+            number(writer, "steps", per_turn);
+            if turns != 1 {
+                number(writer, "turns", turns);
+            }
+        }
+        Range::RoundAxis { steps, revolutions } => {
+            number(writer, "steps", steps);
+            writer.text("revolutions", &revolutions.to_string());
+        }
+        Range::Length { bits, step_nanometres } => {
+            number(writer, "bits", bits);
+            number(writer, "step_nanometres", step_nanometres);
+        }
+    }
+}
+
+fn write_list(writer: &mut Writer, name: &str, lines: impl ExactSizeIterator<Item = String>) {
+    if lines.len() > 0 {
+        writer.open(name, '[');
+        lines.for_each(|line| writer.entry_in_list(&line));
+        writer.close(']');
+    }
+}
+
+/// Takes what is kept of this name.
+fn of_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> Unknown {
+    let at = kept.iter().position(|(own, _)| own == name);
+    at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()
+}
+
+/// Clocks of the position without zeros behind it.
+fn usual_area(frame: &Descriptor) -> u8 {
+    let coding = frame.range.last().ok().and_then(|last| Coding::new(frame.code, last).ok());
+    let bits = coding.map_or(0, |coding| coding.bits());
+    bits.saturating_add(frame.lead).saturating_add(frame.between)
+}
+
+fn read_frame(mut entries: Entries, unknown: &mut Kept) -> Result<Descriptor, ProfileError> {
+    let mut frame = Descriptor {
+        clocks: entries.required("clocks", SMALL)?,
+        range: read_range(&mut entries)?,
+        code: word(&mut entries, "code")?.unwrap_or(Code::Binary),
+        coded: word(&mut entries, "over")?.unwrap_or(Coded::Position),
+        area: 0,
+        lead: entries.optional("lead", SMALL)?.unwrap_or(0),
+        between: entries.optional("between", SMALL)?.unwrap_or(0),
+        shift_right: entries.optional("shift", FLAG)?.unwrap_or(false),
+        errors: Vec::new(),
+        parity: None,
+        repeat: None,
+        inverted: entries.optional("inverted", FLAG)?.unwrap_or(false),
+        patterns: Vec::new(),
+    };
+    frame.area = entries.optional("area", SMALL)?.unwrap_or_else(|| usual_area(&frame));
+    for entries in entries.structures("errors")? {
+        let (bit, more) = read_error(entries)?;
+        unknown.errors.push((bit.name.clone(), more));
+        frame.errors.push(bit);
+    }
+    if let Some(mut entries) = entries.optional_structure("parity")? {
+        let clock = entries.required("clock", SMALL)?;
+        frame.parity = Some(Parity { clock, even: entries.required("even", FLAG)? });
+        unknown.parity = entries.rest()?;
+    }
+    if let Some(mut entries) = entries.optional_structure("repeat")? {
+        let word = entries.required("word", SMALL)?;
+        frame.repeat = Some(Repeat { word, gap: entries.optional("gap", SMALL)?.unwrap_or(1) });
+        unknown.repeat = entries.rest()?;
+    }
+    for entries in entries.structures("patterns")? {
+        let (pattern, more) = read_pattern(entries)?;
+        unknown.patterns.push((pattern.name.clone(), more));
+        frame.patterns.push(pattern);
+    }
+    unknown.errors.retain(|(_, more)| !more.is_empty());
+    unknown.patterns.retain(|(_, more)| !more.is_empty());
+    unknown.frame = entries.rest()?;
+    Ok(frame)
+}
+
+/// Which positions there are: bits of turns and steps, any number of them, or a length; one of the three.
+fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
+    let multiturn: Option<u8> = entries.optional("multiturn", SMALL)?;
+    let singleturn: Option<u8> = entries.optional("singleturn", SMALL)?;
+    let steps: Option<u32> = entries.optional("steps", NUMBER)?;
+    let turns: Option<u32> = entries.optional("turns", NUMBER)?;
+    let revolutions = read_revolutions(entries)?;
+    let bits: Option<u8> = entries.optional("bits", SMALL)?;
+    let step_nanometres: Option<u32> = entries.optional("step_nanometres", NUMBER)?;
+    let given = [
+        ("singleturn", singleturn.is_some()),
+        ("multiturn", multiturn.is_some()),
+        ("steps", steps.is_some()),
+        ("turns", turns.is_some()),
+        ("revolutions", revolutions.is_some()),
+        ("bits", bits.is_some()),
+        ("step_nanometres", step_nanometres.is_some()),
+    ];
+    // What else is given belongs to what says which positions there are.
+    let only = |own: &str, others: &[&str]| {
+        let other = given.iter().find(|(name, is_given)| *is_given && *name != own && !others.contains(name));
+        match other {
+            None => Ok(()),
+            Some((name, _)) => {
+                let what = format!("not together with {own}");
+                Err(ProfileError::Value { path: entries.path_of(name), what })
+            }
+        }
+    };
+    match (singleturn, steps, bits) {
+        (Some(singleturn), _, _) => {
+            only("singleturn", &["multiturn"])?;
+            Ok(Range::Bits { multiturn: multiturn.unwrap_or(0), singleturn })
+        }
+        (None, Some(steps), _) => match revolutions {
+            Some(revolutions) => {
+                only("steps", &["revolutions"])?;
+                Ok(Range::RoundAxis { steps, revolutions })
+            }
+            None => {
+                only("steps", &["turns"])?;
+                Ok(Range::Steps { per_turn: steps, turns: turns.unwrap_or(1) })
+            }
+        },
+        (None, None, Some(bits)) => {
+            only("bits", &["step_nanometres"])?;
+            let missing = || ProfileError::Missing { path: entries.path_of("step_nanometres") };
+            Ok(Range::Length { bits, step_nanometres: step_nanometres.ok_or_else(missing)? })
+        }
+        (None, None, None) => {
+            let what = "singleturn, steps or bits has to say which positions there are".to_owned();
+            Err(ProfileError::Value { path: entries.path().to_owned(), what })
+        }
+    }
+}
+
+fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileError> {
+    let path = entries.path_of("revolutions");
+    let Some(value) = entries.optional::<Value>("revolutions", REVOLUTIONS)? else { return Ok(None) };
+    let revolutions = match value {
+        Value::String(text) => text.parse().ok(),
+        value => value.into_rust().ok().map(|numerator| Fraction { numerator, denominator: 1 }),
+    };
+    revolutions.map(Some).ok_or(ProfileError::Shape { path, expected: REVOLUTIONS })
+}
+
+fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError> {
+    let bit = ErrorBit {
+        name: entries.required("name", TEXT)?,
+        clock: entries.required("clock", SMALL)?,
+        meaning: required_word(&mut entries, "meaning")?,
+        active_low: entries.optional("active_low", FLAG)?.unwrap_or(false),
+        cleared_by_transfer: entries.optional("cleared_by_transfer", FLAG)?.unwrap_or(false),
+    };
+    Ok((bit, entries.rest()?))
+}
+
+fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError> {
+    let wrong = |path| ProfileError::Shape { path, expected: WORD };
+    let path = entries.path_of("word");
+    let word = match entries.required::<Value>("word", WORD)? {
+        Value::String(word) if word == ONES => Word::Ones,
+        value => Word::Bits(value.into_rust().map_err(|_| wrong(path))?),
+    };
+    let name = entries.required("name", TEXT)?;
+    Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
+}
+
+fn read_reading(mut entries: Entries, unknown: &mut Kept) -> Result<ReadingSettings, ProfileError> {
+    let usual = ReadingSettings::default();
+    let clock_hz = entries.optional("clock_hz", CLOCK_HZ)?.unwrap_or(usual.clock_hz);
+    if !(1_000..=20_000_000).contains(&clock_hz) {
+        return Err(ProfileError::Shape { path: entries.path_of("clock_hz"), expected: CLOCK_HZ });
+    }
+    let pause_us = entries.optional("pause_us", PAUSE_US)?.unwrap_or(usual.pause_us);
+    if pause_us == 0 {
+        return Err(ProfileError::Shape { path: entries.path_of("pause_us"), expected: PAUSE_US });
+    }
+    let cable_metres = entries.optional("cable_metres", METRES)?;
+    let synchronous = entries.optional("synchronous", FLAG)?.unwrap_or(usual.synchronous);
+    unknown.reading = entries.rest()?;
+    Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
+}
+
+/// A text that is one of some words.
+fn word<T: FromStr<Err = &'static str>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
+    let path = entries.path_of(name);
+    let Some(word) = entries.optional::<String>(name, TEXT)? else { return Ok(None) };
+    word.parse().map(Some).map_err(|expected| ProfileError::Shape { path, expected })
+}
+
+fn required_word<T: FromStr<Err = &'static str>>(entries: &mut Entries, name: &str) -> Result<T, ProfileError> {
+    word(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,226 @@
+//! The decoder as a list of statements, the same in every language: what [`Layout::decode`] does, for one layout.
+
+use crate::devices::ssi::protocol::code::{Code, ones};
+use crate::devices::ssi::protocol::descriptor::Coded;
+use crate::devices::ssi::protocol::layout::{Flags, Layout};
+use crate::devices::ssi::protocol::range::{Fraction, Range};
+
+/// How a language writes things. Values are words of 64 bits unless they are said to be numbers.
+pub(super) trait Dialect {
+    fn hex(&self, value: u64) -> String;
+    fn and(&self, a: &str, b: &str) -> String;
+    fn or(&self, a: &str, b: &str) -> String;
+    fn xor(&self, a: &str, b: &str) -> String;
+    fn right(&self, a: &str, bits: u8) -> String;
+    fn left(&self, a: &str, bits: u8) -> String;
+    fn equal(&self, a: &str, b: &str) -> String;
+    fn differs(&self, a: &str, b: &str) -> String;
+    /// A word as a number.
+    fn number(&self, word: &str) -> String;
+    fn divided(&self, number: &str, by: u64) -> String;
+    fn rest(&self, number: &str, by: u64) -> String;
+    fn assign(&self, name: &str, value: &str) -> String;
+    fn when(&self, condition: &str, statement: &str) -> String;
+    fn comment(&self, text: &str) -> String;
+    fn negated(&self, condition: &str) -> String;
+    fn both(&self, a: &str, b: &str) -> String;
+}
+
+/// Statements that read `frame` and set the words `word`, `code`, `flags`, the numbers `position`, `turns`, `steps`, and
+/// `valid`. `fold` and `digit` are words to reckon with.
+pub(super) fn statements(layout: &Layout, dialect: &dyn Dialect) -> Vec<String> {
+    let mut writer = Writer { dialect, lines: Vec::new() };
+    writer.frame(layout);
+    writer.word(layout);
+    writer.code(layout);
+    writer.place(layout);
+    writer.lines
+}
+
+struct Writer<'a> {
+    dialect: &'a dyn Dialect,
+    lines: Vec<String>,
+}
+
+impl Writer<'_> {
+    fn say(&mut self, text: &str) {
+        self.lines.push(self.dialect.comment(text));
+    }
+
+    fn set(&mut self, name: &str, value: &str) {
+        self.lines.push(self.dialect.assign(name, value));
+    }
+
+    fn flag(&mut self, condition: &str, flags: Flags) {
+        let raised = self.dialect.assign("flags", &self.dialect.or("flags", &self.dialect.hex(flags.0.into())));
+        self.lines.push(self.dialect.when(condition, &raised));
+    }
+
+    fn any_of(&self, word: &str, bits: u64) -> String {
+        self.dialect.differs(&self.dialect.and(word, &self.dialect.hex(bits)), &self.dialect.hex(0))
+    }
+
+    fn is(&self, word: &str, value: u64) -> String {
+        self.dialect.equal(word, &self.dialect.hex(value))
+    }
+
+    fn frame(&mut self, layout: &Layout) {
+        let d = self.dialect;
+        let all = ones(layout.clocks());
+        self.say("the frame as it was sent");
+        self.set("word", &d.and("frame", &d.hex(all)));
+        self.set("flags", &d.hex(0));
+        self.flag(&self.is("word", all), Flags::ONES);
+        self.flag(&self.is("word", 0), Flags::ZEROS);
+        for (index, pattern) in layout.patterns.iter().enumerate() {
+            self.flag(&self.is("word", *pattern), Flags::pattern(index));
+        }
+        if layout.descriptor().inverted {
+            self.set("word", &d.xor("word", &d.hex(all)));
+        }
+        if let Some(repeat) = layout.descriptor().repeat {
+            self.say("its repetition");
+            let behind = layout.clocks() - repeat.word;
+            let first = d.left(&d.right("word", behind), behind);
+            self.set("fold", &d.xor(&d.or(&first, &d.right(&first, repeat.word + repeat.gap)), "word"));
+            let again = ones(repeat.word) << behind >> (repeat.word + repeat.gap);
+            self.flag(&self.any_of("fold", again), Flags::REPEAT);
+            self.flag(&self.any_of("fold", all & !again), Flags::PADDING);
+            self.set("word", &d.right("word", behind));
+        }
+    }
+
+    fn word(&mut self, layout: &Layout) {
+        let d = self.dialect;
+        let descriptor = layout.descriptor();
+        if let Some(parity) = descriptor.parity {
+            self.say("parity");
+            let (bit, before) = layout.parity;
+            self.set("fold", &d.and("word", &d.hex(bit | before)));
+            for bits in [32, 16, 8, 4, 2, 1] {
+                self.set("fold", &d.xor("fold", &d.right("fold", bits)));
+            }
+            let odd = u64::from(parity.even);
+            self.flag(&d.equal(&d.and("fold", &d.hex(1)), &d.hex(odd)), Flags::PARITY);
+        }
+        if descriptor.coded == Coded::AreaAndErrors {
+            self.ungray_inside(layout);
+        }
+        for (index, (bit, own)) in layout.errors.iter().zip(&descriptor.errors).enumerate() {
+            self.say(&own.name);
+            let level = if own.active_low { 0 } else { *bit };
+            self.flag(&d.equal(&d.and("word", &d.hex(*bit)), &d.hex(level)), Flags::error(index));
+        }
+        if descriptor.shift_right {
+            self.say("back by the clock by which it comes later");
+            let top = ones(1) << (descriptor.area - 1) << layout.behind_area;
+            self.flag(&self.any_of("word", top), Flags::PADDING);
+            let area = ones(descriptor.area) << layout.behind_area;
+            let moved = d.and(&d.left(&d.and("word", &d.hex(area)), 1), &d.hex(area));
+            self.set("word", &d.or(&moved, &d.and("word", &d.hex(ones(layout.behind_area)))));
+        }
+        if descriptor.coded == Coded::Area {
+            self.ungray_inside(layout);
+            if descriptor.shift_right {
+                self.set("word", &d.and("word", &d.hex(!(1 << layout.behind_area))));
+            }
+        }
+        if layout.zeros != 0 {
+            self.say("what is always 0");
+            self.flag(&self.any_of("word", layout.zeros), Flags::PADDING);
+        }
+    }
+
+    /// Gray, as a part of the word.
+    fn ungray_inside(&mut self, layout: &Layout) {
+        let d = self.dialect;
+        let (bits, behind) = layout.gray;
+        self.say("Gray, zeros included");
+        self.set("fold", &d.and(&d.right("word", behind), &d.hex(ones(bits))));
+        self.ungray("fold", bits);
+        let rest = d.and("word", &d.hex(!(ones(bits) << behind)));
+        self.set("word", &d.or(&d.left("fold", behind), &rest));
+    }
+
+    fn ungray(&mut self, name: &str, bits: u8) {
+        for shift in [1, 2, 4, 8, 16, 32].into_iter().filter(|shift| *shift < bits) {
+            self.set(name, &self.dialect.xor(name, &self.dialect.right(name, shift)));
+        }
+    }
+
+    fn code(&mut self, layout: &Layout) {
+        let d = self.dialect;
+        let coding = layout.coding();
+        self.say("the position's bits");
+        let part = |part: &crate::devices::ssi::protocol::layout::Part| {
+            d.left(&d.and(&d.right("word", part.in_word), &d.hex(part.mask)), part.in_code)
+        };
+        let [high, low] = &layout.parts;
+        let code = if high.mask == 0 { part(low) } else { d.or(&part(high), &part(low)) };
+        self.set("code", &code);
+        if matches!(coding.code(), Code::Gray | Code::GrayExcess) {
+            self.say("Gray");
+            self.ungray("code", coding.bits());
+        }
+        self.set("position", &d.number("code"));
+        match coding.code() {
+            Code::Binary | Code::Gray => {}
+            Code::GrayExcess => {
+                let offset = coding.offset();
+                self.flag(&format!("{} < {offset}", "position"), Flags::CODE);
+                self.set("position", &format!("position - {offset}"));
+            }
+            Code::Bcd => {
+                self.say("BCD");
+                self.set("position", "0");
+                for digit in (0..coding.bits() / 4).rev() {
+                    self.set("digit", &d.and(&d.right("code", 4 * digit), &d.hex(0xF)));
+                    self.flag(&format!("{} > 9", d.number("digit")), Flags::CODE);
+                    self.set("position", &format!("position * 10 + {}", d.number("digit")));
+                }
+            }
+        }
+        if coding.last() < ones(coding.bits()) || coding.code() == Code::Bcd {
+            self.flag(&format!("position > {}", coding.last()), Flags::CODE);
+            let none = d.assign("position", "0");
+            self.lines.push(d.when(&self.any_of("flags", Flags::CODE.0.into()), &none));
+        }
+        if layout.loses_lowest_bit() {
+            self.set("position", &format!("position - {}", d.rest("position", 2)));
+        }
+    }
+
+    fn place(&mut self, layout: &Layout) {
+        let d = self.dialect;
+        let per_turn = match layout.descriptor().range {
+            Range::Bits { singleturn, .. } => Some(1_u64 << singleturn),
+            Range::Steps { per_turn, .. } => Some(u64::from(per_turn)),
+            Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
+                self.say(&format!("{steps} steps over {numerator}/{denominator} turns"));
+                let turn = u64::from(steps) * u64::from(denominator);
+                self.set("turns", &d.divided(&format!("position * {numerator}"), turn));
+                let first = d.divided(&format!("turns * {turn} + {}", numerator - 1), numerator.into());
+                self.set("steps", &format!("position - {first}"));
+                None
+            }
+            Range::Length { step_nanometres, .. } => {
+                self.say(&format!("a length in steps of {step_nanometres} nm"));
+                self.set("turns", "0");
+                self.set("steps", "position");
+                None
+            }
+        };
+        if let Some(per_turn) = per_turn {
+            self.say("turns and steps within one");
+            self.set("turns", &d.divided("position", per_turn));
+            self.set("steps", &d.rest("position", per_turn));
+        }
+        let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
+        let none = (0..layout.errors.len()).fold(form, |all, index| all.with(Flags::error(index)));
+        let stuck = Flags::ONES.with(Flags::ZEROS);
+        let invalid = self.any_of("flags", layout.invalid().0.into());
+        let no_position = d.both(&self.any_of("flags", stuck.0.into()), &self.any_of("flags", none.0.into()));
+        self.say("an error, or a line that is stuck");
+        self.set("valid", &d.both(&d.negated(&invalid), &d.negated(&no_position)));
+    }
+}

@@ -1,0 +1,122 @@
+//! A decoder in IEC 61131-3 structured text.
+
+use std::fmt::Write;
+
+use super::c::flags;
+use super::procedure::{Dialect, statements};
+use crate::devices::ssi::protocol::layout::Layout;
+
+struct StructuredText;
+
+impl Dialect for StructuredText {
+    fn hex(&self, value: u64) -> String {
+        format!("LWORD#16#{value:X}")
+    }
+
+    fn and(&self, a: &str, b: &str) -> String {
+        format!("({a} AND {b})")
+    }
+
+    fn or(&self, a: &str, b: &str) -> String {
+        format!("({a} OR {b})")
+    }
+
+    fn xor(&self, a: &str, b: &str) -> String {
+        format!("({a} XOR {b})")
+    }
+
+    fn right(&self, a: &str, bits: u8) -> String {
+        if bits == 0 { a.to_owned() } else { format!("SHR({a}, {bits})") }
+    }
+
+    fn left(&self, a: &str, bits: u8) -> String {
+        if bits == 0 { a.to_owned() } else { format!("SHL({a}, {bits})") }
+    }
+
+    fn equal(&self, a: &str, b: &str) -> String {
+        format!("({a} = {b})")
+    }
+
+    fn differs(&self, a: &str, b: &str) -> String {
+        format!("({a} <> {b})")
+    }
+
+    fn number(&self, word: &str) -> String {
+        format!("LWORD_TO_ULINT({word})")
+    }
+
+    fn divided(&self, number: &str, by: u64) -> String {
+        format!("({number}) / ULINT#{by}")
+    }
+
+    fn rest(&self, number: &str, by: u64) -> String {
+        format!("({number}) MOD ULINT#{by}")
+    }
+
+    fn assign(&self, name: &str, value: &str) -> String {
+        format!("{name} := {value};")
+    }
+
+    fn when(&self, condition: &str, statement: &str) -> String {
+        format!("IF {condition} THEN {statement} END_IF;")
+    }
+
+    fn comment(&self, text: &str) -> String {
+        format!("(* {} *)", text.replace("*)", "* )"))
+    }
+
+    fn negated(&self, condition: &str) -> String {
+        format!("NOT {condition}")
+    }
+
+    fn both(&self, a: &str, b: &str) -> String {
+        format!("({a} AND {b})")
+    }
+}
+
+/// A function block `SSI_DECODE` for this layout.
+pub fn structured_text(layout: &Layout, title: &str) -> String {
+    let mut text = String::new();
+    let title = title.replace("*)", "* )");
+    let clocks = layout.clocks();
+    // Writing into a String does not fail.
+    let _ = writeln!(
+        text,
+        "(* SSI decoder: {title}\n   {clocks} clocks; the first bit received is bit {} of frame. IEC 61131-3.",
+        clocks - 1
+    );
+    for (name, flag, meaning) in flags(layout) {
+        let _ = writeln!(text, "   flags 16#{:X}: {name}, {meaning}", flag.0);
+    }
+    text.push_str(
+        "*)\nFUNCTION_BLOCK SSI_DECODE\nVAR_INPUT\n    frame : LWORD;\nEND_VAR\nVAR_OUTPUT\n    position : ULINT; \
+         (* turns and steps as one number *)\n    turns : ULINT;\n    steps : ULINT; (* within the turn *)\n    \
+         flags : LWORD;\n    valid : BOOL; (* the position may be used *)\nEND_VAR\nVAR\n    word_ : LWORD;\n    \
+         code : LWORD;\n    fold : LWORD;\n    digit : LWORD;\nEND_VAR\n",
+    );
+    for line in statements(layout, &StructuredText) {
+        let _ = writeln!(text, "{}", own_names(&line));
+    }
+    text.push_str("END_FUNCTION_BLOCK\n");
+    text
+}
+
+/// `WORD` is a type there.
+fn own_names(line: &str) -> String {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut out = String::new();
+    let mut name = String::new();
+    let comment = line.starts_with("(*");
+    for c in line.chars().chain(std::iter::once('\n')) {
+        if is_name(c) {
+            name.push(c);
+            continue;
+        }
+        out.push_str(if name == "word" && !comment { "word_" } else { &name });
+        name.clear();
+        if c != '\n' {
+            out.push(c);
+        }
+    }
+    out
+}

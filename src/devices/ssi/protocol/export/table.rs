@@ -1,0 +1,34 @@
+//! Every clock of a frame with what it carries, as CSV.
+
+use std::fmt::Write;
+
+use crate::devices::ssi::protocol::explain::Role;
+use crate::devices::ssi::protocol::layout::Layout;
+
+impl Layout {
+    /// What a clock carries, in the words of the manual: `MT11`, `ST0`, `P3`, the error bit's name, `0`.
+    pub fn role_name(&self, role: Role) -> String {
+        match role {
+            Role::Zero => "0".to_owned(),
+            Role::Multiturn(bit) => format!("MT{bit}"),
+            Role::Singleturn(bit) => format!("ST{bit}"),
+            Role::Position(bit) => format!("P{bit}"),
+            Role::Error(index) => self.descriptor().errors.get(index).map_or_else(String::new, |bit| bit.name.clone()),
+            Role::Parity => "parity".to_owned(),
+            Role::Again(clock) => format!("= {clock}"),
+        }
+    }
+}
+
+/// A row for each clock: its number, the bit of the frame, what it carries.
+pub fn bit_table(layout: &Layout) -> String {
+    let mut text = String::from("clock,frame_bit,meaning\n");
+    let clocks = layout.clocks();
+    for (clock, role) in (1..=clocks).zip(layout.roles()) {
+        let name = layout.role_name(role);
+        let quoted = if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name };
+        // Writing into a String does not fail.
+        let _ = writeln!(text, "{clock},{},{quoted}", clocks - clock);
+    }
+    text
+}

@@ -1,0 +1,101 @@
+//! Format strings and tables; what is compiled is tested beside the program (`tests/behaviour/ssi_export.rs`).
+
+use super::*;
+use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Families, Layout, Parity, Settings};
+
+fn layout(text: &str) -> Layout {
+    let (key, settings) = Settings::parse(text).unwrap();
+    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+}
+
+#[test]
+fn format_strings_of_linuxcnc() {
+    let table = [
+        ("atm60,code=gray", "position%25ge"),
+        ("ahs36", "error%1bposition%14e"),
+        ("ahs36,st=12,code=gray", "error%1b%2pposition%12ge"),
+        ("ahm36,st=12,err=following", "%2perror%1bposition%24e"),
+        ("atm60,mt=8,st=8", "%5pposition%16e%4p"),
+        ("ttk70,clocks=31", "%5ptemperature%1bgap%1bposition%24e"),
+        ("ars60", "transmitter%1bposition-error%1bposition%15e"),
+    ];
+    for (text, format) in table {
+        let layout = layout(text);
+        assert_eq!(to_linuxcnc(&layout).as_deref(), Ok(format), "{text}");
+        let read = from_linuxcnc(format).unwrap();
+        assert_eq!(to_linuxcnc(&read).as_deref(), Ok(format), "{text}");
+        for frame in [0x123_4567, 0x2A_5B5A, 1] {
+            assert_eq!(read.decode(frame).position, layout.decode(frame).position, "{text}");
+        }
+    }
+    assert_eq!(from_linuxcnc("ssi_chan_0=error%1bposition%24ge").unwrap().clocks(), 25);
+}
+
+/// A layout written by hand may call its bits anything; LinuxCNC makes a pin of each.
+#[test]
+fn each_bit_has_a_pin_of_its_own() {
+    let mut frame = layout("ahs36").descriptor().clone();
+    let names = ["LAMP", "lamp", "", "50 % \n load", "position"];
+    let [error] = frame.errors.as_slice() else { panic!("{frame:?}") };
+    let named = |(name, clock): (&&str, u8)| ErrorBit { name: (*name).to_owned(), clock, ..error.clone() };
+    frame.errors = names.iter().zip(15..).map(named).collect();
+    frame.clocks = 19;
+    let layout = Layout::new(frame).unwrap();
+    let format = to_linuxcnc(&layout).unwrap();
+    assert_eq!(format, "position-2%1b50-----load%1bbit%1blamp%1blamp-2%1bposition%14e");
+    assert_eq!(to_linuxcnc(&from_linuxcnc(&format).unwrap()), Ok(format));
+}
+
+#[test]
+fn what_linuxcnc_cannot_do_is_said() {
+    let cases = [
+        ("atm60,steps=3600,code=gray-excess", "LinuxCNC cannot decode gray excess"),
+        ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode a Gray code that goes over zeros or error bits"),
+    ];
+    for (text, reason) in cases {
+        assert_eq!(to_linuxcnc(&layout(text)).unwrap_err().to_string(), reason);
+    }
+    let cases = [
+        ("", "there is no position: a field of the kind e or u, with g before for Gray"),
+        ("error%1b", "there is no position: a field of the kind e or u, with g before for Gray"),
+        ("a%12eb%12e", "there are two positions, \"b\" and \"a\""),
+        ("position%24", "\"position%24\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
+        ("position%0e", "\"position%0e\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
+        ("low%16l", "\"l\" is a field of other encoders: p b u s f e are understood, with g before for Gray"),
+        ("position%60e%5p", "the fields have more than 64 bits together"),
+    ];
+    for (text, reason) in cases {
+        assert_eq!(from_linuxcnc(text).unwrap_err().to_string(), reason, "{text}");
+    }
+}
+
+#[test]
+fn a_parity_bit_is_no_error_bit_in_the_sheet() {
+    let sheet = |layout: &Layout| settings_sheet(layout, None, "").lines().map(str::to_owned).collect::<Vec<_>>();
+    let power_failure = |lines: &[String]| lines.iter().find(|line| line.contains("power failure bit")).cloned();
+    let error = power_failure(&sheet(&layout("ahs36"))).unwrap();
+    assert!(error.ends_with("1: the last bit is an error bit"), "{error}");
+    let parity = Some(Parity { clock: 15, even: true });
+    let own = Layout::new(Descriptor { clocks: 15, parity, ..Descriptor::plain(0, 14) }).unwrap();
+    let lines = sheet(&own);
+    let error = power_failure(&lines).unwrap();
+    assert!(error.ends_with(" 0"), "{error}");
+    assert!(lines.iter().any(|line| line.contains("divide the value by 2 ")), "{lines:?}");
+}
+
+/// Two definitions of one name are one flag too few, and a compiler's warning.
+#[test]
+fn flags_have_names_of_their_own() {
+    let text = c99(&from_linuxcnc("ones%1berror%1bposition%14eerror%1b").unwrap(), "");
+    let names: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("#define ")?.split(' ').next()).collect();
+    assert_eq!(names, ["SSI_ERROR", "SSI_ERROR_", "SSI_ONES", "SSI_NO_CODE", "SSI_PADDING", "SSI_ONES_", "SSI_ZEROS"]);
+}
+
+#[test]
+fn a_row_for_each_clock() {
+    let table = bit_table(&layout("ahs36,st=12,err=following"));
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows.len(), 16);
+    assert_eq!(rows[..2], ["clock,frame_bit,meaning", "1,14,ST11"]);
+    assert_eq!(rows[12..], ["12,3,ST0", "13,2,ERROR", "14,1,0", "15,0,0"]);
+}

@@ -1,0 +1,261 @@
+//! Families of SSI encoders: a description that anybody can write (RON, `assets/devices/ssi/`), with the frames that a
+//! family can send, its times and its further signals. It is data: nothing is opened here. What a family's settings
+//! make of it: [`Settings`].
+
+mod sends;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use settings::{Advice, Resolved, Settings, SettingsError};
+
+use serde::Deserialize;
+
+use super::code::Code;
+use super::descriptor::{ErrorBit, Pattern};
+use super::timing::Times;
+
+/// A family.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Family {
+    /// As it is written on the command line: `ahm36`.
+    pub key: String,
+    /// As its maker calls it.
+    pub name: String,
+    /// Where all this stands.
+    pub source: String,
+    /// The position is a length: of a step, in nanometres. None: an angle.
+    #[serde(default)]
+    pub step_nanometres: Option<u32>,
+    /// Bits of the revolutions: the least, as delivered, the most. None: singleturn, or a length.
+    #[serde(default)]
+    pub multiturn: Option<(u8, u8, u8)>,
+    /// Bits within a revolution, or of a length, likewise.
+    pub singleturn: (u8, u8, u8),
+    /// Bits of both together at most, where that is less.
+    #[serde(default)]
+    pub together: Option<u8>,
+    /// Numbers of steps that are no power of two.
+    #[serde(default)]
+    pub steps: Option<StepLimits>,
+    /// Codes that the manual names, the one as delivered first; others are accepted with a remark.
+    pub codes: Vec<Code>,
+    /// Where the position may stand, the first that has room for it as delivered.
+    pub align: Vec<Align>,
+    /// The whole frame can come one clock later.
+    #[serde(default)]
+    pub shift: bool,
+    /// Frames by resolution: the first that has room for the position counts.
+    pub frames: Vec<Frame>,
+    /// Words with a meaning of their own.
+    #[serde(default)]
+    pub patterns: Vec<Pattern>,
+    /// What its times allow.
+    pub times: Times,
+    /// What comes beside SSI.
+    #[serde(default)]
+    pub signals: Vec<Signal>,
+    /// What else an engineer should know, a sentence each.
+    #[serde(default)]
+    pub notes: Vec<String>,
+}
+
+/// Limits of steps that are no power of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepLimits {
+    /// In a turn.
+    pub per_turn: u32,
+    /// Altogether.
+    pub total: u32,
+    /// Number of turns of a round axis, above and below the line; none: no round axis.
+    #[serde(default)]
+    pub revolutions: Option<(u32, u32)>,
+}
+
+/// A frame of a family.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Frame {
+    /// For positions of so many bits and fewer.
+    pub up_to: u8,
+    /// Clocks of the position and its zeros; none: as many as the position has bits.
+    #[serde(default)]
+    pub area: Option<u8>,
+    /// Error bits in their order; `clock` of the first is where they are fixed.
+    #[serde(default)]
+    pub errors: Vec<ErrorBit>,
+    /// Where error bits may stand, as delivered first.
+    #[serde(default)]
+    pub place: Vec<ErrorPlace>,
+    /// Clocks that a burst may have at most; none: as many as the frame has bits.
+    #[serde(default)]
+    pub most_clocks: Option<u8>,
+}
+
+/// Where the position stands in its area (reference section 3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Align {
+    /// Its first bit on clock 1.
+    Left,
+    /// Its last bit on clock 24.
+    Right24,
+    /// Its last bit on clock 25.
+    Right25,
+    /// Turns end on clock 12, steps begin on 13: zeros before and behind ("Tannenbaum").
+    #[serde(rename = "tree12_13")]
+    Tree12,
+    /// Turns end on clock 13, steps begin on 14.
+    #[serde(rename = "tree13_12")]
+    Tree13,
+}
+
+/// Where error bits stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ErrorPlace {
+    /// They are not sent, or not clocked in.
+    None,
+    /// On their own clocks, whatever the resolution.
+    Fix,
+    /// Right behind the position's last bit.
+    Following,
+}
+
+/// A signal beside SSI.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Signal {
+    /// `sine/cosine 0.5 Vpp`, `TTL`, `HTL`.
+    pub name: String,
+    /// Volts peak to peak: least and most.
+    #[serde(default)]
+    pub amplitude_volts: Option<(f64, f64)>,
+    /// Mean level in volts: least and most.
+    #[serde(default)]
+    pub offset_volts: Option<(f64, f64)>,
+    /// Supply in volts: least and most.
+    #[serde(default)]
+    pub supply_volts: Option<(f64, f64)>,
+}
+
+/// A family that cannot be used, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}, line {line}, column {column}: {what}")]
+pub struct FamilyError {
+    /// The file's name as it was given.
+    pub file: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column, counted from 1.
+    pub column: usize,
+    /// What is wrong there.
+    pub what: String,
+}
+
+/// All families known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Families(Vec<Family>);
+
+impl Family {
+    /// Reads a family. `file` is what an error is to call it.
+    ///
+    /// # Errors
+    /// With line and column: text that is not RON, unknown or missing keys; a key that cannot stand on the command line,
+    /// and a family whose frame as delivered cannot work.
+    pub fn parse(file: &str, text: &str) -> Result<Self, FamilyError> {
+        let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, what };
+        let family: Family = ron::from_str(text)
+            .map_err(|wrong| error(wrong.span.start.line, wrong.span.start.col, wrong.code.to_string()))?;
+        let at = |entry| place(text, entry);
+        let fits = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || matches!(letter, '-' | '_');
+        if family.key.is_empty() || !family.key.chars().all(fits) {
+            let (line, column) = at("key:");
+            let what = format!("the key {:?} must be of small letters, digits, - and _", family.key);
+            return Err(error(line, column, what));
+        }
+        match Settings::default().resolve(&family) {
+            Ok(_) => Ok(family),
+            Err(wrong) => {
+                let (line, column) = at("frames:");
+                Err(error(line, column, format!("as delivered: {wrong}")))
+            }
+        }
+    }
+
+    /// The code as delivered.
+    pub fn code(&self) -> Code {
+        self.codes.first().copied().unwrap_or(Code::Binary)
+    }
+}
+
+/// Line and column of the first line that begins with an entry, counted from 1; the beginning where none does.
+fn place(text: &str, entry: &str) -> (usize, usize) {
+    let lines = text.lines().enumerate();
+    let found = lines.filter(|(_, line)| line.trim_start().starts_with(entry)).map(|(at, line)| {
+        let blanks = line.chars().take_while(|letter| letter.is_whitespace()).count();
+        (at + 1, blanks + 1)
+    });
+    found.min().unwrap_or((1, 1))
+}
+
+impl Families {
+    /// The families that ship with the program, with their files' names.
+    pub const BUILT_IN: [(&'static str, &'static str); 11] = [
+        ("ahs36.ron", include_str!("../../../../assets/devices/ssi/ahs36.ron")),
+        ("ahm36.ron", include_str!("../../../../assets/devices/ssi/ahm36.ron")),
+        ("afs60.ron", include_str!("../../../../assets/devices/ssi/afs60.ron")),
+        ("afm60.ron", include_str!("../../../../assets/devices/ssi/afm60.ron")),
+        ("afs60s.ron", include_str!("../../../../assets/devices/ssi/afs60s.ron")),
+        ("afm60s.ron", include_str!("../../../../assets/devices/ssi/afm60s.ron")),
+        ("atm60.ron", include_str!("../../../../assets/devices/ssi/atm60.ron")),
+        ("atm90.ron", include_str!("../../../../assets/devices/ssi/atm90.ron")),
+        ("ars60.ron", include_str!("../../../../assets/devices/ssi/ars60.ron")),
+        ("ttk70.ron", include_str!("../../../../assets/devices/ssi/ttk70.ron")),
+        ("kh53.ron", include_str!("../../../../assets/devices/ssi/kh53.ron")),
+    ];
+
+    /// Reads files, and says of each that cannot be used why; the rest counts all the same.
+    pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<FamilyError>) {
+        let mut errors = Vec::new();
+        let mut read = Vec::new();
+        for (file, text) in files {
+            match Family::parse(file, text) {
+                Ok(family) => read.push(family),
+                Err(error) => errors.push(error),
+            }
+        }
+        (Families(read), errors)
+    }
+
+    /// The built-in ones.
+    pub fn built_in() -> Self {
+        // That they can be read is tested.
+        Self::read(Self::BUILT_IN).0
+    }
+
+    /// These, with those of `others` in the place of their own where both have the same key.
+    #[must_use]
+    pub fn overlaid_with(self, others: Families) -> Self {
+        let mut all = others.0;
+        for family in self.0 {
+            if all.iter().all(|known| known.key != family.key) {
+                all.push(family);
+            }
+        }
+        Families(all)
+    }
+
+    /// By its key.
+    pub fn named(&self, key: &str) -> Option<&Family> {
+        self.0.iter().find(|family| family.key == key)
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Family> {
+        self.0.iter()
+    }
+}

@@ -1,0 +1,199 @@
+//! From a frame back to the settings with which a family sends it.
+
+use super::{Align, ErrorPlace, Family, Settings};
+use crate::devices::ssi::protocol::descriptor::Descriptor;
+use crate::devices::ssi::protocol::range::Range;
+
+/// A setting left as delivered.
+type Leave = fn(&mut Settings);
+
+/// Each setting; what a person would rather not write down comes first.
+const LEAVE: [Leave; 12] = [
+    |settings| settings.clocks = None,
+    |settings| settings.align = None,
+    |settings| settings.errors = None,
+    |settings| settings.shift = false,
+    |settings| settings.coded = None,
+    |settings| settings.code = None,
+    |settings| settings.multiturn = None,
+    |settings| settings.singleturn = None,
+    |settings| settings.turns = None,
+    |settings| settings.revolutions = None,
+    |settings| settings.steps = None,
+    |settings| settings.step_nanometres = None,
+];
+
+impl Family {
+    /// The settings with which this family sends just this frame, as few as possible; `None`: it cannot. Direction and
+    /// preset are not in a frame, and are left as delivered.
+    pub fn settings_of(&self, frame: &Descriptor) -> Option<Settings> {
+        let asked = self.asked(frame);
+        let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
+        let places = [ErrorPlace::None, ErrorPlace::Fix, ErrorPlace::Following];
+        let tried = aligns.into_iter().flat_map(|align| places.map(|place| (align, place)));
+        tried
+            .map(|(align, place)| Settings { align, errors: Some(place), ..asked.clone() })
+            .filter(|settings| self.sends(settings, frame))
+            .map(|settings| self.fewest(settings, frame))
+            .min_by_key(count)
+    }
+
+    fn sends(&self, settings: &Settings, frame: &Descriptor) -> bool {
+        settings.resolve(self).is_ok_and(|resolved| resolved.layout.descriptor() == frame)
+    }
+
+    /// Leaves out one setting after the other that is so without it.
+    fn fewest(&self, settings: Settings, frame: &Descriptor) -> Settings {
+        LEAVE.iter().fold(settings, |settings, leave| {
+            let mut fewer = settings.clone();
+            leave(&mut fewer);
+            if self.sends(&fewer, frame) { fewer } else { settings }
+        })
+    }
+
+    /// What a frame says of itself: everything but where its bits are aligned to.
+    fn asked(&self, frame: &Descriptor) -> Settings {
+        let asked = Settings {
+            code: Some(frame.code),
+            coded: Some(frame.coded),
+            clocks: Some(frame.clocks),
+            shift: frame.shift_right,
+            ..Settings::default()
+        };
+        match frame.range {
+            // A singleturn encoder knows no turns, not even none.
+            Range::Bits { multiturn: 0, singleturn } if self.multiturn.is_none() => {
+                Settings { singleturn: Some(singleturn), ..asked }
+            }
+            Range::Bits { multiturn, singleturn } => {
+                Settings { multiturn: Some(multiturn), singleturn: Some(singleturn), ..asked }
+            }
+            Range::Steps { per_turn, turns } => Settings { steps: Some(per_turn), turns: Some(turns), ..asked },
+            Range::RoundAxis { steps, revolutions } => {
+                Settings { steps: Some(steps), revolutions: Some(revolutions), ..asked }
+            }
+            Range::Length { bits, step_nanometres } => {
+                Settings { singleturn: Some(bits), step_nanometres: Some(step_nanometres), ..asked }
+            }
+        }
+    }
+}
+
+fn count(settings: &Settings) -> usize {
+    LEAVE
+        .iter()
+        .filter(|leave| {
+            let mut left = (*settings).clone();
+            leave(&mut left);
+            left != *settings
+        })
+        .count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::ssi::protocol::{Families, Parity};
+
+    fn frame(families: &Families, text: &str) -> Option<Descriptor> {
+        let (key, settings) = Settings::parse(text).unwrap();
+        let resolved = settings.resolve(families.named(&key).unwrap()).ok()?;
+        Some(resolved.layout.descriptor().clone())
+    }
+
+    /// Every combination of these that the family can send.
+    fn spread(families: &Families, family: &Family) -> Vec<String> {
+        let resolutions: &[&str] = match family.key.as_str() {
+            "kh53" | "ttk70" => &["", ",step=500"],
+            "afs60s" | "afm60s" => &["", ",st=13", ",st=1"],
+            _ => &[
+                "",
+                ",st=8",
+                ",mt=8,st=8",
+                ",mt=0,st=12",
+                ",mt=13",
+                ",mt=12,st=13",
+                ",st=13",
+                ",steps=360",
+                ",steps=3600,turns=12",
+                ",steps=100,revolutions=25/2",
+            ],
+        };
+        let mut all = Vec::new();
+        for resolution in resolutions {
+            for code in ["", ",code=gray", ",code=gray-excess", ",code=bcd", ",code=gray,over=padded"] {
+                for align in ["", ",align=left", ",align=right24", ",align=right25", ",align=tree13_12"] {
+                    for rest in ["", ",err=none", ",err=fix", ",err=following", ",shift=1", ",clocks=28"] {
+                        all.push(format!("{}{resolution}{code}{align}{rest}", family.key));
+                    }
+                }
+            }
+        }
+        all.retain(|text| frame(families, text).is_some());
+        all
+    }
+
+    #[test]
+    fn each_frame_that_a_family_sends_is_found_with_no_more_than_was_set() {
+        let families = Families::built_in();
+        for family in families.iter() {
+            let spread = spread(&families, family);
+            assert!(spread.len() >= 10, "{}: {spread:?}", family.key);
+            for text in spread {
+                let sent = frame(&families, &text).unwrap();
+                let found = family.settings_of(&sent).unwrap_or_else(|| panic!("{text}"));
+                assert_eq!(found.resolve(family).unwrap().layout.descriptor(), &sent, "{text}");
+                let (_, asked) = Settings::parse(&text).unwrap();
+                assert!(count(&found) <= count(&asked), "{text}: {}", found.emit(&family.key));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_as_delivered_is_left_out() {
+        let cases = [
+            ("ahm36,code=binary,mt=12,st=14,clocks=27,align=left,err=fix", "ahm36"),
+            ("atm60,mt=12,st=13,align=tree12_13,err=none", "atm60"),
+            ("atm60,mt=13,st=12,align=tree13_12", "atm60,mt=13"),
+            // The same frame has two names.
+            ("atm60,mt=12,st=12,align=right25", "atm60,st=12,align=tree13_12"),
+            ("atm60,mt=0,st=12,code=gray", "atm60,code=gray,mt=0,st=12"),
+            ("ahm36,steps=1000,turns=1", "ahm36,steps=1000"),
+            ("ttk70,clocks=31,step=1000", "ttk70,clocks=31"),
+            ("ahs36,direction=ccw,preset=5", "ahs36"),
+        ];
+        let families = Families::built_in();
+        for (text, fewest) in cases {
+            let family = families.named(fewest.split(',').next().unwrap()).unwrap();
+            assert_eq!(
+                family.settings_of(&frame(&families, text).unwrap()).unwrap().emit(&family.key),
+                fewest,
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_a_family_cannot_send_has_no_settings() {
+        let families = Families::built_in();
+        for family in families.iter() {
+            let own = frame(&families, &family.key).unwrap();
+            let parity = own.clocks + 1;
+            let others = [
+                ("exchanged wires", Descriptor { inverted: true, ..own.clone() }),
+                (
+                    "parity",
+                    Descriptor { clocks: parity, parity: Some(Parity { clock: parity, even: true }), ..own.clone() },
+                ),
+                ("zeros in between", Descriptor { between: 1, ..own.clone() }),
+                ("another range", Descriptor { range: Range::Bits { multiturn: 20, singleturn: 2 }, ..own.clone() }),
+            ];
+            for (what, other) in others {
+                assert_eq!(family.settings_of(&other), None, "{}: {what}", family.key);
+            }
+        }
+        let ahs36 = frame(&families, "ahs36").unwrap();
+        let sends = |key: &str| families.named(key).unwrap().settings_of(&ahs36).is_some();
+        assert_eq!(families.iter().filter(|family| sends(&family.key)).count(), 1);
+    }
+}

@@ -1,0 +1,327 @@
+//! What a family's settings make of its frame: resolution, code, alignment, error bits, clocks.
+
+use super::{Align, ErrorPlace, Family, Frame};
+use crate::devices::ssi::protocol::code::{Code, CodeError, Coding};
+use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit};
+use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
+use crate::devices::ssi::protocol::range::{Direction, Fraction, Range, RangeError};
+
+/// What is set at an encoder of a family; what is none is as delivered, with the largest resolution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Bits of the revolutions.
+    pub multiturn: Option<u8>,
+    /// Bits within one, or of a length.
+    pub singleturn: Option<u8>,
+    /// Steps that are no power of two: in a turn, or altogether on a round axis.
+    pub steps: Option<u32>,
+    /// Turns that have `steps` each.
+    pub turns: Option<u32>,
+    /// Turns over which `steps` are spread.
+    pub revolutions: Option<Fraction>,
+    /// Code.
+    pub code: Option<Code>,
+    /// What the code goes over.
+    pub coded: Option<Coded>,
+    /// Clocks of a burst.
+    pub clocks: Option<u8>,
+    /// Where the position stands.
+    pub align: Option<Align>,
+    /// The frame comes one clock later.
+    pub shift: bool,
+    /// Where error bits stand.
+    pub errors: Option<ErrorPlace>,
+    /// Length of a step.
+    pub step_nanometres: Option<u32>,
+    /// Which way it counts.
+    pub direction: Option<Direction>,
+    /// The position at the shaft's zero.
+    pub preset: Option<u64>,
+}
+
+/// A family's frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resolved {
+    /// The frame.
+    pub layout: Layout,
+    /// Where the position stands in it.
+    pub align: Align,
+    /// Where the error bits stand.
+    pub errors: ErrorPlace,
+    /// Which way the encoder counts. Its frames are read the same.
+    pub direction: Direction,
+    /// The position at the shaft's zero, within the range. Frames are read the same.
+    pub preset: u64,
+    /// What is accepted although the manual does not speak of it.
+    pub advice: Vec<Advice>,
+}
+
+/// Something that the manual does not speak of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Advice {
+    /// It names other codes for this family.
+    Code(Code),
+    /// More clocks than the frame has bits: what they carry is open.
+    Clocks {
+        /// Bits of the frame.
+        bits: u8,
+        /// Clocks asked for.
+        clocks: u8,
+    },
+}
+
+/// Why settings cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SettingsError {
+    /// The family has no such field.
+    #[error("{family} has no {field}")]
+    None {
+        /// Its name.
+        family: String,
+        /// What it does not have.
+        field: &'static str,
+    },
+    /// Two that say the same in other ways.
+    #[error("{0} and {1} exclude one another")]
+    Both(&'static str, &'static str),
+    /// A number out of its limits.
+    #[error("{family}: {field} must be from {least} to {most}, not {value}")]
+    Limit {
+        /// The family's name.
+        family: String,
+        /// What is limited.
+        field: &'static str,
+        /// Lowest value.
+        least: u64,
+        /// Highest value.
+        most: u64,
+        /// Value asked for.
+        value: u64,
+    },
+    /// The family does not send its position like that, or there is no room for it.
+    #[error("{family}: {bits} bits of position cannot be {align}; possible: {possible}")]
+    Align {
+        /// The family's name.
+        family: String,
+        /// Bits of the position.
+        bits: u8,
+        /// Alignment asked for.
+        align: Align,
+        /// Those that work.
+        possible: String,
+    },
+    /// Error bits are not placed like that.
+    #[error("{family} does not have its error bits {place}; possible: {possible}")]
+    Errors {
+        /// The family's name.
+        family: String,
+        /// Place asked for.
+        place: ErrorPlace,
+        /// Those that work.
+        possible: String,
+    },
+    /// More clocks than the encoder bears.
+    #[error("{family} bears at most {most} clocks, not {clocks}")]
+    Clocks {
+        /// The family's name.
+        family: String,
+        /// Most clocks.
+        most: u8,
+        /// Clocks asked for.
+        clocks: u8,
+    },
+    /// No such range.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// No such code words.
+    #[error(transparent)]
+    Code(#[from] CodeError),
+    /// The frame cannot work.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
+}
+
+impl Settings {
+    /// The frame that a family sends with these settings.
+    ///
+    /// # Errors
+    /// [`SettingsError`] with the reason why it cannot.
+    pub fn resolve(&self, family: &Family) -> Result<Resolved, SettingsError> {
+        let range = self.range(family)?;
+        let preset = self.preset.unwrap_or(0);
+        limit(family, "preset", (0, range.last()?), preset)?;
+        let code = self.code.unwrap_or_else(|| family.code());
+        let bits = Coding::new(code, range.last()?)?.bits();
+        let frame = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
+        let Some(frame) = frame else {
+            return Err(SettingsError::None { family: family.name.clone(), field: "frame" });
+        };
+        let fitting = |align: &Align| lead(*align, &range, bits).is_some_and(|lead| fits(frame, lead, bits));
+        let align = self.align.or_else(|| family.align.iter().copied().find(fitting)).unwrap_or(Align::Left);
+        let lead = lead(align, &range, bits).filter(|lead| fits(frame, *lead, bits) && family.align.contains(&align));
+        let Some(lead) = lead else {
+            let possible = family.align.iter().filter(|align| fitting(align));
+            return Err(SettingsError::Align { family: family.name.clone(), bits, align, possible: list(possible) });
+        };
+        // Right-aligned to clock 25 *is* right-aligned to 24 and shifted (reference section 6, trap 3).
+        let shift_right = self.shift && align != Align::Right25;
+        if shift_right && !family.shift {
+            return Err(SettingsError::None { family: family.name.clone(), field: "shifting to the right" });
+        }
+        let area = frame.area.unwrap_or(bits);
+        let place = self.errors.or(frame.place.first().copied()).unwrap_or(ErrorPlace::None);
+        if place != ErrorPlace::None && !frame.place.contains(&place) {
+            let possible = if frame.place.is_empty() { &[ErrorPlace::None][..] } else { &frame.place };
+            return Err(SettingsError::Errors { family: family.name.clone(), place, possible: list(possible.iter()) });
+        }
+        let errors = placed(frame, place, lead + bits);
+        let last_error = errors.iter().map(|bit| bit.clock).max().unwrap_or(0);
+        // An error bit that could be placed behind the area leaves the frame as long as it is.
+        let fixed = placed(frame, ErrorPlace::Fix, 0).iter().map(|bit| bit.clock).max().unwrap_or(0);
+        let whole = if place == ErrorPlace::Following && frame.area.is_some() { fixed } else { last_error };
+        let own = area.max(whole);
+        let clocks = self.clocks.unwrap_or(own);
+        let most = frame.most_clocks;
+        if let Some(most) = most.filter(|most| clocks > *most) {
+            return Err(SettingsError::Clocks { family: family.name.clone(), most, clocks });
+        }
+        let descriptor = Descriptor {
+            clocks,
+            range,
+            code,
+            coded: self.coded.unwrap_or(Coded::Position),
+            // Whoever cannot use error bits clocks the resolution alone (manual 3.1): zeros are left out with them.
+            area: if place == ErrorPlace::None { area.min(clocks) } else { area },
+            lead,
+            between: 0,
+            shift_right,
+            errors,
+            parity: None,
+            repeat: None,
+            inverted: false,
+            patterns: family.patterns.clone(),
+        };
+        let named = family.codes.contains(&code);
+        let longer = clocks > own && most.is_none();
+        let advice = [(!named).then_some(Advice::Code(code)), longer.then_some(Advice::Clocks { bits: own, clocks })];
+        let layout = Layout::new(descriptor)?;
+        Ok(Resolved {
+            layout,
+            align,
+            errors: place,
+            direction: self.direction.unwrap_or_default(),
+            preset,
+            advice: advice.into_iter().flatten().collect(),
+        })
+    }
+
+    fn range(&self, family: &Family) -> Result<Range, SettingsError> {
+        let none = |field| SettingsError::None { family: family.name.clone(), field };
+        let limit = |field, limits, value| limit(family, field, limits, value);
+        let within = |field, (least, _, most): (u8, u8, u8), value: u8| {
+            limit(field, (least.into(), most.into()), value.into()).map(|()| value)
+        };
+        if let Some(steps) = self.steps {
+            let Some(limits) = family.steps else { return Err(none("number of steps that is not a power of two")) };
+            let others = [
+                (self.multiturn.is_some(), "mt"),
+                (self.singleturn.is_some(), "st"),
+                (self.step_nanometres.is_some(), "step"),
+            ];
+            if let Some((_, other)) = others.into_iter().find(|(given, _)| *given) {
+                return Err(SettingsError::Both("steps", other));
+            }
+            if self.revolutions.is_some() && self.turns.is_some() {
+                return Err(SettingsError::Both("revolutions", "turns"));
+            }
+            if family.multiturn.is_none() && self.turns.is_some_and(|turns| turns > 1) {
+                return Err(none("turns"));
+            }
+            limit("steps", (2, limits.total.into()), steps.into())?;
+            return match (self.revolutions, self.turns) {
+                (Some(revolutions), _) => {
+                    let Some((above, below)) = limits.revolutions else { return Err(none("round axis")) };
+                    limit("revolutions above the line", (1, above.into()), revolutions.numerator.into())?;
+                    limit("revolutions below the line", (1, below.into()), revolutions.denominator.into())?;
+                    let most = u64::from(limits.per_turn) * u64::from(revolutions.numerator);
+                    let most = most / u64::from(revolutions.denominator);
+                    limit("steps over so many revolutions", (2, most), steps.into())?;
+                    Ok(Range::RoundAxis { steps, revolutions })
+                }
+                (None, turns) => {
+                    limit("steps per turn", (2, limits.per_turn.into()), steps.into())?;
+                    let turns = turns.unwrap_or(1);
+                    limit("steps altogether", (2, limits.total.into()), u64::from(steps) * u64::from(turns))?;
+                    Ok(Range::Steps { per_turn: steps, turns })
+                }
+            };
+        }
+        if self.turns.is_some() || self.revolutions.is_some() {
+            return Err(none("number of turns without steps"));
+        }
+        if let Some(step) = family.step_nanometres {
+            if self.multiturn.is_some() {
+                return Err(none("multiturn"));
+            }
+            let bits = within("bits", family.singleturn, self.singleturn.unwrap_or(family.singleturn.1))?;
+            return Ok(Range::Length { bits, step_nanometres: self.step_nanometres.unwrap_or(step) });
+        }
+        if self.step_nanometres.is_some() {
+            return Err(none("length of a step"));
+        }
+        let multiturn = match (self.multiturn, family.multiturn) {
+            (Some(_), None) => return Err(none("multiturn")),
+            (None, None) => 0,
+            (asked, Some(limits)) => within("multiturn bits", limits, asked.unwrap_or(limits.1))?,
+        };
+        let (least, delivered, most) = family.singleturn;
+        let left = family.together.map_or(most, |together| together.saturating_sub(multiturn)).min(most);
+        let asked = self.singleturn.unwrap_or(delivered.min(left));
+        let singleturn = within("singleturn bits", (least, delivered, left), asked)?;
+        Ok(Range::Bits { multiturn, singleturn })
+    }
+}
+
+fn limit(family: &Family, field: &'static str, (least, most): (u64, u64), value: u64) -> Result<(), SettingsError> {
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(SettingsError::Limit { family: family.name.clone(), field, least, most, value })
+    }
+}
+
+/// Zeros before the position; `None` where it has no place there.
+fn lead(align: Align, range: &Range, bits: u8) -> Option<u8> {
+    let tree = |slot: u8, behind: u8| match *range {
+        Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn && singleturn <= behind => {
+            slot.checked_sub(multiturn)
+        }
+        _ => None,
+    };
+    match align {
+        Align::Left => Some(0),
+        Align::Right24 => 24_u8.checked_sub(bits),
+        Align::Right25 => 25_u8.checked_sub(bits),
+        Align::Tree12 => tree(12, 13),
+        Align::Tree13 => tree(13, 12),
+    }
+}
+
+fn fits(frame: &Frame, lead: u8, bits: u8) -> bool {
+    lead + bits <= frame.area.unwrap_or(bits)
+}
+
+/// The error bits of a frame where they stand; `behind` is the position's last clock.
+fn placed(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
+    let first = frame.errors.iter().map(|bit| bit.clock).min().unwrap_or(1);
+    let moved = |bit: &ErrorBit| match place {
+        ErrorPlace::Following => ErrorBit { clock: bit.clock - first + behind + 1, ..bit.clone() },
+        ErrorPlace::Fix | ErrorPlace::None => bit.clone(),
+    };
+    if place == ErrorPlace::None { Vec::new() } else { frame.errors.iter().map(moved).collect() }
+}
+
+fn list<T: ToString>(possible: impl Iterator<Item = T>) -> String {
+    let words: Vec<String> = possible.map(|one| one.to_string()).collect();
+    if words.is_empty() { "none".to_owned() } else { words.join(", ") }
+}

@@ -1,0 +1,264 @@
+//! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
+
+use super::*;
+use crate::devices::ssi::protocol::{Direction, Finding, Flags, Meaning, Place, Range, ungray};
+
+fn resolve(text: &str) -> Result<Resolved, String> {
+    let (key, settings) = Settings::parse(text).map_err(|error| error.to_string())?;
+    let families = Families::built_in();
+    let family = families.named(&key).ok_or_else(|| format!("no family {key}"))?;
+    settings.resolve(family).map_err(|error| error.to_string())
+}
+
+fn raised(resolved: &Resolved, name: &str) -> Flags {
+    let errors = &resolved.layout.descriptor().errors;
+    errors.iter().position(|bit| bit.name == name).map_or(Flags::NONE, Flags::error)
+}
+
+#[test]
+fn every_file_that_ships_can_be_read() {
+    let (families, errors) = Families::read(Families::BUILT_IN);
+    assert_eq!(errors, []);
+    for (family, (file, _)) in families.iter().zip(Families::BUILT_IN) {
+        assert_eq!(format!("{}.ron", family.key), file);
+    }
+}
+
+#[test]
+fn a_broken_family_is_told_where() {
+    let (_, good) = Families::BUILT_IN[0];
+    let whole = good.lines().position(|line| line.trim_start().starts_with("frames:")).unwrap() + 1;
+    let key = good.lines().position(|line| line.trim_start().starts_with("key:")).unwrap() + 1;
+    let cases = [
+        ("\"ahs36\"", "\"AHS 36\"", key, "the key \"AHS 36\" must be of small letters, digits, - and _"),
+        ("\"ahs36\"", "\"\"", key, "the key \"\" must be"),
+        ("clock: 15", "clock: 14", whole, "as delivered: clock 14 is asked for by the position and by ERROR"),
+        ("singleturn: (1, 14, 14)", "singleturn: (1, 14)", 6, ""),
+    ];
+    for (old, new, line, what) in cases {
+        assert!(good.contains(old), "{old}");
+        let own = good.replacen(old, new, 1);
+        let (families, errors) = Families::read([("own.ron", own.as_str()), Families::BUILT_IN[1]]);
+        let [error] = errors.as_slice() else { panic!("{new}: {errors:?}") };
+        assert_eq!((error.file.as_str(), error.line), ("own.ron", line), "{new}: {error}");
+        assert!(error.what.starts_with(what), "{error}");
+        assert_eq!(families.iter().map(|family| family.key.as_str()).collect::<Vec<_>>(), ["ahm36"]);
+    }
+}
+
+/// Reference section 8: settings, turns, steps, error bit that speaks, bits in clock order.
+const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
+    ("ahs36", 0, 0x2A5B, "", "101010010110110"),
+    ("ahs36,code=gray", 0, 0x2A5B, "", "111111011101100"),
+    ("ahs36,st=12,err=fix", 0, 0xABC, "ERROR", "101010111100001"),
+    ("ahs36,st=12,err=following", 0, 0xABC, "ERROR", "101010111100100"),
+    ("ahm36", 0x123, 0x2A5B, "", "000100100011101010010110110"),
+    ("ahm36,code=gray", 0x123, 0x2A5B, "", "000110110010011111011101100"),
+    ("ahm36,st=12", 0x123, 0xABC, "", "000100100011101010111100000"),
+    ("ahm36,st=12,err=following", 0x123, 0xABC, "ERROR", "000100100011101010111100100"),
+    ("afs60", 0, 0x2ABCD, "", "101010101111001101000"),
+    ("afs60,code=gray", 0, 0x2ABCD, "", "111111111000101011000"),
+    ("afs60,st=13", 0, 0x1234, "ERRSI", "1001000110100010"),
+    ("afm60", 0x5A5, 0x2ABCD, "", "010110100101101010101111001101000"),
+    ("afm60,st=15", 0x5A5, 0x4321, "ERRSYNC", "010110100101100001100100001001"),
+    ("afm60,st=15,code=gray", 0x5A5, 0x4321, "ERRSYNC", "011101110111010001010110001001"),
+    ("atm60,mt=8,st=8,align=tree12_13", 0xA5, 0x3C, "", "0000101001010011110000000"),
+    ("atm60,mt=8,st=8,align=tree13_12", 0xA5, 0x3C, "", "0000010100101001111000000"),
+    ("atm60,mt=8,st=8,code=gray", 0xA5, 0x3C, "", "0000111101111010001000000"),
+    ("atm60,mt=8,st=8,align=right24", 0xA5, 0x3C, "", "0000000010100101001111000"),
+    ("atm60,mt=8,st=8,align=right24,shift=1", 0xA5, 0x3C, "", "0000000001010010100111100"),
+    ("atm90,mt=8,st=8,align=right25", 0xA5, 0x3C, "", "0000000001010010100111100"),
+    ("atm60", 0x5A5, 0x1234, "", "0101101001011001000110100"),
+    ("atm60,err=fix", 0x5A5, 0x1234, "ERROR", "01011010010110010001101001"),
+    ("atm60,code=gray", 0x5A5, 0x1234, "", "0111011101110101100101110"),
+    ("atm60,steps=3600,code=gray-excess,align=right24", 0, 1234, "", "0000000000000111001011110"),
+    ("ars60,st=13", 0, 0x1ABC, "", "1101010111100"),
+    ("ars60", 0, 0x5ABC, "position error", "10110101011110010"),
+    ("ttk70", 0, 0xAB_CDEF, "", "10101011110011011110111100"),
+    ("ttk70,clocks=31", 0, 0x12_3456, "gap", "0001001000110100010101101000000"),
+];
+
+/// What was said and not taken would give another position.
+#[test]
+fn settings_that_would_be_ignored_are_refused() {
+    let cases = [
+        ("ahm36,steps=3600,mt=12", "steps and mt exclude one another"),
+        ("ahm36,steps=3600,st=12", "steps and st exclude one another"),
+        ("ahm36,steps=100,revolutions=25/2,turns=2", "revolutions and turns exclude one another"),
+        ("afs60,steps=1000,turns=4", "AFS60 SSI has no turns"),
+    ];
+    for (text, reason) in cases {
+        assert_eq!(resolve(text).unwrap_err(), reason, "{text}");
+    }
+    assert!(resolve("afs60,steps=1000,turns=1").is_ok());
+}
+
+#[test]
+fn frames_of_the_reference() {
+    for (text, turns, steps, error, bits) in GOLDEN {
+        let resolved = resolve(text).unwrap_or_else(|reason| panic!("{text}: {reason}"));
+        let layout = &resolved.layout;
+        let range = layout.descriptor().range;
+        let position = match range {
+            Range::Length { .. } => steps,
+            _ => range.position(turns, steps).unwrap(),
+        };
+        // The one row whose error bit is 1 in the reference's picture although its title says otherwise would fail here.
+        let flags = raised(&resolved, error);
+        assert_eq!(error.is_empty(), flags == Flags::NONE, "{text}");
+        let frame = layout.encode(position, flags).unwrap();
+        assert_eq!(format!("{frame:0width$b}", width = bits.len()), bits, "{text}");
+        assert_eq!(usize::from(layout.clocks()), bits.len(), "{text}");
+        let reading = layout.decode(frame);
+        assert_eq!((reading.position, reading.flags), (position, flags), "{text}");
+        if let Place::Shaft { turns: read, steps: rest, .. } = range.place(reading.position) {
+            assert_eq!((read, rest), (turns, steps), "{text}");
+        }
+    }
+}
+
+/// The whole 25-bit frame one clock later: its last bit is lost (reference section 8, "full, SHIFT-RIGHT only").
+#[test]
+fn shifting_right_alone_loses_the_last_bit() {
+    let layout = resolve("atm60,shift=1").unwrap().layout;
+    let position = 0x5A5 << 13 | 0x1234;
+    assert_eq!(layout.encode(position, Flags::NONE), Some(0x05A_591A));
+    assert_eq!(layout.encode(position | 1, Flags::NONE), Some(0x05A_591A));
+    assert!(layout.loses_lowest_bit());
+    assert_eq!(layout.decode(0x05A_591A).position, position);
+    // Both settings together lose nothing (section 6, traps 2 and 3).
+    for text in ["atm60,mt=11,align=right24,shift=1", "atm60,align=right25,shift=1"] {
+        assert!(!resolve(text).unwrap().layout.loses_lowest_bit(), "{text}");
+    }
+}
+
+/// Section 6, trap 1: tested before anything is decoded; 20 ones and a zero are a suspicion only.
+#[test]
+fn the_error_pattern_of_the_kh53() {
+    for code in ["binary", "gray"] {
+        let layout = resolve(&format!("kh53,code={code}")).unwrap().layout;
+        let fault = layout.decode(0xFF_FFFE);
+        assert!(!layout.is_valid(fault), "{code}");
+        assert_eq!(
+            layout.findings(fault),
+            [Finding::Pattern { name: "overspeed or gap".to_owned(), meaning: Meaning::Invalid }]
+        );
+        let suspicious = layout.decode(0x0F_FFFE);
+        assert!(layout.is_valid(suspicious), "{code}");
+        assert_eq!(suspicious.position, if code == "gray" { ungray(0x0F_FFFE) } else { 0x0F_FFFE });
+        assert_eq!(layout.findings(layout.decode(0x0F_FFFC)), []);
+    }
+}
+
+/// Section 6, traps 4 and 7.
+#[test]
+fn a_safety_fault_and_a_stuck_line_are_told_apart() {
+    let safe = resolve("afm60s").unwrap().layout;
+    assert_eq!(safe.clocks(), 33);
+    let fault = safe.decode(0x1_FFFF_FFFF);
+    assert!(!safe.is_valid(fault));
+    assert!(matches!(&safe.findings(fault)[0], Finding::Pattern { name, .. } if name == "safety fault"));
+    assert_eq!(resolve("afm60s,st=13").unwrap().layout.clocks(), 28);
+
+    let plain = resolve("afm60").unwrap().layout;
+    let high = plain.decode(0x1_FFFF_FFFF);
+    assert_eq!(plain.findings(high)[0], Finding::StuckHigh { sure: true });
+    assert!(!plain.is_valid(high));
+    // 8191 of an ARS60 is all ones too: a suspicion.
+    let short = resolve("ars60,st=13").unwrap().layout;
+    assert_eq!(short.findings(short.decode(0x1FFF)), [Finding::StuckHigh { sure: false }]);
+    assert!(short.is_valid(short.decode(0x1FFF)));
+    assert_eq!(short.findings(short.decode(0)), [Finding::StuckLow { sure: false }]);
+    // No position of 3600 in gray excess is coded as 0.
+    let excess = resolve("atm60,steps=3600,code=gray-excess").unwrap().layout;
+    assert_eq!(excess.findings(excess.decode(0)), [Finding::StuckLow { sure: true }, Finding::Code]);
+}
+
+/// Section 6, trap 5: the frame of an AFS60 shrinks with its resolution, that of an AHS36 does not.
+#[test]
+fn frames_that_shrink_and_frames_that_do_not() {
+    let clocks = |text: &str| resolve(text).unwrap().layout.clocks();
+    assert_eq!([clocks("afs60,st=13"), clocks("afs60,st=18")], [16, 21]);
+    assert_eq!([clocks("ahs36,st=8"), clocks("ahs36,st=8,err=following")], [15, 15]);
+    assert_eq!([clocks("ars60,st=12"), clocks("ars60,st=14"), clocks("ahm36,err=none")], [13, 17, 26]);
+}
+
+#[test]
+fn wrong_padding_is_told() {
+    let layout = resolve("ahs36,st=12").unwrap().layout;
+    let reading = layout.decode(0b101010111100010);
+    assert_eq!(layout.findings(reading), [Finding::Padding]);
+    assert!(layout.is_valid(reading));
+}
+
+/// Reference section 5: a round axis of 100 steps over 12.5 turns has 8 in each.
+#[test]
+fn round_axis() {
+    let layout = resolve("ahm36,steps=100,revolutions=25/2").unwrap().layout;
+    let range = layout.descriptor().range;
+    assert_eq!(layout.coding().last(), 99);
+    assert_eq!(range.place(48), Place::Shaft { turns: 6, steps: 0, degrees: 0.0 });
+    assert_eq!(range.place(99), Place::Shaft { turns: 12, steps: 3, degrees: 135.0 });
+    assert_eq!(range.position(12, 3), Some(99));
+    assert_eq!((range.position(12, 4), range.position(6, 8)), (None, None));
+}
+
+#[test]
+fn what_a_family_cannot_do_is_refused_with_the_reason() {
+    let cases = [
+        ("ttk70,clocks=32", "TTK70 SSI bears at most 31 clocks, not 32"),
+        ("ahs36,clocks=14", "ERROR is on clock 15, which 14 clocks do not reach"),
+        (
+            "ahs36,steps=359,code=gray-excess",
+            "gray excess needs an even number of steps, not 359: with an odd one two bits would change at the end",
+        ),
+        ("ahs36,st=15", "AHS36 SSI: singleturn bits must be from 1 to 14, not 15"),
+        ("ahs36,mt=4", "AHS36 SSI has no multiturn"),
+        ("afm60,mt=10", "AFM60 SSI: multiturn bits must be from 12 to 12, not 10"),
+        ("atm60,mt=13,st=13", "ATM60 SSI: singleturn bits must be from 1 to 12, not 13"),
+        ("atm60,align=right24", "ATM60 SSI: 25 bits of position cannot be right24; possible: tree12_13, right25"),
+        ("afs60,err=fix", "AFS60 SSI does not have its error bits fix; possible: following, none"),
+        ("afs60s,err=none,shift=1", "AFS60S Pro has no shifting to the right"),
+        ("atm60,steps=9000", "ATM60 SSI: steps per turn must be from 2 to 8192, not 9000"),
+        (
+            "atm60,steps=9000,revolutions=1",
+            "ATM60 SSI: steps over so many revolutions must be from 2 to 8192, not 9000",
+        ),
+        ("atm60,code=grey", "code must be binary, gray, gray-excess or bcd, not \"grey\""),
+        ("atm60,st=12,st=13", "st is given twice"),
+        (
+            "atm60,bits=12",
+            "there is no \"bits\"; names: code, over, mt, st, steps, turns, revolutions, clocks, align, shift, err, step, direction, preset",
+        ),
+        (
+            "atm60,gray",
+            "\"gray\" is not NAME=VALUE; names: code, over, mt, st, steps, turns, revolutions, clocks, align, shift, err, step, direction, preset",
+        ),
+        ("ahm36,steps=100,revolutions=25/2,preset=100", "AHM36 SSI: preset must be from 0 to 99, not 100"),
+        ("ahs36,preset=16384", "AHS36 SSI: preset must be from 0 to 16383, not 16384"),
+        ("ahs36,preset=-1", "preset must be a whole number, not \"-1\""),
+        ("ahs36,direction=left", "direction must be cw or ccw, not \"left\""),
+        ("bce", "no family bce"),
+    ];
+    for (text, reason) in cases {
+        assert_eq!(resolve(text).unwrap_err(), reason, "{text}");
+    }
+}
+
+/// They move the position, not the bits that say it.
+#[test]
+fn direction_and_preset_leave_the_frame_as_it_is() {
+    let (plain, set) = (resolve("ahs36").unwrap(), resolve("ahs36,direction=ccw,preset=16383").unwrap());
+    assert_eq!(plain.layout, set.layout);
+    assert_eq!((plain.direction, plain.preset), (Direction::Clockwise, 0));
+    assert_eq!((set.direction, set.preset), (Direction::CounterClockwise, 16383));
+}
+
+#[test]
+fn what_the_manual_does_not_name_is_accepted_with_a_remark() {
+    assert_eq!(resolve("ahs36,steps=360,code=bcd").unwrap().advice, [Advice::Code(Code::Bcd)]);
+    assert_eq!(resolve("kh53,clocks=25").unwrap().advice, [Advice::Clocks { bits: 24, clocks: 25 }]);
+    assert_eq!(resolve("ttk70,clocks=31").unwrap().advice, []);
+    // Whoever cannot use the error bits clocks the resolution alone (manual 3.1).
+    assert_eq!(resolve("ahs36,st=12,err=none,clocks=12").unwrap().layout.clocks(), 12);
+}

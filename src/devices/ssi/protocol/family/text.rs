@@ -1,0 +1,236 @@
+//! A family and its settings in one word: `ahm36,code=gray,st=12`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::{Align, ErrorPlace, Settings};
+use crate::devices::ssi::protocol::code::Code;
+use crate::devices::ssi::protocol::descriptor::{Coded, Meaning};
+use crate::devices::ssi::protocol::range::Direction;
+use crate::devices::ssi::protocol::spec::{Setting, SpecError};
+
+const NAMES: &[&str] = &[
+    "code",
+    "over",
+    "mt",
+    "st",
+    "steps",
+    "turns",
+    "revolutions",
+    "clocks",
+    "align",
+    "shift",
+    "err",
+    "step",
+    "direction",
+    "preset",
+];
+
+impl Settings {
+    /// Splits `ahm36,code=gray,st=12` into the family's key and its settings.
+    ///
+    /// # Errors
+    /// [`SpecError`], with what may stand there.
+    pub fn parse(text: &str) -> Result<(String, Self), SpecError> {
+        let mut words = text.split(',').map(str::trim);
+        let key = words.next().unwrap_or_default().to_ascii_lowercase();
+        let mut settings = Settings::default();
+        for setting in Setting::all(words, NAMES)? {
+            settings.set(setting)?;
+        }
+        Ok((key, settings))
+    }
+
+    /// The text of these settings of the family with this key: `ahm36,code=gray,st=12`. Only what is set is in it.
+    pub fn emit(&self, key: &str) -> String {
+        fn word<T: ToString>(value: Option<T>) -> Option<String> {
+            value.map(|value| value.to_string())
+        }
+        let values = [
+            word(self.code),
+            word(self.coded),
+            word(self.multiturn),
+            word(self.singleturn),
+            word(self.steps),
+            word(self.turns),
+            word(self.revolutions),
+            word(self.clocks),
+            word(self.align),
+            word(self.shift.then_some(1)),
+            word(self.errors),
+            word(self.step_nanometres),
+            word(self.direction),
+            word(self.preset),
+        ];
+        let named = NAMES.iter().zip(values).filter_map(|(name, value)| Some(format!(",{name}={}", value?)));
+        key.to_owned() + &named.collect::<String>()
+    }
+
+    fn set(&mut self, setting: Setting<'_>) -> Result<(), SpecError> {
+        let value = setting.value;
+        let wrong = |expected| setting.wrong(expected);
+        match setting.name {
+            "code" => self.code = Some(value.parse().map_err(wrong)?),
+            "over" => self.coded = Some(value.parse().map_err(wrong)?),
+            "mt" => self.multiturn = Some(setting.small()?),
+            "st" => self.singleturn = Some(setting.small()?),
+            "steps" => self.steps = Some(setting.number()?),
+            "turns" => self.turns = Some(setting.number()?),
+            "revolutions" => self.revolutions = Some(value.parse().map_err(wrong)?),
+            "clocks" => self.clocks = Some(setting.small()?),
+            "align" => self.align = Some(value.parse().map_err(wrong)?),
+            "shift" => self.shift = setting.switch()?,
+            "err" => self.errors = Some(value.parse().map_err(wrong)?),
+            "step" => self.step_nanometres = Some(setting.number()?),
+            "direction" => self.direction = Some(value.parse().map_err(wrong)?),
+            "preset" => self.preset = Some(value.parse().map_err(|_| wrong("a whole number"))?),
+            _ => return Err(setting.unknown()),
+        }
+        Ok(())
+    }
+}
+
+/// What stands for a value in text: the word, and others that are understood.
+trait Words: Copy + PartialEq + 'static {
+    const ALL: &'static [(&'static str, Self)];
+
+    fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
+    }
+
+    fn named(word: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == word).map(|(_, value)| *value)
+    }
+}
+
+impl Words for Code {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("binary", Code::Binary),
+        ("bin", Code::Binary),
+        ("gray", Code::Gray),
+        ("gray-excess", Code::GrayExcess),
+        ("bcd", Code::Bcd),
+    ];
+}
+
+impl Words for Coded {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("position", Coded::Position), ("padded", Coded::Area), ("errors", Coded::AreaAndErrors)];
+}
+
+impl Words for Direction {
+    const ALL: &'static [(&'static str, Self)] = &[("cw", Direction::Clockwise), ("ccw", Direction::CounterClockwise)];
+}
+
+impl Words for Meaning {
+    const ALL: &'static [(&'static str, Self)] = &[("invalid", Meaning::Invalid), ("warning", Meaning::Warning)];
+}
+
+impl Words for Align {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("left", Align::Left),
+        ("right24", Align::Right24),
+        ("right25", Align::Right25),
+        ("tree12_13", Align::Tree12),
+        ("tree13_12", Align::Tree13),
+    ];
+}
+
+impl Words for ErrorPlace {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("none", ErrorPlace::None), ("fix", ErrorPlace::Fix), ("following", ErrorPlace::Following)];
+}
+
+/// Text for a value and back; the error says what may stand there.
+macro_rules! in_words {
+    ($($type:ty: $expected:literal,)*) => {$(
+        impl fmt::Display for $type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.word())
+            }
+        }
+
+        impl FromStr for $type {
+            type Err = &'static str;
+
+            fn from_str(word: &str) -> Result<Self, &'static str> {
+                Self::named(word).ok_or($expected)
+            }
+        }
+    )*};
+}
+
+in_words! {
+    Code: "binary, gray, gray-excess or bcd",
+    Coded: "position, padded or errors",
+    Direction: "cw or ccw",
+    Meaning: "invalid or warning",
+    Align: "left, right24, right25, tree12_13 or tree13_12",
+    ErrorPlace: "none, fix or following",
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::ssi::protocol::range::Fraction;
+    use proptest::option::of;
+    use proptest::prelude::*;
+    use proptest::sample::select;
+
+    fn one_of<T: Words + fmt::Debug>() -> impl Strategy<Value = Option<T>> {
+        of(select(T::ALL).prop_map(|(_, value)| value))
+    }
+
+    fn settings() -> impl Strategy<Value = Settings> {
+        let numbers = (of(any::<u8>()), of(any::<u8>()), of(any::<u32>()), of(any::<u32>()), of(any::<u8>()));
+        let fraction = of((any::<u32>(), any::<u32>()));
+        let words = (one_of(), one_of(), one_of(), one_of(), one_of());
+        let more = (any::<bool>(), of(any::<u32>()), of(any::<u64>()));
+        (numbers, fraction, words, more).prop_map(|(numbers, revolutions, words, more)| {
+            let (multiturn, singleturn, steps, turns, clocks) = numbers;
+            let (code, coded, align, errors, direction) = words;
+            let (shift, step_nanometres, preset) = more;
+            let revolutions = revolutions.map(|(numerator, denominator)| Fraction { numerator, denominator });
+            Settings {
+                multiturn,
+                singleturn,
+                steps,
+                turns,
+                revolutions,
+                code,
+                coded,
+                clocks,
+                align,
+                shift,
+                errors,
+                step_nanometres,
+                direction,
+                preset,
+            }
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read(settings in settings()) {
+            let text = settings.emit("ahm36");
+            prop_assert_eq!(Settings::parse(&text), Ok(("ahm36".to_owned(), settings)), "{}", text);
+        }
+    }
+
+    #[test]
+    fn only_what_is_set_is_written() {
+        let set = Settings { code: Some(Code::Gray), singleturn: Some(12), ..Settings::default() };
+        assert_eq!(set.emit("ahm36"), "ahm36,code=gray,st=12");
+        assert_eq!(Settings::default().emit("kh53"), "kh53");
+        for text in [
+            "ahm36,steps=100,revolutions=25/2,direction=ccw,preset=99",
+            "atm60,over=padded,mt=8,st=8,clocks=26,align=tree12_13,shift=1,err=fix",
+            "ahm36,steps=100,revolutions=3",
+            "ttk70,step=500",
+        ] {
+            let (key, settings) = Settings::parse(text).unwrap();
+            assert_eq!(settings.emit(&key), text);
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! An encoder of no family: usual widths, and what is always 1, spoke or is not explained as bits of their own.
+
+use super::ends::unusual;
+use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, goes_over_zero, sent_parity, sum};
+use super::plausible::{shares, widths};
+use super::reading::Read;
+use super::seen::Seen;
+use crate::devices::ssi::protocol::code::Code;
+use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
+use crate::devices::ssi::protocol::layout::Layout;
+use crate::devices::ssi::protocol::range::Range;
+
+/// Widths and shares of them that are proposed.
+const WIDTHS: usize = 4;
+const SHARES: usize = 3;
+/// A bit differs in so many of a thousand frames: it said something.
+const SPOKE_PERMILLE: usize = 5;
+const ALWAYS_HIGH: f64 = 0.7;
+const PARITY: f64 = 0.5;
+
+/// Takes encoders of no family that send so many clocks.
+pub(super) fn any_other(
+    take: &mut Take<'_>,
+    read: &Read,
+    words: &Seen,
+    (clocks, repeat): (u8, Option<Repeat>),
+    inverted: bool,
+) {
+    let reading = &read.reading;
+    let moved = reading.width();
+    // Digits are whole; the highest may not have moved in all its bits.
+    let least = if reading.code == Code::Bcd { moved.next_multiple_of(4) } else { moved };
+    let Some(above) = (reading.first - 1).checked_sub(least - moved) else { return };
+    let most = if read.closed || reading.code == Code::Bcd { least } else { least + above };
+    let mut widths_of: Vec<u8> = (least..=most).collect();
+    let rank = |bits: &u8| shares(*bits, 1).first().map_or(9.0, |(turns, steps)| widths(*turns, *steps));
+    // The whole frame up to the lowest bit, what moved, and what is most usual in between.
+    let ends = |bits: &u8| *bits == most || *bits == least;
+    widths_of
+        .sort_by(|a, b| (!ends(a), rank(a)).partial_cmp(&(!ends(b), rank(b))).unwrap_or(std::cmp::Ordering::Equal));
+    for bits in widths_of.into_iter().take(WIDTHS) {
+        let lead = above - (bits - least);
+        for (range, weight) in ranges(read, bits) {
+            let base = Descriptor {
+                clocks: words.clocks,
+                range,
+                code: reading.code,
+                area: reading.last,
+                lead,
+                between: reading.gap.map_or(0, |(from, to)| to + 1 - from),
+                parity: sent_parity(reading, inverted),
+                inverted,
+                ..Descriptor::plain(0, 0)
+            };
+            let fixed = fixed_bits(words, read, lead, inverted);
+            let high = fixed.iter().filter(|bit| bit.active_low).count();
+            let weights = [(inverted, EXCHANGED), (reading.parity.is_some(), PARITY)];
+            let weight = ANY_OTHER + weight + ALWAYS_HIGH * high as f64 + sum(&weights);
+            let base = Descriptor { errors: fixed, ..base };
+            let over = goes_over_zero(reading, inverted).into_iter().flat_map(|parity| over_zero(&base, parity));
+            let all: Vec<(Descriptor, f64)> = over.map(|frame| (frame, PADDED)).chain([(base.clone(), 0.0)]).collect();
+            for (frame, more) in all {
+                let whole = match repeat {
+                    None => frame,
+                    Some(repeat) => Descriptor { clocks, repeat: Some(repeat), ..frame },
+                };
+                if let Ok(layout) = Layout::new(whole) {
+                    take(None, layout, weight + more);
+                }
+            }
+        }
+    }
+}
+
+/// In the place of a parity: a zero behind the position, or an error bit, that the code goes over.
+fn over_zero(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
+    let none = Descriptor { parity: None, ..frame.clone() };
+    let mut errors = frame.errors.clone();
+    errors.push(named("ERROR", parity.clock, false));
+    [
+        Descriptor { coded: Coded::Area, area: parity.clock, ..none.clone() },
+        Descriptor { coded: Coded::AreaAndErrors, errors, ..none },
+    ]
+}
+
+/// What the numbers of a reading can be, with so many bits.
+fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
+    let reading = &read.reading;
+    if let Some((steps, _)) = reading.steps {
+        let unusual = f64::from(unusual(steps));
+        let per_turn = u32::try_from(steps).ok();
+        return per_turn.map(|per_turn| (Range::Steps { per_turn, turns: 1 }, unusual)).into_iter().collect();
+    }
+    if reading.code == Code::Bcd {
+        let per_turn = u32::try_from(reading.round()).ok();
+        return per_turn.map(|per_turn| (Range::Steps { per_turn, turns: 1 }, 1.0)).into_iter().collect();
+    }
+    if let Some((_, to)) = reading.gap {
+        let singleturn = reading.last - to;
+        let range = Range::Bits { multiturn: bits - singleturn, singleturn };
+        return vec![(range, widths(bits - singleturn, singleturn))];
+    }
+    let shares = shares(bits, SHARES).into_iter();
+    shares
+        .map(|(multiturn, singleturn)| (Range::Bits { multiturn, singleturn }, widths(multiturn, singleturn)))
+        .collect()
+}
+
+/// Bits beside the position: those that are always 1 (nothing may go over a bit that is always 0), those that spoke, and
+/// those that are not explained.
+fn fixed_bits(words: &Seen, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
+    let reading = &read.reading;
+    let mut bits = Vec::new();
+    for (clock, bit) in words.bits() {
+        let inside =
+            clock > lead && clock <= reading.last && reading.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock));
+        if inside || reading.parity.is_some_and(|parity| parity.clock == clock) {
+            continue;
+        }
+        if read.unexplained.contains(&clock) {
+            bits.push(named("BIT", clock, false));
+        } else if bit.usual != inverted {
+            bits.push(named("HIGH", clock, true));
+        } else if bit.unusual * 1000 > SPOKE_PERMILLE * words.words().len() {
+            bits.push(named("ERROR", clock, false));
+        }
+    }
+    bits
+}
+
+fn named(name: &str, clock: u8, active_low: bool) -> ErrorBit {
+    let name = format!("{name}{clock}");
+    ErrorBit { name, clock, meaning: Meaning::Warning, active_low, cleared_by_transfer: false }
+}

@@ -1,0 +1,97 @@
+//! The layouts that read frames in a certain way: what families can be set to, and any other of usual widths.
+
+use super::any_other::any_other;
+use super::of_family::of_family;
+use super::probe::{Probe, Trial};
+use super::reading::{Read, Reading};
+use super::seen::Seen;
+use crate::devices::ssi::protocol::code::Code;
+use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
+use crate::devices::ssi::protocol::family::{Families, Settings};
+use crate::devices::ssi::protocol::layout::Layout;
+
+/// Weights of what is less probable; a setting that was changed is a little less than 1.
+pub(super) const ANY_OTHER: f64 = 2.0;
+pub(super) const EXCHANGED: f64 = 2.0;
+pub(super) const PADDED: f64 = 1.5;
+const NEVER_ODD: f64 = 8.0;
+
+/// A layout that reads frames in a certain way.
+#[derive(Clone, Debug)]
+pub(super) struct Member {
+    pub(super) family: Option<(String, Settings)>,
+    pub(super) layout: Layout,
+    /// How improbable it is.
+    pub(super) weight: f64,
+    /// What it reads.
+    pub(super) trial: Trial,
+}
+
+/// Takes a layout with its weight, if it fits.
+pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
+
+/// The layouts that read in this way, and what the probe's reading sees; in no order.
+pub(super) fn members(
+    probe: &Probe<'_>,
+    read: &Read,
+    words: &Seen,
+    repeat: Option<Repeat>,
+    families: Option<&Families>,
+) -> Vec<Member> {
+    let mut found = Vec::new();
+    let mut take = |family: Option<(String, Settings)>, layout: Layout, weight: f64| {
+        if let Some(trial) = probe.trial(&layout) {
+            let weight = weight + if trial.never_odd { NEVER_ODD } else { 0.0 };
+            found.push(Member { family, layout, weight, trial });
+        }
+    };
+    let inverted = inversions(read);
+    if let Some(families) = families.filter(|_| repeat.is_none()) {
+        for (place, family) in families.iter().enumerate() {
+            for inverted in inverted {
+                of_family(&mut take, read, words, (place, family), *inverted);
+            }
+        }
+    }
+    for inverted in inverted {
+        any_other(&mut take, read, words, (probe.clocks(), repeat), *inverted);
+    }
+    found
+}
+
+/// In binary, exchanged wires only turn the direction.
+fn inversions(read: &Read) -> &'static [bool] {
+    match (read.reading.code, read.reading.inverted) {
+        (Code::Binary, _) if read.reading.steps.is_none() => &[false, true],
+        (_, true) => &[true],
+        (_, false) => &[false],
+    }
+}
+
+/// The parity of the bits as the encoder sends them: exchanged wires turn that of an odd number of bits.
+pub(super) fn sent_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
+    let turned = |parity: Parity| inverted && parity.clock % 2 == 1;
+    reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
+}
+
+/// An even parity behind Gray may as well be a zero that the code goes over: both are the lowest bit of the position.
+pub(super) fn goes_over_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
+    sent_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
+}
+
+/// Nearly all steps are even: the lowest bit says nothing.
+pub(super) fn never_odd(read: &Read) -> bool {
+    let steps = read.motion.steps.iter().zip(&read.motion.uneven);
+    let steps = steps.filter(|(_, uneven)| uneven.unsigned_abs() <= read.motion.limit).filter_map(|(step, _)| *step);
+    let (mut all, mut odd) = (0, 0);
+    for step in steps.filter(|step| *step != 0) {
+        all += 1;
+        odd += usize::from(step % 2 != 0);
+    }
+    odd * 50 <= all
+}
+
+/// The weights of what counts.
+pub(super) fn sum(weights: &[(bool, f64)]) -> f64 {
+    weights.iter().filter(|(counts, _)| *counts).map(|(_, weight)| weight).sum()
+}

@@ -1,0 +1,118 @@
+//! What a family can be set to so that its position ends where the reading does.
+
+use super::members::{EXCHANGED, PADDED, Take, goes_over_zero, sum};
+use super::plausible::widths;
+use super::reading::Read;
+use super::seen::Seen;
+use crate::devices::ssi::protocol::code::Code;
+use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor};
+use crate::devices::ssi::protocol::family::{Advice, Align, ErrorPlace, Family, Settings};
+use crate::devices::ssi::protocol::layout::Layout;
+use crate::devices::ssi::protocol::range::Range;
+
+/// Weight of a setting that was changed.
+const CHANGED: f64 = 0.8;
+
+/// Takes every frame that the family can send, with its place among the families.
+pub(super) fn of_family(
+    take: &mut Take<'_>,
+    read: &Read,
+    words: &Seen,
+    (place, family): (usize, &Family),
+    inverted: bool,
+) {
+    let reading = &read.reading;
+    let turns: Vec<Option<u8>> = match family.multiturn {
+        None => vec![None],
+        Some((least, _, most)) => (least..=most).map(Some).collect(),
+    };
+    let shifts: &[bool] = if family.shift { &[false, true] } else { &[false] };
+    let coded: &[Coded] = match reading.code {
+        Code::Gray if goes_over_zero(reading, inverted).is_some() => {
+            &[Coded::Position, Coded::Area, Coded::AreaAndErrors]
+        }
+        _ => &[Coded::Position],
+    };
+    let places = [ErrorPlace::None, ErrorPlace::Fix, ErrorPlace::Following];
+    for (at, align) in family.align.iter().enumerate() {
+        for shift in shifts {
+            for coded in coded {
+                for errors in places {
+                    let common = Settings {
+                        clocks: Some(words.clocks),
+                        align: Some(*align),
+                        errors: Some(errors),
+                        code: Some(reading.code),
+                        coded: Some(*coded),
+                        shift: *shift,
+                        ..Settings::default()
+                    };
+                    let all = match reading.steps {
+                        Some((steps, _)) => vec![Settings { steps: u32::try_from(steps).ok(), ..common }],
+                        None => resolutions(&turns, family, &common, (reading.last, *align)),
+                    };
+                    for settings in all {
+                        let Ok(resolved) = settings.resolve(family) else { continue };
+                        if resolved.advice.iter().any(|advice| matches!(advice, Advice::Clocks { .. })) {
+                            continue;
+                        }
+                        let descriptor = Descriptor { inverted, ..resolved.layout.descriptor().clone() };
+                        let Ok(layout) = Layout::new(descriptor) else { continue };
+                        let delivered_place =
+                            family.frames.iter().any(|frame| frame.place.first().unwrap_or(&places[0]) == &errors);
+                        let changed = [
+                            settings.multiturn.is_some()
+                                && settings.multiturn != family.multiturn.map(|(_, delivered, _)| delivered),
+                            settings.singleturn.is_some_and(|own| own != family.singleturn.1),
+                            settings.steps.is_some(),
+                            at > 0,
+                            *shift,
+                            !delivered_place,
+                            reading.code != family.code() && !family.codes.contains(&reading.code),
+                        ];
+                        let changed = changed.iter().filter(|changed| **changed).count();
+                        let unusual = match layout.descriptor().range {
+                            Range::Bits { multiturn, singleturn } => widths(multiturn, singleturn) / 2.0,
+                            _ => 0.0,
+                        };
+                        let weights = [(inverted, EXCHANGED), (*coded != Coded::Position, PADDED)];
+                        let weight = CHANGED * changed as f64 + unusual + place as f64 * 0.01 + sum(&weights);
+                        take(Some((family.key.clone(), settings)), layout, weight);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Numbers of bits with which a family's position ends where the reading ends, or one clock before it.
+fn resolutions(turns: &[Option<u8>], family: &Family, common: &Settings, (last, align): (u8, Align)) -> Vec<Settings> {
+    let (least, _, most) = family.singleturn;
+    let late = u8::from(common.shift);
+    let mut all = Vec::new();
+    for multiturn in turns {
+        let before = match align {
+            Align::Left => multiturn.unwrap_or(0),
+            Align::Tree12 => 12,
+            Align::Tree13 => 13,
+            // The position ends on a clock of its own.
+            Align::Right24 | Align::Right25 => {
+                let ends = if align == Align::Right24 { 24 } else { 25 };
+                if (last..=last + 1).contains(&(ends + late)) {
+                    all.extend((least..=most).map(|steps| (*multiturn, steps)));
+                }
+                continue;
+            }
+        };
+        let ends = [last, last.saturating_sub(1)].into_iter().filter_map(|last| last.checked_sub(before + late));
+        all.extend(ends.map(|steps| (*multiturn, steps)));
+        if common.shift && last == 25 {
+            // The whole width is used, and the lowest bit pushed out.
+            all.extend([(*multiturn, most), (*multiturn, most - 1)]);
+        }
+    }
+    all.retain(|(_, steps)| (least..=most).contains(steps));
+    all.into_iter()
+        .map(|(multiturn, steps)| Settings { multiturn, singleturn: Some(steps), ..common.clone() })
+        .collect()
+}

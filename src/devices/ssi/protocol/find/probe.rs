@@ -1,0 +1,131 @@
+//! Frames that a layout is tried with before it counts: it has to see the same motion in them as the way in which they were
+//! read.
+
+use super::motion::nearest;
+use super::reading::Read;
+use super::seen::Seen;
+use crate::devices::ssi::protocol::descriptor::{Meaning, Repeat};
+use crate::devices::ssi::protocol::layout::{Flags, Layout};
+
+/// Frames that a layout is tried with.
+const TRIED: usize = 96;
+/// Of a hundred of these, those that may not fit.
+const MISFITS_PERCENT: usize = 4;
+
+/// What a layout makes of the frames that it was tried with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Trial {
+    pub(super) positions: Vec<u64>,
+    /// Its positions fall where those of the reading grow.
+    pub(super) backwards: bool,
+    /// It has no odd steps.
+    pub(super) never_odd: bool,
+}
+
+/// Frames with the steps between them.
+pub(super) struct Probe<'a> {
+    seen: &'a Seen,
+    read: &'a Read,
+    /// Places of frames whose next one follows evenly, and whether the end of the range is passed there.
+    pairs: Vec<(usize, bool)>,
+}
+
+impl<'a> Probe<'a> {
+    /// `read` was made of `words`: the frames of `seen`, or the first words in them.
+    pub(super) fn new(seen: &'a Seen, words: &Seen, repeat: Option<Repeat>, read: &'a Read) -> Self {
+        let again = |frame: u64| repeat.is_none_or(|repeat| seen.is_repeated(frame, repeat));
+        let usual = |word: u64| {
+            words.bits().all(|(clock, bit)| {
+                bit.moves || read.reading.has(clock) || (word >> (words.clocks - clock) & 1 == 1) == bit.usual
+            })
+        };
+        let right = |word: u64| read.reading.parity.is_none_or(|parity| words.is_right(word, parity));
+        let undisturbed: Vec<bool> = seen
+            .words()
+            .iter()
+            .zip(words.words())
+            .map(|(frame, word)| again(*frame) && usual(*word) && right(*word))
+            .collect();
+        let fits = |index: &usize| {
+            let both = undisturbed.get(*index..index + 2).is_some_and(|both| both == [true, true]);
+            both && read.motion.is_even(*index)
+        };
+        let even: Vec<usize> = (0..read.motion.steps.len()).filter(fits).collect();
+        let ends = even.iter().filter(|index| read.passes_end(**index)).take(TRIED / 4).map(|index| (*index, true));
+        let every = (even.len() / TRIED).max(1);
+        let mut pairs: Vec<(usize, bool)> =
+            even.iter().step_by(every).map(|index| (*index, read.passes_end(*index))).chain(ends).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        Probe { seen, read, pairs }
+    }
+
+    /// Clocks of the frames.
+    pub(super) fn clocks(&self) -> u8 {
+        self.seen.clocks
+    }
+
+    /// What a layout reads, where its steps are those of the reading: forwards or backwards, in the same or in halved steps.
+    pub(super) fn trial(&self, layout: &Layout) -> Option<Trial> {
+        let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
+        let invalid = layout.descriptor().errors.iter().enumerate().filter(|(_, bit)| bit.meaning == Meaning::Invalid);
+        let wrong = invalid.fold(form, |all, (at, _)| all.with(Flags::error(at)));
+        let lost = u32::from(layout.loses_lowest_bit());
+        let round = layout.coding().last().wrapping_add(1) >> lost;
+        let most = self.pairs.len() * MISFITS_PERCENT / 100;
+        let most_ends = self.pairs.iter().filter(|(_, end)| *end).count() / 5;
+        let (mut misfits, mut at_ends, mut scale) = (0, 0, None);
+        let mut positions = Vec::with_capacity(self.pairs.len());
+        let (mut moved, mut odd) = (0, 0);
+        for (index, end) in &self.pairs {
+            let frames = self.seen.words().get(*index).zip(self.seen.words().get(index + 1));
+            let step = self.read.motion.steps.get(*index).copied().flatten();
+            let Some(((one, other), step)) = frames.zip(step) else { continue };
+            let (one, other) = (layout.decode(*one), layout.decode(*other));
+            positions.push(one.position >> lost);
+            let own = nearest((other.position >> lost).wrapping_sub(one.position >> lost), round);
+            moved += usize::from(own != 0);
+            odd += usize::from(own % 2 != 0);
+            let is_wrong = one.flags.any(wrong) || other.flags.any(wrong);
+            let fits = !is_wrong
+                && match scale {
+                    None if step == 0 || own == 0 => step == own,
+                    None => Scale::of(step, own).inspect(|found| scale = Some(*found)).is_some(),
+                    Some(scale) => scale.fits(step, own, round),
+                };
+            misfits += usize::from(!fits);
+            at_ends += usize::from(!fits && *end);
+            if misfits > most || at_ends > most_ends {
+                return None;
+            }
+        }
+        scale.map(|scale| Trial { positions, backwards: scale.backwards, never_odd: odd * 50 <= moved })
+    }
+}
+
+/// How steps of a layout follow from those of a reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Scale {
+    backwards: bool,
+    /// Times two: once more in the layout (positive), or in the reading.
+    twice: i8,
+}
+
+impl Scale {
+    fn of(step: i64, own: i64) -> Option<Self> {
+        (-3..=3).find_map(|twice: i8| {
+            let scale = |backwards| Scale { backwards, twice };
+            [scale(false), scale(true)].into_iter().find(|scale| scale.fits(step, own, 0))
+        })
+    }
+
+    fn fits(self, step: i64, own: i64, round: u64) -> bool {
+        let step = if self.backwards { step.wrapping_neg() } else { step };
+        let (left, right) = if self.twice >= 0 {
+            (own, step.wrapping_shl(u32::from(self.twice.unsigned_abs())))
+        } else {
+            (own.wrapping_shl(u32::from(self.twice.unsigned_abs())), step)
+        };
+        left == right || nearest(left.wrapping_sub(right) as u64, round) == 0 && round != 0
+    }
+}

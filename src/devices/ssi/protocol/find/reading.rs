@@ -1,0 +1,313 @@
+//! Ways to read frames as numbers: which clocks are the position, in which code, with exchanged wires or without, behind
+//! which number it begins again. What such a way does not explain has to be said bit by bit.
+
+use std::ops::RangeInclusive;
+
+use super::ends::{ends, unusual};
+use super::motion::Motion;
+use super::seen::{Seen, entropy};
+use crate::devices::ssi::protocol::code::{Code, Coding, ones, ungray};
+use crate::devices::ssi::protocol::descriptor::Parity;
+
+/// Frames that every way is tried with first, in runs of frames that follow each other.
+const TRIED: usize = 620;
+const RUN: usize = 31;
+/// Ways that are tried with all frames.
+const BEST: usize = 8;
+/// Other ends are looked for where no more bits are taken than these beside the best.
+const NEAR_BITS: f64 = 400.0;
+/// A clock with fewer changes of a thousand frames is not the lowest bit of a shaft that turns.
+const LAST_PERMILLE: usize = 10;
+/// Of a hundred frames, those in which a parity has to be right.
+const PARITY_PERCENT: usize = 85;
+/// Bits for what is less usual.
+const INVERTED_BITS: f64 = 2.0;
+const BCD_BITS: f64 = 6.0;
+const PARITY_BITS: f64 = 6.0;
+const GAP_BITS: f64 = 24.0;
+const END_BITS: f64 = 12.0;
+const UNUSUAL_END_BITS: f64 = 4.0;
+const UNEXPLAINED_BITS: f64 = 24.0;
+
+/// A way to read frames.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Reading {
+    /// Every bit upside down.
+    pub(super) inverted: bool,
+    pub(super) code: Code,
+    /// The clock of the highest bit that moved.
+    pub(super) first: u8,
+    /// The clock of the lowest bit.
+    pub(super) last: u8,
+    /// From this to this clock lies what is not the position's.
+    pub(super) gap: Option<(u8, u8)>,
+    pub(super) parity: Option<Parity>,
+    /// Numbers begin again behind so many: least and most that fit; `None`: behind all that the bits can be.
+    pub(super) steps: Option<(u64, u64)>,
+}
+
+/// Frames read in one way.
+#[derive(Clone, Debug)]
+pub(super) struct Read {
+    pub(super) reading: Reading,
+    /// Gray excess: as in the whole code.
+    pub(super) numbers: Vec<Option<u64>>,
+    pub(super) motion: Motion,
+    /// Everything that has to be said, in bits.
+    pub(super) bits: f64,
+    /// Clocks that move and are not explained.
+    pub(super) unexplained: Vec<u8>,
+    /// The end of the range was passed.
+    pub(super) closed: bool,
+}
+
+impl Reading {
+    /// Bits of a number.
+    pub(super) fn width(&self) -> u8 {
+        self.last + 1 - self.first - self.gap.map_or(0, |(from, to)| to + 1 - from)
+    }
+
+    /// Numbers begin again behind so many; 0: behind 64 bits.
+    pub(super) fn round(&self) -> u64 {
+        match (self.steps, self.code) {
+            (Some((least, _)), _) => least,
+            (None, Code::Bcd) => self.whole(),
+            (None, _) => 1_u64.checked_shl(self.width().into()).unwrap_or(0),
+        }
+    }
+
+    /// How many numbers the bits can be.
+    fn whole(&self) -> u64 {
+        match self.code {
+            Code::Bcd => 10_u64.saturating_pow(u32::from(self.width().div_ceil(4))),
+            _ => ones(self.width()).saturating_add(1),
+        }
+    }
+
+    /// Numbers that positions can have.
+    pub(super) fn allowed(&self) -> RangeInclusive<u64> {
+        match (self.steps, self.code) {
+            (None, _) => 0..=u64::MAX,
+            (Some((steps, _)), Code::GrayExcess) => {
+                let before = self.whole().saturating_sub(steps) / 2;
+                before..=before + steps - 1
+            }
+            (Some((steps, _)), _) => 0..=steps - 1,
+        }
+    }
+
+    /// The number in each word; none where the bits are no digits.
+    pub(super) fn numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
+        let digits = Coding::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
+        let all = ones(self.last + 1 - self.first);
+        let allowed = self.allowed();
+        let number = |word: &u64| {
+            let word = if self.inverted { !word } else { *word };
+            let mut bits = word >> (clocks - self.last) & all;
+            if let Some((from, to)) = self.gap {
+                let behind = self.last - to;
+                bits = bits >> (behind + to + 1 - from) << behind | bits & ones(behind);
+            }
+            let number = match (&digits, self.code) {
+                (Some(digits), _) => digits.decode(bits),
+                (None, Code::Binary) => Some(bits),
+                (None, _) => Some(ungray(bits)),
+            };
+            number.filter(|number| allowed.contains(number))
+        };
+        words.iter().map(number).collect()
+    }
+
+    /// The clock belongs to the position.
+    pub(super) fn has(&self, clock: u8) -> bool {
+        (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
+    }
+
+    /// Bits beside the position that are constant have their usual values in this frame.
+    fn is_usual(&self, seen: &Seen, index: usize) -> bool {
+        let word = seen.words().get(index);
+        let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
+        let constant = |clock: &u8| !self.has(*clock) && !seen.bit(*clock).moves;
+        word.is_some_and(|word| (1..=seen.clocks).filter(constant).all(|clock| usual(word, clock)))
+    }
+
+    /// The last run of clocks up to the lowest bit that never moved.
+    pub(super) fn unmoved(&self, seen: &Seen) -> Option<(u8, u8)> {
+        let to = (1..self.last).rev().find(|clock| !seen.bit(*clock).moves)?;
+        let from = (1..=to).rev().take_while(|clock| !seen.bit(*clock).moves).last()?;
+        Some((from, to))
+    }
+
+    /// What has to be said of everything but the motion, in bits, and the clocks that are not explained.
+    fn beside(&self, seen: &Seen) -> (f64, Vec<u8>) {
+        let frames = seen.words().len();
+        let mut bits = 0.0;
+        let mut unexplained = Vec::new();
+        for (clock, bit) in seen.bits().filter(|(clock, _)| !self.has(*clock)) {
+            if let Some(parity) = self.parity.filter(|parity| parity.clock == clock) {
+                bits += PARITY_BITS + entropy(frames - right(seen, parity), frames);
+                continue;
+            }
+            bits += bit.cost(frames);
+            if bit.moves {
+                unexplained.push(clock);
+                bits += UNEXPLAINED_BITS;
+            }
+        }
+        let unusual = [
+            (self.inverted, INVERTED_BITS),
+            (self.code == Code::Bcd, BCD_BITS),
+            (self.gap.is_some(), GAP_BITS),
+            (
+                self.steps.is_some(),
+                END_BITS + UNUSUAL_END_BITS * self.steps.map_or(0.0, |(steps, _)| unusual(steps).into()),
+            ),
+        ];
+        (bits + unusual.iter().filter(|(is, _)| *is).map(|(_, bits)| bits).sum::<f64>(), unexplained)
+    }
+
+    /// The parity bit behind the position, where there is one.
+    fn parity_behind(&self, seen: &Seen) -> Option<Parity> {
+        let clock = (self.last + 1..=seen.clocks).find(|clock| seen.bit(*clock).moves)?;
+        let frames = seen.words().len();
+        let fits = |even| right(seen, Parity { clock, even }) * 100 >= PARITY_PERCENT * frames;
+        [true, false].into_iter().find(|even| fits(*even)).map(|even| Parity { clock, even })
+    }
+}
+
+impl Read {
+    pub(super) fn new(seen: &Seen, reading: Reading) -> Self {
+        let numbers = reading.numbers(seen.words(), seen.clocks);
+        let motion = Motion::of(&numbers, reading.round());
+        let (bits, unexplained) = reading.beside(seen);
+        let mut read = Read { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
+        // Disturbed frames pass no end, and no end is where a higher bit changes, be it for a moment.
+        let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
+        let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.is_usual(seen, index));
+        read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.passes_end(index) && usual(index));
+        read
+    }
+
+    /// All that has to be said, whatever is unusual.
+    pub(super) fn said(&self) -> f64 {
+        self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
+    }
+
+    /// From this frame to the next the numbers begin again, and the motion goes on.
+    pub(super) fn passes_end(&self, index: usize) -> bool {
+        let pair = self.numbers.get(index).copied().flatten().zip(self.numbers.get(index + 1).copied().flatten());
+        let step = self.motion.steps.get(index).copied().flatten();
+        pair.zip(step).is_some_and(|((one, other), step)| (other as i64).wrapping_sub(one as i64) != step)
+    }
+}
+
+/// Frames in which a parity is right.
+fn right(seen: &Seen, parity: Parity) -> usize {
+    seen.words().iter().filter(|word| seen.is_right(**word, parity)).count()
+}
+
+/// The ways in which the shaft turned most evenly, the best first.
+pub(super) fn readings(seen: &Seen) -> Vec<Read> {
+    let frames = seen.words().len();
+    let sample = sample(seen.words());
+    let mut tried: Vec<(f64, Reading)> = Vec::new();
+    for reading in ways(seen) {
+        // Between two runs nothing follows.
+        let runs = sample.chunks(RUN).map(|run| reading.numbers(run, seen.clocks));
+        let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
+        let whole = Motion::of(&numbers, reading.round()).bits * frames as f64 / sample.len().max(1) as f64;
+        tried.push((whole + reading.beside(seen).0, reading));
+    }
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut all: Vec<Read> = Vec::new();
+    let mut best = f64::INFINITY;
+    for (_, reading) in tried.into_iter().take(BEST) {
+        let plain = Read::new(seen, reading);
+        if leaves_out_highest(seen, &plain) {
+            continue;
+        }
+        best = best.min(plain.bits);
+        let near = if plain.bits < best + NEAR_BITS { ends(&plain) } else { Vec::new() };
+        let other_ends = near
+            .into_iter()
+            .map(|(code, steps)| Read::new(seen, Reading { code, steps: Some(steps), ..plain.reading.clone() }));
+        all.extend(other_ends.filter(|read| read.closed && read.bits < plain.bits));
+        all.push(plain);
+    }
+    all.sort_by(|a, b| a.bits.total_cmp(&b.bits));
+    all
+}
+
+/// A bit before the position changed just where the numbers came to an end: it is their highest.
+fn leaves_out_highest(seen: &Seen, read: &Read) -> bool {
+    let round = read.reading.round();
+    let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
+    let Some(clock) = moving.filter(|_| round != 0) else { return false };
+    let near = 2 * read.motion.median.unsigned_abs() + read.motion.limit;
+    let bit = |word: &u64| word >> (seen.clocks - clock) & 1;
+    let (mut changes, mut at_end) = (0, 0);
+    let pairs = seen.words().iter().zip(seen.words().iter().skip(1)).zip(&read.numbers);
+    for (_, number) in pairs.filter(|((before, after), _)| bit(before) != bit(after)) {
+        changes += 1;
+        at_end += usize::from(number.is_some_and(|number| number.min(round - 1 - number) <= near));
+    }
+    at_end * 2 >= changes && near * 4 < round
+}
+
+/// Every way that could be: from each clock that moved first to each that could be the lowest bit.
+fn ways(seen: &Seen) -> Vec<Reading> {
+    let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
+    let often = LAST_PERMILLE * seen.words().len() / 1000;
+    let lowest: Vec<u8> =
+        seen.bits().filter(|(_, bit)| bit.moves || bit.changes > often).map(|(clock, _)| clock).collect();
+    let mut ways = Vec::new();
+    // An error bit before the position may have spoken for a while.
+    let second = moving.get(1).filter(|_| moving.first().is_some_and(|first| seen.bit(*first).changes <= 16));
+    for first in moving.first().into_iter().chain(second) {
+        for last in lowest.iter().filter(|last| **last > first + 1) {
+            for (code, inverted) in
+                [(Code::Binary, false), (Code::Gray, false), (Code::Gray, true), (Code::Bcd, false), (Code::Bcd, true)]
+            {
+                let reading =
+                    Reading { inverted, code, first: *first, last: *last, gap: None, parity: None, steps: None };
+                if code == Code::Bcd && reading.width() < 8 {
+                    continue;
+                }
+                let parity = reading.parity_behind(seen);
+                let gap = gap(seen, *first, *last).filter(|_| code != Code::Bcd);
+                ways.extend(gap.map(|gap| Reading { gap: Some(gap), parity, ..reading.clone() }));
+                ways.push(Reading { parity, ..reading });
+            }
+        }
+    }
+    ways
+}
+
+/// The longest run of clocks within the position that did not move.
+fn gap(seen: &Seen, first: u8, last: u8) -> Option<(u8, u8)> {
+    let mut longest: Option<(u8, u8)> = None;
+    let mut from = None;
+    for clock in first..=last {
+        match (seen.bit(clock).moves, from) {
+            (false, None) => from = Some(clock),
+            (true, Some(begin)) => {
+                if longest.is_none_or(|(from, to)| clock - begin > to + 1 - from) {
+                    longest = Some((begin, clock - 1));
+                }
+                from = None;
+            }
+            _ => {}
+        }
+    }
+    longest
+}
+
+/// Runs of frames that follow each other, from everywhere.
+fn sample(words: &[u64]) -> Vec<u64> {
+    if words.len() <= TRIED {
+        return words.to_vec();
+    }
+    let runs: Vec<&[u64]> = words.chunks_exact(RUN).collect();
+    let count = TRIED / RUN;
+    (0..count).filter_map(|at| runs.get(at * runs.len() / count)).flat_map(|run| run.iter().copied()).collect()
+}

@@ -1,0 +1,183 @@
+//! What may be said of the classes: which doubt there is, how good each one is, and what would decide.
+
+use super::members::{Member, never_odd};
+use super::probe::Trial;
+use super::reading::Read;
+use super::seen::Seen;
+use super::{CLASSES, Class, Doubt, Evidence, Group, Open, Proposal, WEIGHT_BITS};
+use crate::devices::ssi::protocol::range::Range;
+
+/// Bits by which the first class has to be ahead of the next.
+const LEAD_BITS: f64 = 100.0;
+/// A motion is even where it takes this part of the bits that the numbers have.
+const EVEN: f64 = 0.7;
+/// To be sure, it takes less.
+const SURE_EVEN: f64 = 0.35;
+/// Of a hundred frames, those that may jump or not fit.
+const DISTURBED_PERCENT: usize = 15;
+/// To be sure, so many frames and so many bits that moved are needed.
+const SURE_FRAMES: usize = 200;
+const SURE_BITS: u8 = 5;
+/// So many different frames.
+const SURE_DIFFERENT: usize = 64;
+/// Members of a class that are shown.
+const MEMBERS: usize = 200;
+
+/// Why the first group is not to be relied on.
+pub(super) fn doubt(words: &Seen, groups: &[Group]) -> Option<Doubt> {
+    let Some(first) = groups.first() else { return Some(Doubt::Nothing) };
+    let frames = words.words().len();
+    if !is_even(&first.read, frames, EVEN) {
+        return Some(Doubt::Nothing);
+    }
+    if groups.get(1).is_some_and(|next| next.bits - first.bits < LEAD_BITS) {
+        return Some(Doubt::Close);
+    }
+    let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
+    let sure = sure && !jumps_alike(&first.read) && words.different() >= SURE_DIFFERENT;
+    // However improbable the others are.
+    let sure = sure && groups.iter().skip(1).all(|next| next.read.said() - first.read.said() >= LEAD_BITS);
+    let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven(words, first).is_empty();
+    (!proven).then_some(Doubt::Open)
+}
+
+/// Jumps of the same size are no disturbances: the code is another.
+fn jumps_alike(read: &Read) -> bool {
+    let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
+    sizes.retain(|size| *size > read.motion.limit);
+    sizes.sort_unstable();
+    // A disturbed bit makes two jumps of the same size.
+    let alike = sizes.chunk_by(|one, other| one.abs_diff(*other) <= read.motion.limit / 4).map(<[u64]>::len).max();
+    alike.is_some_and(|alike| alike > 4 && alike * 4 > sizes.len())
+}
+
+/// The motion follows from itself for less than its numbers would take one by one.
+fn is_even(read: &Read, frames: usize, part: f64) -> bool {
+    let disturbed = read.motion.jumps / 2 + read.motion.nones;
+    read.motion.bits < part * f64::from(read.reading.width()) * frames as f64
+        && disturbed * 100 <= DISTURBED_PERCENT * frames
+}
+
+/// What keeps a group from being certain.
+fn unproven(words: &Seen, group: &Group) -> Vec<Open> {
+    let Group { read, members, .. } = group;
+    let reading = &read.reading;
+    let mut open = Vec::new();
+    let unmoved = reading.unmoved(words);
+    // Behind the highest bit a constant one may be anything; before it, once the end was passed, it is not the position's.
+    match unmoved.filter(|(from, _)| !read.closed || *from > reading.first) {
+        Some((from, to)) => open.push(Open::TurnFarther { from, to }),
+        None if !read.closed => open.push(Open::PassAnEnd),
+        None => {}
+    }
+    if let Some((least, most)) = steps(read).filter(|(least, most)| least != most && read.closed) {
+        let small = |steps: u64| u32::try_from(steps).unwrap_or(u32::MAX);
+        open.push(Open::PassTheEnd { least: small(least), most: small(most) });
+    }
+    if never_odd(read) || !is_varied(read) {
+        open.push(Open::OtherSpeed);
+    }
+    if let Some(clock) = read.unexplained.first() {
+        open.push(Open::Unexplained { clock: *clock });
+    }
+    let differ = |other: fn(&Trial, &Trial) -> bool| {
+        members.first().is_some_and(|first| members.iter().any(|member| other(&first.trial, &member.trial)))
+    };
+    if differ(|one, other| one.backwards != other.backwards) {
+        open.push(Open::Direction);
+    }
+    if open.is_empty() && differ(|one, other| one.positions != other.positions) {
+        open.push(Open::PassAnEnd);
+    }
+    open
+}
+
+/// How many steps there are, at least and at most: fewer may be where the first or the last was never seen.
+fn steps(read: &Read) -> Option<(u64, u64)> {
+    let allowed = read.reading.allowed();
+    let (first, last) = match read.reading.steps {
+        Some(_) => (*allowed.start(), *allowed.end()),
+        None => (0, read.reading.round().checked_sub(1)?),
+    };
+    let good = (0..read.numbers.len()).filter(|frame| read.motion.is_good(*frame));
+    let mut seen =
+        good.filter_map(|frame| read.numbers.get(frame).copied().flatten()).filter(|number| allowed.contains(number));
+    let any = seen.next()?;
+    let (lowest, highest) = seen.fold((any, any), |(low, high), number| (low.min(number), high.max(number)));
+    let unseen = (lowest - first).max(last.saturating_sub(highest));
+    let (one, other) = read.reading.steps.unwrap_or((last + 1, last + 1));
+    // Of Gray excess, as many are left out on both sides.
+    Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
+}
+
+/// Steps are of different lengths, so that a lower bit would have been seen.
+pub(super) fn is_varied(read: &Read) -> bool {
+    let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
+    let (mut all, mut other) = (0, 0);
+    for uneven in even {
+        all += 1;
+        other += usize::from(*uneven != 0);
+    }
+    other * 50 >= all
+}
+
+/// The groups as they are shown.
+pub(super) fn classes(words: &Seen, groups: Vec<Group>) -> Vec<Class> {
+    let mut last = 1.0_f64;
+    let mut classes = Vec::new();
+    for group in groups.into_iter().take(CLASSES) {
+        let evidence = evidence(words, &group, last);
+        last = evidence.score;
+        let open = open(words, &group);
+        let members = group.members.into_iter().take(MEMBERS);
+        let members = members.map(|Member { family, layout, .. }| Proposal { family, layout }).collect();
+        classes.push(Class { members, evidence, open });
+    }
+    classes
+}
+
+fn evidence(words: &Seen, group: &Group, most: f64) -> Evidence {
+    let Group { read, members, .. } = group;
+    let frames = words.words().len();
+    let random = f64::from(read.reading.width()) * frames as f64;
+    let weight = members.first().map_or(0.0, |member| member.weight);
+    let fit =
+        1.0 - (read.bits + WEIGHT_BITS * weight) / (random + read.unexplained.len() as f64 * frames as f64).max(1.0);
+    let explained = read.motion.explained();
+    let outside = words.bits().filter(|(clock, bit)| !read.reading.has(*clock) && !bit.moves);
+    let misfits = outside.map(|(_, bit)| bit.unusual).max().unwrap_or(0).max(read.motion.nones);
+    Evidence {
+        score: (fit.clamp(0.0, 1.0) * explained as f64 / frames.max(1) as f64).min(most),
+        explained,
+        steps_a_frame: read.motion.median,
+        bits_a_frame: read.bits / frames.max(1) as f64,
+        jumps: read.motion.jumps,
+        misfits,
+        bits_seen: read.reading.width(),
+    }
+}
+
+/// What would tell the members apart, or prove them.
+fn open(words: &Seen, group: &Group) -> Vec<Open> {
+    let mut open = unproven(words, group);
+    let members = &group.members;
+    let differ = |what: fn(&Member) -> Vec<u8>| {
+        let mut all = members.iter().map(what);
+        all.next().is_some_and(|first| all.any(|other| other != first))
+    };
+    let turns = |member: &Member| match member.layout.descriptor().range {
+        Range::Bits { multiturn, singleturn } => vec![u8::from(multiturn > 0), singleturn],
+        _ => Vec::new(),
+    };
+    if differ(turns) {
+        open.push(Open::TurnOnce);
+    }
+    if differ(|member| member.layout.descriptor().errors.iter().map(|bit| bit.clock).collect()) {
+        open.push(Open::SeeAnError);
+    }
+    let families = || members.iter().filter_map(|member| member.family.as_ref().map(|(key, _)| key));
+    if families().any(|key| families().next().is_some_and(|first| first != key)) {
+        open.push(Open::TypeLabel);
+    }
+    open
+}

@@ -1,0 +1,218 @@
+//! Any frame in one word, for the command line: `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. What can stand in a
+//! profile in more words (names, patterns) has no place here.
+
+use super::code::Code;
+use super::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
+use super::range::{Fraction, Range};
+use super::spec::{Setting, SpecError};
+
+/// What a frame in one word begins with.
+const KEY: &str = "frame";
+
+const NAMES: &[&str] = &[
+    "clocks",
+    "mt",
+    "st",
+    "steps",
+    "turns",
+    "revolutions",
+    "bits",
+    "step",
+    "code",
+    "over",
+    "area",
+    "lead",
+    "between",
+    "shift",
+    "inverted",
+    "parity",
+    "repeat",
+    "ones",
+    "err",
+    "unknown",
+];
+
+/// What a bit is called that nothing explains.
+const UNKNOWN: &str = "BIT";
+/// Lists of clocks with what the bits there are called, and whether they speak when they are 0.
+const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
+
+impl Descriptor {
+    /// Reads a frame in one word; `None`: it begins with something else. What is left out is 0, binary, and of as many
+    /// clocks as the position has bits.
+    ///
+    /// # Errors
+    /// [`SpecError`], with what may stand there.
+    pub fn parse(text: &str) -> Option<Result<Self, SpecError>> {
+        let mut words = text.split(',').map(str::trim);
+        words.next().is_some_and(|key| key.eq_ignore_ascii_case(KEY)).then(|| parse(words))
+    }
+
+    /// The frame in one word. Names of error bits, what they mean, and patterns are not in it.
+    pub fn spec(&self) -> String {
+        let own = Self::plain(0, 0);
+        let mut words = vec![format!("clocks={}", self.clocks)];
+        let mut word = |name: &str, value: Option<String>| words.extend(value.map(|value| format!("{name}={value}")));
+        let unless = |is: bool, value: String| (!is).then_some(value);
+        match self.range {
+            Range::Bits { multiturn, singleturn } => {
+                word("mt", unless(multiturn == 0, multiturn.to_string()));
+                word("st", Some(singleturn.to_string()));
+            }
+            Range::Steps { per_turn, turns } => {
+                word("steps", Some(per_turn.to_string()));
+                word("turns", unless(turns == 1, turns.to_string()));
+            }
+            Range::RoundAxis { steps, revolutions } => {
+                word("steps", Some(steps.to_string()));
+                word("revolutions", Some(revolutions.to_string()));
+            }
+            Range::Length { bits, step_nanometres } => {
+                word("bits", Some(bits.to_string()));
+                word("step", Some(step_nanometres.to_string()));
+            }
+        }
+        word("code", unless(self.code == own.code, self.code.to_string()));
+        word("over", unless(self.coded == own.coded, self.coded.to_string()));
+        word("area", unless(self.area == self.clocks, self.area.to_string()));
+        word("lead", unless(self.lead == 0, self.lead.to_string()));
+        word("between", unless(self.between == 0, self.between.to_string()));
+        word("shift", unless(!self.shift_right, "1".to_owned()));
+        word("inverted", unless(!self.inverted, "1".to_owned()));
+        let parity = |parity: Parity| format!("{}@{}", if parity.even { "even" } else { "odd" }, parity.clock);
+        word("parity", self.parity.map(parity));
+        word("repeat", self.repeat.map(|repeat| format!("{}+{}", repeat.word, repeat.gap)));
+        for (name, called, low) in LISTS {
+            let is_unknown = called == UNKNOWN;
+            let listed =
+                |bit: &&ErrorBit| bit.active_low == low && (low || bit.name.starts_with(UNKNOWN) == is_unknown);
+            let clocks: Vec<String> = self.errors.iter().filter(listed).map(|bit| bit.clock.to_string()).collect();
+            word(name, unless(clocks.is_empty(), clocks.join("+")));
+        }
+        format!("{KEY},{}", words.join(","))
+    }
+}
+
+fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Descriptor, SpecError> {
+    let mut frame = Descriptor { code: Code::Binary, coded: Coded::Position, ..Descriptor::plain(0, 0) };
+    let (mut bits, mut steps, mut length) = ((None, None), (None, None, None), (None, None));
+    let (mut clocks, mut area) = (None, None);
+    for setting in Setting::all(words, NAMES)? {
+        let value = setting.value;
+        let wrong = |expected| setting.wrong(expected);
+        match setting.name {
+            "clocks" => clocks = Some(setting.small()?),
+            "mt" => bits.0 = Some(setting.small()?),
+            "st" => bits.1 = Some(setting.small()?),
+            "steps" => steps.0 = Some(setting.number()?),
+            "turns" => steps.1 = Some(setting.number()?),
+            "revolutions" => steps.2 = Some(value.parse::<Fraction>().map_err(wrong)?),
+            "bits" => length.0 = Some(setting.small()?),
+            "step" => length.1 = Some(setting.number()?),
+            "code" => frame.code = value.parse().map_err(wrong)?,
+            "over" => frame.coded = value.parse().map_err(wrong)?,
+            "area" => area = Some(setting.small()?),
+            "lead" => frame.lead = setting.small()?,
+            "between" => frame.between = setting.small()?,
+            "shift" => frame.shift_right = setting.switch()?,
+            "inverted" => frame.inverted = setting.switch()?,
+            "parity" => frame.parity = Some(parity(value).ok_or_else(|| wrong("even@CLOCK or odd@CLOCK"))?),
+            "repeat" => frame.repeat = Some(repeat(value).ok_or_else(|| wrong("BITS+ZEROS, as 25+1"))?),
+            _ => {
+                let (_, called, active_low) =
+                    LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown())?;
+                for clock in value.split('+') {
+                    let clock = clock.parse().map_err(|_| wrong("clocks, as 1+26"))?;
+                    frame.errors.push(ErrorBit {
+                        name: format!("{called}{clock}"),
+                        clock,
+                        meaning: Meaning::Warning,
+                        active_low: *active_low,
+                        cleared_by_transfer: false,
+                    });
+                }
+            }
+        }
+    }
+    frame.range = match (steps, length.0) {
+        ((Some(steps), _, Some(revolutions)), _) => Range::RoundAxis { steps, revolutions },
+        ((Some(per_turn), turns, None), _) => Range::Steps { per_turn, turns: turns.unwrap_or(1) },
+        (_, Some(bits)) => Range::Length { bits, step_nanometres: length.1.unwrap_or(1000) },
+        _ => Range::Bits { multiturn: bits.0.unwrap_or(0), singleturn: bits.1.unwrap_or(0) },
+    };
+    let own = frame.range.bits().unwrap_or(0).saturating_add(frame.lead).saturating_add(frame.between);
+    frame.clocks = clocks.unwrap_or(own);
+    frame.area = area.unwrap_or(frame.clocks);
+    frame.errors.sort_by_key(|bit| bit.clock);
+    Ok(frame)
+}
+
+fn parity(value: &str) -> Option<Parity> {
+    let (even, clock) = value.split_once('@')?;
+    let even = match even {
+        "even" => true,
+        "odd" => false,
+        _ => return None,
+    };
+    Some(Parity { even, clock: clock.parse().ok()? })
+}
+
+fn repeat(value: &str) -> Option<Repeat> {
+    let (word, gap) = value.split_once('+')?;
+    Some(Repeat { word: word.parse().ok()?, gap: gap.parse().ok()? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::ssi::protocol::Layout;
+
+    fn frame(text: &str) -> Descriptor {
+        Descriptor::parse(text).unwrap().unwrap()
+    }
+
+    /// Reference section 8: AHM36 in Gray is 12 and 14 bits with an error bit behind them.
+    #[test]
+    fn frames_in_one_word_read_frames() {
+        let layout = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,area=26")).unwrap();
+        assert_eq!(layout.decode(0x0D9_3EEC).position, 0x123 << 14 | 0x2A5B);
+        let inverted = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,inverted=1,area=26")).unwrap();
+        assert_eq!(inverted.decode(!0x0D9_3EEC & 0x7FF_FFFF).position, 0x123 << 14 | 0x2A5B);
+        // A start bit, 4 bits, odd parity; and that once more behind a zero.
+        let twice = Layout::new(frame("frame,clocks=13,lead=1,st=4,ones=1,parity=odd@6,repeat=6+1,area=5")).unwrap();
+        let reading = twice.decode(0b1_1001_0011_0010);
+        assert_eq!(reading.position, 0b1001, "1 1001 1, 0, and again");
+        assert_eq!(reading.flags, crate::devices::ssi::protocol::Flags::NONE);
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        for text in [
+            "frame,clocks=25,mt=12,st=13,code=gray",
+            "frame,clocks=26,mt=12,st=12,code=gray,over=padded,area=25,lead=1,ones=26",
+            "frame,clocks=30,mt=12,st=14,between=2,err=29,unknown=30",
+            "frame,clocks=12,steps=360,code=gray-excess,lead=3,inverted=1",
+            "frame,clocks=24,steps=100,turns=20,area=23,shift=1",
+            "frame,clocks=24,steps=100,revolutions=25/2",
+            "frame,clocks=26,bits=24,step=500,code=bcd,parity=even@26,ones=1+25",
+            "frame,clocks=51,st=25,repeat=25+1",
+        ] {
+            assert_eq!(frame(text).spec(), text);
+        }
+        assert_eq!(frame("FRAME, st=13").spec(), "frame,clocks=13,st=13");
+    }
+
+    #[test]
+    fn what_is_no_frame_says_why() {
+        assert_eq!(Descriptor::parse("ahm36,code=gray"), None);
+        let said = |text: &str| Descriptor::parse(text).unwrap().unwrap_err().to_string();
+        assert!(said("frame,clock=3").starts_with("there is no \"clock\"; names: clocks, mt, st"));
+        assert!(said("frame,st").contains("NAME=VALUE"));
+        assert!(said("frame,st=300").contains("0 to 255"));
+        assert!(said("frame,parity=3").contains("even@CLOCK"));
+        assert!(said("frame,repeat=3").contains("25+1"));
+        assert!(said("frame,ones=1+x").contains("1+26"));
+        assert!(said("frame,inverted=yes").contains("0 or 1"));
+        assert_eq!(said("frame,st=3,st=4"), "st is given twice");
+    }
+}

@@ -1,0 +1,266 @@
+//! Whether a frame can work, and its shifts and masks if it can.
+
+use super::{Flags, Layout, Part};
+use crate::devices::ssi::protocol::code::{Code, CodeError, Coding, ones};
+use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, Meaning, Parity, Word};
+use crate::devices::ssi::protocol::range::{Range, RangeError};
+
+/// Why a frame cannot work.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LayoutError {
+    /// No clock at all, or more than an adapter and a number hold.
+    #[error("a frame has 1 to 64 clocks, not {0}")]
+    Clocks(u8),
+    /// No such positions.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+    /// No such code words.
+    #[error(transparent)]
+    Code(#[from] CodeError),
+    /// The area of the position ends behind the frame.
+    #[error("the position goes up to clock {area}, and there are only {clocks} clocks")]
+    Area {
+        /// Its last clock.
+        area: u8,
+        /// Clocks of the frame.
+        clocks: u8,
+    },
+    /// The position's bits do not fit between the zeros.
+    #[error("{bits} bits of position behind {lead} zeros need {needed} clocks, and there are {area} for them")]
+    Wide {
+        /// Bits of the code word.
+        bits: u8,
+        /// Zeros before and in between.
+        lead: u8,
+        /// Clocks needed.
+        needed: u16,
+        /// Clocks there are.
+        area: u8,
+    },
+    /// Zeros between turns and steps, and no bits of their own for both.
+    #[error("zeros between turns and steps need bits of their own for both; here the position is one number")]
+    Between,
+    /// Two things on one clock.
+    #[error("clock {clock} is asked for by {first} and by {second}")]
+    Overlap {
+        /// Which clock.
+        clock: u8,
+        /// What is there.
+        first: String,
+        /// What is to be there too.
+        second: String,
+    },
+    /// A bit behind the last clock.
+    #[error("{name} is on clock {clock}, which {clocks} clocks do not reach")]
+    Behind {
+        /// Which bit.
+        name: String,
+        /// Where it is.
+        clock: u8,
+        /// Clocks of the frame.
+        clocks: u8,
+    },
+    /// More error bits or patterns than there is room for.
+    #[error("at most {limit} {what}, not {count}")]
+    Many {
+        /// `error bits` or `patterns`.
+        what: &'static str,
+        /// Most of them.
+        limit: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A code over more than the position that is not Gray.
+    #[error("only Gray can go over the zeros and error bits")]
+    NotGray,
+    /// An error or parity bit among what is coded or shifted as a whole.
+    #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
+    Inside {
+        /// Which bit.
+        name: String,
+        /// Where it is.
+        clock: u8,
+        /// Clocks of the area.
+        area: u8,
+        /// `coded` or `shifted`.
+        done: &'static str,
+    },
+    /// The lowest bit is lost, and the code does not bear it.
+    #[error("shifting right pushes the lowest bit out, and without it a word of this code is not a position")]
+    Lost,
+    /// Two frames need more clocks.
+    #[error("the frame and its repetition need {needed} clocks, and there are {clocks}")]
+    Repeat {
+        /// Clocks needed.
+        needed: u16,
+        /// Clocks there are.
+        clocks: u8,
+    },
+    /// A pattern that no frame can be.
+    #[error("the pattern {word:X} has more than {clocks} bits")]
+    Pattern {
+        /// The pattern.
+        word: u64,
+        /// Clocks of the frame.
+        clocks: u8,
+    },
+}
+
+/// The clocks of a word and who has taken them.
+struct Clocks {
+    clocks: u8,
+    taken: Vec<(u8, String)>,
+}
+
+pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
+    let (clocks, word) = (descriptor.clocks, descriptor.word());
+    if clocks == 0 || clocks > 64 {
+        return Err(LayoutError::Clocks(clocks));
+    }
+    if let Some(repeat) = descriptor.repeat {
+        let needed = 2 * u16::from(repeat.word) + u16::from(repeat.gap);
+        if repeat.word == 0 || needed > u16::from(clocks) {
+            return Err(LayoutError::Repeat { needed, clocks });
+        }
+    }
+    if descriptor.area > word {
+        return Err(LayoutError::Area { area: descriptor.area, clocks: word });
+    }
+    let last = descriptor.range.last()?;
+    let code = match (descriptor.coded, descriptor.code) {
+        (Coded::Position, code) => code,
+        (Coded::Area | Coded::AreaAndErrors, Code::Gray) => Code::Binary,
+        (Coded::Area | Coded::AreaAndErrors, _) => return Err(LayoutError::NotGray),
+    };
+    let coding = Coding::new(code, last)?;
+    let parts = parts(&descriptor, &coding)?;
+    let [_, lower] = parts;
+    let lost = descriptor.shift_right && lower.in_word == word - descriptor.area;
+    if lost && !matches!(code, Code::Binary | Code::Gray) {
+        return Err(LayoutError::Lost);
+    }
+
+    let mut taken = Clocks { clocks: word, taken: Vec::new() };
+    let position = placed(&parts, ones(coding.bits()));
+    for clock in (1..=word).filter(|clock| position >> (word - clock) & 1 == 1) {
+        taken.take(clock, "the position")?;
+    }
+    for bit in &descriptor.errors {
+        taken.take(bit.clock, &bit.name)?;
+        let done = match descriptor.coded {
+            Coded::Area => Some("coded"),
+            _ if descriptor.shift_right => Some("shifted"),
+            _ => None,
+        };
+        if let Some(done) = done.filter(|_| bit.clock <= descriptor.area) {
+            return Err(LayoutError::Inside { name: bit.name.clone(), clock: bit.clock, area: descriptor.area, done });
+        }
+    }
+    let coded_clocks = match descriptor.coded {
+        Coded::Position => 0,
+        Coded::Area => descriptor.area,
+        Coded::AreaAndErrors => descriptor.errors.iter().map(|bit| bit.clock).max().unwrap_or(0).max(descriptor.area),
+    };
+    if let Some(Parity { clock, .. }) = descriptor.parity {
+        let name = "the parity bit";
+        taken.take(clock, name)?;
+        // It is made of what is sent, when all that is done.
+        let inside = |done, area| Err(LayoutError::Inside { name: name.to_owned(), clock, area, done });
+        if clock <= coded_clocks {
+            return inside("coded", coded_clocks);
+        }
+        if descriptor.shift_right && clock <= descriptor.area {
+            return inside("shifted", descriptor.area);
+        }
+    }
+    let in_word = |clock: u8| 1_u64 << (word - clock);
+    let errors: Vec<u64> = descriptor.errors.iter().map(|bit| in_word(bit.clock)).collect();
+    let low = descriptor.errors.iter().filter(|bit| bit.active_low).fold(0, |low, bit| low | in_word(bit.clock));
+    let parity = descriptor.parity.map_or((0, 0), |parity| {
+        let bit = in_word(parity.clock);
+        (bit, ones(word) & !(bit | (bit - 1)))
+    });
+    let used = errors.iter().fold(position | parity.0, |used, bit| used | bit);
+    many("error bits", 8, descriptor.errors.len())?;
+    many("patterns", 4, descriptor.patterns.len())?;
+    let patterns = descriptor.patterns.iter().map(|pattern| match pattern.word {
+        Word::Ones => Ok(ones(clocks)),
+        Word::Bits(word) if word > ones(clocks) => Err(LayoutError::Pattern { word, clocks }),
+        Word::Bits(word) => Ok(word),
+    });
+    Ok(Layout {
+        coding,
+        parts,
+        lost,
+        behind_area: word - descriptor.area,
+        gray: (coded_clocks, word - coded_clocks),
+        zeros: ones(word) & !used,
+        errors,
+        low,
+        parity,
+        patterns: patterns.collect::<Result<_, _>>()?,
+        invalid: invalid(&descriptor),
+        descriptor,
+    })
+}
+
+/// Where the code word's bits stand in a word.
+fn parts(descriptor: &Descriptor, coding: &Coding) -> Result<[Part; 2], LayoutError> {
+    let bits = coding.bits();
+    let lead = descriptor.lead.saturating_add(descriptor.between);
+    let needed = u16::from(descriptor.lead) + u16::from(descriptor.between) + u16::from(bits);
+    if needed > u16::from(descriptor.area) {
+        return Err(LayoutError::Wide { bits, lead, needed, area: descriptor.area });
+    }
+    let singleturn = match descriptor.range {
+        Range::Bits { multiturn, singleturn } if multiturn > 0 && singleturn > 0 && bits == multiturn + singleturn => {
+            Some(singleturn)
+        }
+        _ => None,
+    };
+    let lower = match (descriptor.between, singleturn) {
+        (0, _) => bits,
+        (_, Some(singleturn)) => singleturn,
+        (_, None) => return Err(LayoutError::Between),
+    };
+    let behind = descriptor.word() - descriptor.lead - descriptor.between - bits;
+    let low = Part { in_word: behind, in_code: 0, mask: ones(lower) };
+    // Shifts of a part without bits are 0, so that none is as wide as a number.
+    let high = if lower == bits {
+        Part::default()
+    } else {
+        Part { in_word: behind + lower + descriptor.between, in_code: lower, mask: ones(bits - lower) }
+    };
+    Ok([high, low])
+}
+
+/// The bits of a code word where they stand.
+fn placed(parts: &[Part; 2], code: u64) -> u64 {
+    parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
+}
+
+fn many(what: &'static str, limit: usize, count: usize) -> Result<(), LayoutError> {
+    if count > limit { Err(LayoutError::Many { what, limit, count }) } else { Ok(()) }
+}
+
+fn invalid(descriptor: &Descriptor) -> Flags {
+    let errors = descriptor.errors.iter().map(|bit| bit.meaning).enumerate();
+    let patterns = descriptor.patterns.iter().map(|pattern| pattern.meaning).enumerate();
+    let raised = errors.map(|(index, meaning)| (Flags::error(index), meaning));
+    let met = patterns.map(|(index, meaning)| (Flags::pattern(index), meaning));
+    let own = Flags::CODE.with(Flags::PARITY).with(Flags::REPEAT);
+    raised.chain(met).filter(|(_, meaning)| *meaning == Meaning::Invalid).fold(own, |all, (flag, _)| all.with(flag))
+}
+
+impl Clocks {
+    fn take(&mut self, clock: u8, name: &str) -> Result<(), LayoutError> {
+        if clock == 0 || clock > self.clocks {
+            return Err(LayoutError::Behind { name: name.to_owned(), clock, clocks: self.clocks });
+        }
+        if let Some((_, first)) = self.taken.iter().find(|(at, _)| *at == clock) {
+            return Err(LayoutError::Overlap { clock, first: first.clone(), second: name.to_owned() });
+        }
+        self.taken.push((clock, name.to_owned()));
+        Ok(())
+    }
+}

@@ -1,0 +1,202 @@
+//! Any layout that works, there and back; those that cannot work, with the reason.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::devices::ssi::protocol::{Code, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
+
+/// Any frame that works, with error bits, zeros, repetition, parity, whatever its code.
+pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
+    let range = prop_oneof![
+        (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
+        (2..100_000_u32, 1..5000_u32).prop_map(|(per_turn, turns)| Range::Steps { per_turn, turns }),
+        (2..100_000_u32, 1..5000_u32, 1..5000_u32).prop_map(|(steps, numerator, denominator)| Range::RoundAxis {
+            steps,
+            revolutions: Fraction { numerator, denominator },
+        }),
+        (1..=64_u8).prop_map(|bits| Range::Length { bits, step_nanometres: 1000 }),
+    ];
+    let code = prop_oneof![Just(Code::Binary), Just(Code::Gray), Just(Code::GrayExcess), Just(Code::Bcd)];
+    let coded = prop_oneof![Just(Coded::Position), Just(Coded::Area), Just(Coded::AreaAndErrors)];
+    let zeros = (0..6_u8, 0..4_u8, 0..6_u8);
+    let more = (0..3_u8, any::<bool>(), any::<bool>(), any::<bool>(), any::<Option<bool>>(), any::<bool>());
+    (range, code, coded, zeros, more).prop_filter_map(
+        "cannot work",
+        |(range, code, coded, (lead, between, tail), (errors, shift_right, inverted, active_low, even, twice))| {
+            let bits = Coding::new(code, range.last().ok()?).ok()?.bits();
+            let area = lead + between + tail + bits;
+            let parity = even.map(|even| Parity { clock: area + errors + 1, even });
+            let word = area + errors + u8::from(parity.is_some());
+            let repeat = twice.then_some(Repeat { word, gap: 1 });
+            Layout::new(Descriptor {
+                clocks: if twice { word.checked_mul(2)?.checked_add(1)? } else { word },
+                range,
+                code,
+                coded,
+                area,
+                lead,
+                between,
+                shift_right,
+                errors: (0..errors)
+                    .map(|index| ErrorBit {
+                        name: format!("E{index}"),
+                        clock: area + 1 + index,
+                        meaning: Meaning::Invalid,
+                        active_low,
+                        cleared_by_transfer: false,
+                    })
+                    .collect(),
+                parity,
+                repeat,
+                inverted,
+                patterns: Vec::new(),
+            })
+            .ok()
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: 100_000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_encoded_is_decoded(layout in layouts(), position in any::<u64>(), raised in 0..4_u32) {
+        let last = layout.coding().last();
+        let position = last.checked_add(1).map_or(position, |count| position % count);
+        let errors = layout.descriptor().errors.len();
+        let flags = (0..errors).filter(|index| raised >> index & 1 == 1);
+        let flags = flags.fold(Flags::NONE, |all, index| all.with(Flags::error(index)));
+        let frame = layout.encode(position, flags).unwrap();
+        let reading = layout.decode(frame);
+        let seen = Reading { flags: Flags(reading.flags.0 & !(Flags::ONES.0 | Flags::ZEROS.0)), ..reading };
+        let kept = if layout.loses_lowest_bit() { position & !1 } else { position };
+        prop_assert_eq!(seen, Reading { position: kept, flags });
+    }
+
+    /// A parity bit finds every single flipped bit, a repetition every one in either word.
+    #[test]
+    fn a_flipped_bit_is_found_where_it_can_be(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
+        let last = layout.coding().last();
+        let position = last.checked_add(1).map_or(position, |count| position % count);
+        let clocks = layout.clocks();
+        let frame = layout.encode(position, Flags::NONE).unwrap() ^ 1 << (at % clocks);
+        let reading = layout.decode(frame);
+        let descriptor = layout.descriptor();
+        if descriptor.repeat.is_some() {
+            prop_assert!(reading.flags.any(Flags::REPEAT.with(Flags::PADDING)));
+        } else if descriptor.parity.is_some() {
+            prop_assert!(reading.flags.has(Flags::PARITY));
+        }
+    }
+
+    #[test]
+    fn any_bits_are_read(layout in layouts(), frame in any::<u64>()) {
+        let reading = layout.decode(frame);
+        prop_assert!(reading.position <= layout.coding().last());
+        prop_assert_eq!(layout.cells(frame).len(), usize::from(layout.clocks()));
+        let _ = layout.findings(reading);
+    }
+}
+
+fn plain() -> Descriptor {
+    Descriptor::plain(12, 13)
+}
+
+fn bit(name: &str, clock: u8) -> ErrorBit {
+    ErrorBit { name: name.to_owned(), clock, meaning: Meaning::Invalid, active_low: false, cleared_by_transfer: false }
+}
+
+#[test]
+fn what_cannot_work_is_refused_with_the_reason() {
+    let parity = |clock| Some(Parity { clock, even: true });
+    let cases: [(&str, Descriptor, &str); 11] = [
+        ("no clocks", Descriptor { clocks: 0, area: 0, ..plain() }, "a frame has 1 to 64 clocks, not 0"),
+        ("many clocks", Descriptor { clocks: 65, ..plain() }, "a frame has 1 to 64 clocks, not 65"),
+        (
+            "few clocks",
+            Descriptor { clocks: 24, ..plain() },
+            "the position goes up to clock 25, and there are only 24 clocks",
+        ),
+        (
+            "odd gray excess",
+            Descriptor { code: Code::GrayExcess, range: Range::Steps { per_turn: 359, turns: 1 }, ..plain() },
+            "gray excess needs an even number of steps, not 359: with an odd one two bits would change at the end",
+        ),
+        (
+            "error bit on the position",
+            Descriptor { errors: vec![bit("ERROR", 25)], ..plain() },
+            "clock 25 is asked for by the position and by ERROR",
+        ),
+        (
+            "two error bits on a clock",
+            Descriptor { clocks: 26, errors: vec![bit("A", 26), bit("B", 26)], ..plain() },
+            "clock 26 is asked for by A and by B",
+        ),
+        (
+            "error bit behind the frame",
+            Descriptor { errors: vec![bit("ERROR", 26)], ..plain() },
+            "ERROR is on clock 26, which 25 clocks do not reach",
+        ),
+        (
+            "wide",
+            Descriptor { lead: 1, ..plain() },
+            "25 bits of position behind 1 zeros need 26 clocks, and there are 25 for them",
+        ),
+        (
+            "repetition",
+            Descriptor { clocks: 50, repeat: Some(Repeat { word: 25, gap: 1 }), ..plain() },
+            "the frame and its repetition need 51 clocks, and there are 50",
+        ),
+        (
+            "parity bit in the Gray code",
+            Descriptor { clocks: 27, area: 27, code: Code::Gray, coded: Coded::Area, parity: parity(27), ..plain() },
+            "the parity bit on clock 27 is among the 27 clocks that are coded as a whole",
+        ),
+        (
+            "parity bit in what is shifted",
+            Descriptor { clocks: 28, area: 28, shift_right: true, parity: parity(28), ..plain() },
+            "the parity bit on clock 28 is among the 28 clocks that are shifted as a whole",
+        ),
+    ];
+    for (what, descriptor, reason) in cases {
+        assert_eq!(Layout::new(descriptor).unwrap_err().to_string(), reason, "{what}");
+    }
+}
+
+/// Reference section 8: the position ABCDEF in Gray with an error bit 1 behind it, both ways.
+#[test]
+fn gray_with_and_without_the_error_bit() {
+    let descriptor = |coded| Descriptor {
+        clocks: 25,
+        code: Code::Gray,
+        coded,
+        errors: vec![bit("ERROR", 25)],
+        ..Descriptor::plain(0, 24)
+    };
+    let plain = Layout::new(descriptor(Coded::Position)).unwrap();
+    let whole = Layout::new(descriptor(Coded::AreaAndErrors)).unwrap();
+    assert_eq!(plain.encode(0xAB_CDEF, Flags::error(0)), Some(0x1FC_5631));
+    assert_eq!(whole.encode(0xAB_CDEF, Flags::error(0)), Some(0x1FC_5630));
+    let mistaken = whole.decode(0x1FC_5631);
+    assert_eq!(mistaken, Reading { position: 0xAB_CDEF, flags: Flags::NONE }, "the error bit upside down");
+    assert_eq!(ungray(0x1FC_5631), 0x157_9BDE);
+}
+
+/// Zeros around the word belong to the Gray code or not: another frame whenever the lowest bit is 1 (section 2).
+#[test]
+fn gray_over_the_position_and_over_the_zeros() {
+    let descriptor = |coded| Descriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..Descriptor::plain(0, 12) };
+    let position = Layout::new(descriptor(Coded::Position)).unwrap();
+    let area = Layout::new(descriptor(Coded::Area)).unwrap();
+    // 101 = binary 1100101, gray 1010111; with two zeros behind: gray of 110010100 = 101011110.
+    assert_eq!(position.encode(101, Flags::NONE), Some(0b1_0101_1100));
+    assert_eq!(area.encode(101, Flags::NONE), Some(0b1_0101_1110));
+    assert_eq!(position.encode(100, Flags::NONE), area.encode(100, Flags::NONE));
+    assert!(position.decode(0b1_0101_1110).flags.has(Flags::PADDING));
+    assert_eq!(area.decode(0b1_0101_1110).position, 101);
+}
+
+#[test]
+fn the_least_frame_is_checked_like_any_other() {
+    assert_eq!(Ok(Layout::default()), Layout::new(Descriptor::plain(0, 1)));
+}

@@ -1,0 +1,152 @@
+//! What frames gave cause to say, how often and when: error bits that a transfer clears are gone with the next frame, and
+//! whoever looks now and then would not see them.
+
+use super::explain::Finding;
+use super::layout::{Flags, Layout, Reading};
+use crate::analysis::Time;
+
+/// How often there was something to say, of frames that were noted in their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    noted: Vec<Noted>,
+    /// What the frame before had, and which of `noted` that is.
+    before: (Flags, Vec<usize>),
+}
+
+/// Something there was to say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Noted {
+    /// What it is.
+    pub finding: Finding,
+    /// How often: what is about one transfer (an error bit that it clears, parity, repetition) counts with each frame,
+    /// what stands with each time that it begins.
+    pub count: u64,
+    /// The first frame that had it.
+    pub first: Time,
+    /// The last one.
+    pub last: Time,
+    /// The newest frame has it.
+    pub stands: bool,
+}
+
+impl Tally {
+    /// Notes what a frame says; gives what the frame before did not have. `layout` is that of all frames since the last
+    /// [`reset`](Self::reset).
+    pub fn note(&mut self, layout: &Layout, reading: Reading, at: Time) -> Vec<Finding> {
+        let (flags, same) = &self.before;
+        if *flags == reading.flags {
+            for index in same {
+                if let Some(noted) = self.noted.get_mut(*index) {
+                    noted.last = at;
+                    noted.count += u64::from(is_of_one_transfer(&noted.finding));
+                }
+            }
+            return Vec::new();
+        }
+        let mut begun = Vec::new();
+        let mut now = Vec::new();
+        for finding in layout.findings(reading) {
+            let known = self.noted.iter().position(|noted| noted.finding == finding);
+            let index = known.unwrap_or_else(|| {
+                self.noted.push(Noted { finding: finding.clone(), count: 0, first: at, last: at, stands: false });
+                self.noted.len() - 1
+            });
+            now.push(index);
+            let Some(noted) = self.noted.get_mut(index) else { continue };
+            noted.last = at;
+            noted.count += u64::from(!noted.stands || is_of_one_transfer(&finding));
+            if !noted.stands {
+                begun.push(finding);
+            }
+        }
+        for (index, noted) in self.noted.iter_mut().enumerate() {
+            noted.stands = now.contains(&index);
+        }
+        self.before = (reading.flags, now);
+        begun
+    }
+
+    /// What there was to say since the last [`reset`](Self::reset), in the order of its first frames.
+    pub fn noted(&self) -> &[Noted] {
+        &self.noted
+    }
+
+    /// What is said has other names from now on: what stands is told again with the next frame.
+    pub fn rename(&mut self) {
+        self.noted.iter_mut().for_each(|noted| noted.stands = false);
+        self.before = (Flags::NONE, Vec::new());
+    }
+
+    /// Begins anew; what stands is told again with the next frame.
+    pub fn reset(&mut self) {
+        *self = Tally::default();
+    }
+}
+
+/// The next frame may have it again without its having stood in between.
+fn is_of_one_transfer(finding: &Finding) -> bool {
+    matches!(finding, Finding::Error { cleared_by_transfer: true, .. } | Finding::Parity | Finding::Repeat)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::ssi::protocol::{Families, Settings};
+
+    fn layout(text: &str) -> Layout {
+        let (key, settings) = Settings::parse(text).unwrap();
+        settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    }
+
+    fn at(milliseconds: i64) -> Time {
+        Time::from_nanoseconds(milliseconds * 1_000_000)
+    }
+
+    /// Name, count, first and last frame in milliseconds, whether it stands.
+    fn rows(tally: &Tally) -> Vec<(String, u64, i64, i64, bool)> {
+        let name = |finding: &Finding| match finding {
+            Finding::Error { name, .. } | Finding::Pattern { name, .. } => name.clone(),
+            other => format!("{other:?}"),
+        };
+        let milliseconds = |time: Time| time.nanoseconds() / 1_000_000;
+        let row = |noted: &Noted| {
+            (name(&noted.finding), noted.count, milliseconds(noted.first), milliseconds(noted.last), noted.stands)
+        };
+        tally.noted().iter().map(row).collect()
+    }
+
+    /// AFS60, frames of the reference, section 8: 18 bits of position and ERRDIG, ERRSI, ERRSYNC behind them.
+    #[test]
+    fn what_a_transfer_clears_counts_with_each_frame_and_what_stands_once() {
+        let layout = layout("afs60");
+        let mut tally = Tally::default();
+        let good = 0x15_5E68;
+        let frames = [good, good | 1, good | 1, good | 3, good | 2, good, good | 2];
+        let begun: Vec<usize> = (0..)
+            .zip(frames)
+            .map(|(number, frame)| tally.note(&layout, layout.decode(frame), at(10 * number)).len())
+            .collect();
+        assert_eq!(begun, [0, 1, 0, 1, 0, 0, 1]);
+        let [sync, light] = ["ERRSYNC", "ERRSI"].map(str::to_owned);
+        assert_eq!(rows(&tally), [(sync, 3, 10, 30, false), (light.clone(), 2, 30, 60, true)]);
+        tally.reset();
+        assert_eq!(tally.noted(), []);
+        assert_eq!(tally.note(&layout, layout.decode(good | 2), at(70)).len(), 1, "it stands still");
+        assert_eq!(rows(&tally), [(light, 1, 70, 70, true)]);
+    }
+
+    #[test]
+    fn words_that_stand_for_a_fault_and_bits_that_do_not_fit_are_noted() {
+        let kh53 = layout("kh53");
+        let mut tally = Tally::default();
+        for (number, frame) in (0..).zip([5, 0xFF_FFFE, 0xFF_FFFE, 5, 0xFF_FFFE]) {
+            tally.note(&kh53, kh53.decode(frame), at(number));
+        }
+        assert_eq!(rows(&tally), [("overspeed or gap".to_owned(), 2, 1, 4, true)]);
+        // ATM60 with 8 of 12 bits of turns in tree format: the zeros before them are ones.
+        let tree = layout("atm60,mt=8,st=8");
+        let mut tally = Tally::default();
+        tally.note(&tree, tree.decode(0x14A_780 | 1 << 24), at(0));
+        assert_eq!(rows(&tally), [("Padding".to_owned(), 1, 0, 0, true)]);
+    }
+}

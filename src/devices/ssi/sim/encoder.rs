@@ -1,0 +1,62 @@
+//! A frame with the encoder's position in it.
+
+use super::trouble::Trouble;
+use crate::buses::bridge::sim::SsiDevice;
+use crate::devices::ssi::protocol::{Direction, Families, Flags, Layout, Settings};
+use crate::units::Moment;
+
+/// A virtual SSI encoder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Encoder {
+    /// Its frame.
+    pub layout: Layout,
+    /// Which way it counts.
+    pub direction: Direction,
+    /// Its position at the shaft's zero, within the frame's range.
+    pub preset: u64,
+}
+
+impl Encoder {
+    /// Of a family with its settings, as `atm60,code=gray`; `None` where there is none such.
+    pub(super) fn named(text: &str) -> Option<Self> {
+        let (key, settings) = Settings::parse(text).ok()?;
+        let families = Families::built_in();
+        let resolved = settings.resolve(families.named(&key)?).ok()?;
+        Some(Encoder { layout: resolved.layout, direction: resolved.direction, preset: resolved.preset })
+    }
+}
+
+/// An encoder that is read, with what goes wrong.
+#[derive(Clone)]
+pub(super) struct Sending {
+    pub(super) encoder: Encoder,
+    /// What its frames say of it beside the position.
+    pub(super) troubles: Vec<Trouble>,
+    /// The last word.
+    pub(super) transferred: Option<Moment>,
+}
+
+impl Sending {
+    fn frame(&self, (raw, per_turn): (u64, u64), at: Moment) -> u64 {
+        let Encoder { layout, direction, preset } = &self.encoder;
+        let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
+        if let Some(word) = happening().find_map(Trouble::word) {
+            return word;
+        }
+        let flags = happening().fold(Flags::NONE, |flags, trouble| flags.with(trouble.flag()));
+        let position = layout.descriptor().range.of_shaft_set(raw, per_turn, *direction, *preset);
+        layout.encode(position, flags).unwrap_or(0)
+    }
+}
+
+impl SsiDevice for Sending {
+    fn another(&self) -> Box<dyn SsiDevice> {
+        Box::new(self.clone())
+    }
+
+    fn word(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8) {
+        let frame = self.frame(place, at);
+        self.transferred = Some(at);
+        (frame, self.encoder.layout.clocks())
+    }
+}

@@ -1,0 +1,149 @@
+//! What the frames of the virtual SSI encoder say of it: error bits that speak, and words that stand for a fault instead of
+//! a position. Which there are its layout tells (SICK SSI description, chapter 3).
+
+use std::time::Duration;
+
+use crate::devices::ssi::protocol::{Flags, Layout, Word};
+use crate::units::Moment;
+
+/// An error bit or a word that stands for a fault, and when it comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Trouble {
+    shows: Shows,
+    /// From one time that it happens to the next; none: it stands from the beginning.
+    period: Option<Duration>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shows {
+    /// This error bit.
+    Bit {
+        index: usize,
+        /// It says what happened since the transfer before.
+        cleared: bool,
+    },
+    /// This word, right-justified.
+    Word(u64),
+}
+
+impl Trouble {
+    const LEAST_PERIOD: f64 = 1e-6;
+    const MOST_PERIOD: f64 = 86_400.0;
+
+    /// `ERRSYNC:0.5,ERRSI`; `None` where that is not understood. A name is of a bit or a pattern of the layout, its letters
+    /// as they please, its spaces as hyphens.
+    pub(super) fn read(text: &str, layout: &Layout) -> Option<Vec<Self>> {
+        let items = text.split(',').map(str::trim).filter(|item| !item.is_empty());
+        items
+            .map(|item| {
+                let (name, period) = match item.split_once(':') {
+                    Some((name, seconds)) => (name, Some(period(seconds)?)),
+                    None => (item, None),
+                };
+                Some(Trouble { shows: shows(name, layout)?, period })
+            })
+            .collect()
+    }
+
+    /// The names that there are.
+    pub(super) fn names(layout: &Layout) -> Vec<String> {
+        let descriptor = layout.descriptor();
+        let bits = descriptor.errors.iter().map(|bit| &bit.name);
+        bits.chain(descriptor.patterns.iter().map(|pattern| &pattern.name)).map(|name| name.replace(' ', "-")).collect()
+    }
+
+    /// It shows in a transfer at a moment, behind one before. What a transfer clears is about the time between the two;
+    /// what comes and goes is there in the second half of its period.
+    pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
+        let Some(period) = self.period else {
+            return before.is_none() || !matches!(self.shows, Shows::Bit { cleared: true, .. });
+        };
+        let period = period.as_nanos().max(1);
+        let times = |moment: Moment| moment.since_start().as_nanos() / period;
+        match self.shows {
+            Shows::Bit { cleared: true, .. } => times(at) > before.map_or(0, times),
+            _ => at.since_start().as_nanos() % period >= period / 2,
+        }
+    }
+
+    /// The word that is sent instead of the frame.
+    pub(super) const fn word(&self) -> Option<u64> {
+        match self.shows {
+            Shows::Word(word) => Some(word),
+            Shows::Bit { .. } => None,
+        }
+    }
+
+    /// The error bit that speaks.
+    pub(super) const fn flag(&self) -> Flags {
+        match self.shows {
+            Shows::Bit { index, .. } => Flags::error(index),
+            Shows::Word(_) => Flags::NONE,
+        }
+    }
+}
+
+fn shows(name: &str, layout: &Layout) -> Option<Shows> {
+    let descriptor = layout.descriptor();
+    let is_own = |own: &str| own.replace(' ', "-").eq_ignore_ascii_case(name.trim());
+    let bits = descriptor.errors.iter().enumerate();
+    let mut bits = bits.filter(|(_, bit)| is_own(&bit.name));
+    if let Some((index, bit)) = bits.next() {
+        return Some(Shows::Bit { index, cleared: bit.cleared_by_transfer });
+    }
+    let pattern = descriptor.patterns.iter().find(|pattern| is_own(&pattern.name))?;
+    Some(Shows::Word(match pattern.word {
+        Word::Ones => u64::MAX >> (64 - layout.clocks().clamp(1, 64)),
+        Word::Bits(word) => word,
+    }))
+}
+
+fn period(seconds: &str) -> Option<Duration> {
+    let seconds = seconds.trim().parse().ok();
+    seconds.filter(|s| (Trouble::LEAST_PERIOD..=Trouble::MOST_PERIOD).contains(s)).map(Duration::from_secs_f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::ssi::protocol::{Families, Settings};
+
+    fn layout(text: &str) -> Layout {
+        let (key, settings) = Settings::parse(text).unwrap();
+        settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+    }
+
+    fn at(milliseconds: u64) -> Moment {
+        Moment::after_start(Duration::from_millis(milliseconds))
+    }
+
+    #[test]
+    fn names_are_those_of_the_layout() {
+        let safe = layout("afs60s");
+        assert_eq!(Trouble::names(&safe), ["ERRDIG", "ERRSI", "ERRSYNC", "safety-fault"]);
+        let read = Trouble::read("errsi:4, ERRSYNC , Safety-Fault", &safe).unwrap();
+        let flags: Vec<Flags> = read.iter().map(Trouble::flag).collect();
+        assert_eq!(flags, [Flags::error(1), Flags::error(2), Flags::NONE]);
+        // 21 clocks.
+        assert_eq!(read[2].word(), Some(0x1F_FFFF));
+        assert_eq!(Trouble::read("overspeed-or-gap", &layout("kh53")).unwrap()[0].word(), Some(0xFF_FFFE));
+        assert_eq!(Trouble::read("", &safe), Some(Vec::new()));
+        for text in ["ERRX", "ERRSI:", "ERRSI:0", "ERRSI:-1", "ERRSI:NaN", "ERRSI:1e9"] {
+            assert_eq!(Trouble::read(text, &safe), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_a_transfer_clears_is_about_the_time_since_the_one_before() {
+        let safe = layout("afs60s");
+        let one = |text| Trouble::read(text, &safe).unwrap()[0];
+        let (once, often) = (one("ERRSYNC"), one("ERRSYNC:0.5"));
+        assert!(once.happens(at(0), None) && !once.happens(at(1), Some(at(0))));
+        assert!(!often.happens(at(499), None) && often.happens(at(500), None));
+        assert!(often.happens(at(501), Some(at(499))) && !often.happens(at(502), Some(at(501))));
+        let (stands, goes) = (one("ERRSI"), one("ERRSI:2"));
+        assert!(stands.happens(at(0), None) && stands.happens(at(1), Some(at(0))));
+        let seen = [0, 999, 1000, 1999, 2000, 3000].map(|ms| goes.happens(at(ms), Some(at(0))));
+        assert_eq!(seen, [false, false, true, true, false, true]);
+    }
+}

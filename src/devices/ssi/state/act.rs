@@ -1,0 +1,240 @@
+//! What the user asks of an encoder or its layout, carried out: changes at once, everything else as a job on its line or a
+//! task.
+
+use std::path::PathBuf;
+
+use super::action::{Action, Try};
+use super::design::Edit;
+use super::encoder::Encoder;
+use super::search::{Frames, Hunt, MOST, Origin, read_frames};
+use super::{Done, strip};
+use crate::app::action::{Action as StudioAction, Done as StudioDone, FileQuestion};
+use crate::app::documents::{document_of, only_looked_at};
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Source};
+use crate::app::{Severity, Text, explain};
+use crate::devices::ssi::jobs::SsiJob;
+use crate::devices::ssi::protocol::{find, frame_bits};
+use crate::profile::{Body, Document};
+use crate::store::write_atomically;
+
+impl Encoder {
+    /// Does what is asked.
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) | Action::SendLayout => {}
+            Action::Read => {
+                if !self.session.read_file_again(services) && !matches!(self.session.source, Source::New { .. }) {
+                    self.submit(SsiJob::Hello, services);
+                }
+            }
+            Action::Review | Action::Restore(_) => {
+                services.tell(Severity::Note, vec![Text::new("ssi.never_written")], Some(&self.session.name()));
+            }
+            Action::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
+            Action::ReadPosition => self.submit(SsiJob::Read, services),
+            Action::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            Action::Edit(edit) => self.edit(*edit),
+            Action::Enter(field, input) => match self.designer.entered(field, &input) {
+                Ok(edit) => self.edit(edit),
+                Err(why) => self.designer.refuse(why),
+            },
+            Action::Move(handle, to) => {
+                let layout = self.designer.layout();
+                let moved = strip::moved(layout, handle, to, self.designer.errors_follow());
+                self.edit(Edit::Frame(Box::new(moved.descriptor().clone())));
+            }
+            Action::AddErrorBit => {
+                if let Some(frame) = self.designer.with_error_bit() {
+                    self.edit(Edit::Frame(Box::new(frame)));
+                }
+            }
+            Action::RemoveErrorBit(index) => {
+                let frame = self.designer.without_error_bit(index);
+                self.edit(Edit::Frame(Box::new(frame)));
+            }
+            Action::Undo | Action::Redo | Action::RevertAll => self.step(&action),
+            Action::Try(with) => self.try_with(with),
+            Action::SetClocks(clocks) => {
+                self.clocks = clocks
+                    .map(|clocks| clocks.clamp(1, 64))
+                    .filter(|clocks| *clocks != self.designer.layout().clocks());
+            }
+            Action::Find => self.find_live(services),
+            Action::AskFrames => {
+                services.file_question = Some(FileQuestion::OpenFrames { session: self.session.id });
+            }
+            Action::FindIn(path) => self.find_in(path, services),
+            Action::ForgetSearch => self.hunt = Hunt::Nothing,
+            Action::Take(class, member) => self.take_found(class, member),
+            Action::ForgetErrors => self.record.forget_tally(),
+            Action::AskSave => {
+                let suggested = self.suggested("ron");
+                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
+            }
+            Action::AskExport(format) => {
+                let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
+                services.file_question = Some(FileQuestion::Export { session: self.session.id, format, suggested });
+            }
+            Action::Export(format, path) => match self.designer.export(format) {
+                Ok(text) => self.write_text(path, text, services),
+                Err(why) => self.session.refuse(why, services),
+            },
+            Action::AskSaveFrames => {
+                let suggested = self.suggested("txt");
+                services.file_question = Some(FileQuestion::Frames { session: self.session.id, suggested });
+            }
+            Action::SaveFrames(path) => {
+                let clocks = self.clocks();
+                let words = self.record.words(clocks);
+                if words.is_empty() {
+                    return self.session.refuse(Text::new("ssi_find.nothing_read"), services);
+                }
+                let lines: Vec<String> = words.iter().map(|word| frame_bits(*word, clocks)).collect();
+                self.write_text(path, lines.join("\n") + "\n", services);
+            }
+            Action::Turn(rpm) => {
+                if let Some(motor) = &self.motor {
+                    motor.set_rpm(rpm);
+                }
+            }
+        }
+    }
+
+    /// All changes are taken back, as one step.
+    pub(super) fn act_revert(&mut self) {
+        self.step(&Action::RevertAll);
+    }
+
+    fn step(&mut self, action: &Action) {
+        let before = self.designer.layout().clone();
+        let has_changed = match action {
+            Action::Undo => self.designer.undo(),
+            Action::Redo => self.designer.redo(),
+            _ => self.designer.revert(),
+        };
+        if has_changed {
+            self.follow_layout(&before);
+        }
+    }
+
+    fn try_with(&mut self, with: Try) {
+        let layout = self.designer.layout();
+        // Whoever begins with a word that was read goes on from it.
+        if self.is_following()
+            && let Some(word) = self.record.last().map(|seen| seen.word)
+        {
+            self.trial.set(word);
+        }
+        self.follows = with == Try::Live;
+        match with {
+            Try::Position(position) => self.trial.set_position(layout, position),
+            Try::Place(turns, steps) => self.trial.set_place(layout, turns, steps),
+            Try::Bits(text) => self.trial.set_text(layout, &text),
+            Try::Toggle(clock) => self.trial.toggle(layout, clock),
+            Try::Live => {}
+        }
+    }
+
+    /// A name for a file with this ending.
+    fn suggested(&self, ending: &str) -> PathBuf {
+        match &self.session.source {
+            Source::File { path, .. } if ending == "ron" => path.clone(),
+            Source::File { path, .. } => path.with_extension(ending),
+            _ => {
+                let title = self.designer.title();
+                let name = title.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' });
+                PathBuf::from(format!("{}.{ending}", name.collect::<String>()))
+            }
+        }
+    }
+
+    /// Looks for the layout of the words that were read last.
+    fn find_live(&mut self, services: &mut Services) {
+        let clocks = self.clocks();
+        let frames = self.record.words(clocks);
+        if frames.is_empty() {
+            self.hunt = Hunt::Failed(Text::new("ssi_find.nothing_read"));
+            return;
+        }
+        self.find(services, move || Ok(Frames { origin: Origin::Live, clocks, frames }));
+    }
+
+    fn find_in(&mut self, path: PathBuf, services: &mut Services) {
+        let clocks = self.clocks();
+        self.find(services, move || read_frames(&path, clocks));
+    }
+
+    /// Looks on a thread: some thousand layouts are tried.
+    fn find(&mut self, services: &mut Services, frames: impl FnOnce() -> Result<Frames, Text> + Send + 'static) {
+        self.searches = self.searches.wrapping_add(1);
+        let number = self.searches;
+        self.hunt = Hunt::Running(number);
+        let (session, families) = (self.session.id, services.ssi_families());
+        services.tasks.run("find", move || {
+            let result = frames().map(|Frames { origin, clocks, mut frames }| {
+                frames.drain(..frames.len().saturating_sub(MOST));
+                let search = Box::new(find(&frames, clocks, &families));
+                Hunt::Found { origin, clocks, search }
+            });
+            let hunt = Box::new(result.unwrap_or_else(Hunt::Failed));
+            StudioAction::Done(StudioDone::Ssi(session, Done::Found { number, hunt }))
+        });
+    }
+
+    /// A layout that was found, as the layout on the drawing board.
+    fn take_found(&mut self, class: usize, member: usize) {
+        let Hunt::Found { search, .. } = &self.hunt else { return };
+        let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };
+        let mut profile = self.wanted_profile();
+        profile.family = proposal.family.as_ref().map(|(key, _)| key.clone());
+        profile.descriptor = proposal.layout.descriptor().clone();
+        profile.preset = 0;
+        self.edit(Edit::Whole(Box::new(profile)));
+        self.clocks = None;
+        self.follows = true;
+    }
+
+    /// What a task comes back with.
+    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
+        match done {
+            Done::Found { number, hunt } => {
+                if self.hunt == Hunt::Running(number) {
+                    self.hunt = *hunt;
+                }
+            }
+            Done::Written(path, Ok(())) => {
+                services.log.settle_file(&path);
+                let text = Text::new("session.saved").with("path", path.display());
+                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+            }
+            Done::Written(_, Err(error)) => self.session.refuse(explain::file(&error), services),
+        }
+    }
+
+    fn write_text(&self, path: PathBuf, text: String, services: &Services) {
+        let session = self.session.id;
+        services.tasks.run("export", move || {
+            let result = write_atomically(&path, text.as_bytes());
+            StudioAction::Done(StudioDone::Ssi(session, Done::Written(path, result)))
+        });
+    }
+
+    /// Saves the layout.
+    pub(crate) fn save(&mut self, path: PathBuf, services: &mut Services) {
+        if let Some(refusal) = only_looked_at(&self.session.source) {
+            return self.session.refuse(refusal, services);
+        }
+        let body = Body::new(self.wanted_profile());
+        let document = match &self.session.source {
+            Source::File { document, .. } => Document { body, ..(**document).clone() },
+            Source::Link(_) | Source::New { .. } => document_of(body),
+        };
+        self.session.write_document(path, document, Vec::new(), services);
+    }
+}

@@ -1,0 +1,197 @@
+//! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
+
+use crate::app::Text;
+use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::target::{adapter_in_network, checked, entered, parted, to_adapter};
+use crate::buses::bridge::procedures::SupplyAfter;
+use crate::buses::bridge::sim as bridge;
+use crate::devices::ssi::jobs::check;
+use crate::devices::ssi::procedures::PARAMETERS;
+use crate::link::{LinkUrl, Scheme};
+use crate::sim::AT_ADAPTER;
+
+/// How the encoder is reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SsiWay {
+    /// The virtual encoder in this program, behind a virtual adapter.
+    #[default]
+    Virtual,
+    /// An adapter at a serial port or in the network.
+    Adapter,
+    /// A recorded trace.
+    Replay,
+}
+
+/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
+/// for what is usual.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SsiForm {
+    /// How the encoder is reached.
+    pub way: SsiWay,
+    /// Over a network, and not a serial port of this machine.
+    pub network: bool,
+    /// Serial port of the adapter.
+    pub port: String,
+    /// Its name or address.
+    pub host: String,
+    /// Its TCP port.
+    pub tcp_port: String,
+    /// The recording.
+    pub file: String,
+    /// Volts that the adapter supplies the encoder with; empty: none.
+    pub voltage: String,
+    /// The adapter leaves the encoder's supply on at the end.
+    pub leave_supply: bool,
+    /// Milliseconds that a reply may come later than usual.
+    pub margin: String,
+    /// The frame that the virtual encoder sends: a family with its settings.
+    pub layout: String,
+    /// The virtual encoder's speed in revolutions a minute.
+    pub rpm: String,
+    /// What goes wrong with it on purpose.
+    pub fault: String,
+    /// Parameters of the link that have no entry.
+    pub rest: Vec<(String, String)>,
+}
+
+impl SsiForm {
+    /// The virtual encoder as the window begins with it: slow enough for the bits to be seen.
+    pub fn usual() -> LinkUrl {
+        let mut url = LinkUrl::sim();
+        url.query.set("rpm", "6");
+        url
+    }
+
+    /// The form filled in as a link says.
+    pub fn from_url(url: &LinkUrl) -> Self {
+        let mut form = SsiForm::default();
+        let target = url.target.as_str();
+        form.way = match url.scheme {
+            Scheme::Sim => SsiWay::Virtual,
+            Scheme::Replay => SsiWay::Replay,
+            Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => SsiWay::Adapter,
+        };
+        if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == Scheme::Bridge) {
+            form.network = true;
+            (form.host, form.tcp_port) = parted(network);
+        } else if form.way == SsiWay::Replay {
+            form.file = target.to_owned();
+        } else {
+            form.port = target.to_owned();
+        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form
+    }
+
+    /// Fills in the entry of a parameter; false where there is none.
+    fn take(&mut self, name: &str, value: &str) -> bool {
+        let is_virtual = self.way == SsiWay::Virtual;
+        if name == SupplyAfter::LEFT_ON.0 {
+            self.leave_supply = value == SupplyAfter::LEFT_ON.1;
+            return self.leave_supply;
+        }
+        let entry = match name {
+            "margin" => &mut self.margin,
+            "voltage" => &mut self.voltage,
+            "ssi" if is_virtual => &mut self.layout,
+            "rpm" if is_virtual => &mut self.rpm,
+            "fault" if is_virtual => &mut self.fault,
+            _ => return false,
+        };
+        value.clone_into(entry);
+        true
+    }
+
+    /// The link that the entries stand for. What is as usual is left out.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        checked(self.parameters().link(self.target()?)?, check)
+    }
+
+    fn target(&self) -> Result<(Scheme, String), Text> {
+        Ok(match self.way {
+            SsiWay::Virtual => (Scheme::Sim, String::new()),
+            SsiWay::Adapter if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
+            SsiWay::Adapter => (Scheme::Bridge, entered(&self.port, "form.port_missing")?),
+            SsiWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        })
+    }
+
+    fn parameters(&self) -> Parameters {
+        let is_virtual = self.way == SsiWay::Virtual;
+        let mut parameters = Parameters::default();
+        if is_virtual {
+            parameters.entry("ssi", &self.layout);
+            parameters.decimal("rpm", &self.rpm);
+            parameters.entry("fault", &self.fault);
+        }
+        parameters.decimal("voltage", &self.voltage);
+        if self.leave_supply {
+            parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
+        }
+        parameters.entry("margin", &self.margin);
+        // What only a virtual encoder has is not taken along.
+        let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !is_of_the_virtual(name);
+        parameters.rest(&self.rest, belongs);
+        parameters
+    }
+}
+
+/// A setting of the virtual encoder or of the virtual adapter before it.
+fn is_of_the_virtual(name: &str) -> bool {
+    bridge::keys(&AT_ADAPTER).contains(&name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::connect::parameters::tests::assert_comes_back;
+
+    #[test]
+    fn a_link_is_shown_and_comes_back_as_it_was() {
+        let links = [
+            "sim:",
+            "sim:?rpm=6",
+            "sim:?ssi=ahm36,code=gray&rpm=-60&fault=drop:0.01&clock=1000000",
+            "bridge:/dev/ttyACM0",
+            "bridge:/dev/ttyACM0?voltage=24&margin=200",
+            // Issue 22.16: another choice than the check box stays in the link.
+            "bridge:/dev/ttyACM0?voltage=24&leave-supply=on",
+            "bridge:/dev/ttyACM0?voltage=24&leave-supply=off",
+            "bridge:tcp:adapter:5000?clock=1500000&pause=30",
+            "replay:monday.trace",
+        ];
+        assert_comes_back(&links, |url| SsiForm::from_url(url).url());
+        assert_eq!(SsiForm::usual().to_string(), "sim:?rpm=6");
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_entry() {
+        let refused = |change: fn(&mut SsiForm)| {
+            let mut form = SsiForm::default();
+            change(&mut form);
+            form.url().unwrap_err().id()
+        };
+        assert_eq!(refused(|form| form.way = SsiWay::Adapter), "form.port_missing");
+        assert_eq!(refused(|form| (form.way, form.network) = (SsiWay::Adapter, true)), "form.host_missing");
+        assert_eq!(refused(|form| form.way = SsiWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.margin");
+        assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
+        assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
+        assert_eq!(refused(|form| form.layout = "atm61".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.voltage = "48".to_owned()), "form.parameter");
+    }
+
+    #[test]
+    fn another_way_takes_along_only_what_it_has() {
+        let mut form = SsiForm::from_url(&"sim:?rpm=60&noise=0.1&margin=7&clock=1000000".parse().unwrap());
+        (form.way, form.port) = (SsiWay::Adapter, "COM3".to_owned());
+        assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");
+        // What a typed link had and its way has no entry for.
+        let mut form = SsiForm::from_url(&"bridge:COM3?rpm=60".parse().unwrap());
+        (form.way, form.rpm) = (SsiWay::Virtual, "6".to_owned());
+        assert_eq!(form.url().unwrap().to_string(), "sim:?rpm=6");
+    }
+}

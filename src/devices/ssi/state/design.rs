@@ -1,0 +1,338 @@
+//! A layout on the drawing board: every change is a step with a way back, and what cannot work is refused in words and
+//! changes nothing, so that there is a frame at any time.
+
+mod reshape;
+
+use std::sync::Arc;
+
+use super::strip;
+use crate::app::Text;
+use crate::app::history::History;
+use crate::devices::ssi::profile::{ReadingSettings, SsiProfile};
+use crate::devices::ssi::protocol::{
+    Advice, Code, Descriptor, Direction, ErrorPlace, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,
+};
+use crate::devices::ssi::sim::DELIVERED;
+use crate::devices::ssi::state::explain as words;
+use crate::link::{LinkUrl, Scheme};
+
+/// A layout to begin with.
+const TO_BEGIN_WITH: &str = "ahm36";
+
+/// A layout that can work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// What is saved of it.
+    pub profile: SsiProfile,
+    /// Its frame, checked.
+    pub layout: Layout,
+    /// The settings with which its family sends just this frame; `None`: it belongs to no family, or the family cannot.
+    pub settings: Option<Settings>,
+    /// What is accepted although the family's manual does not speak of it.
+    pub advice: Vec<Advice>,
+}
+
+/// A change of a layout.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// A family's layout as delivered, by its key.
+    Family(String),
+    /// No family: the frame stays, and everything about it can be set.
+    Free,
+    /// The family with other settings.
+    Settings(Box<Settings>),
+    /// Another frame.
+    Frame(Box<Descriptor>),
+    /// Other positions or another code; the frame grows and shrinks with them.
+    Position(Range, Code),
+    /// Which way the positions count.
+    Direction(Direction),
+    /// The position at the shaft's zero.
+    Preset(u64),
+    /// How one reads.
+    Reading(ReadingSettings),
+    /// What a person calls it.
+    Name(String),
+    /// Another layout as a whole.
+    Whole(Box<SsiProfile>),
+    /// The layout of a format string of LinuxCNC.
+    LinuxCnc(String),
+}
+
+/// The drawing board.
+#[derive(Clone, Debug)]
+pub struct Designer {
+    families: Arc<Families>,
+    now: Design,
+    saved: SsiProfile,
+    history: History<SsiProfile>,
+    problem: Option<Text>,
+}
+
+impl Design {
+    /// A layout with what its family makes of it. Of several settings with the same frame it is those that were `wished`,
+    /// else the fewest.
+    ///
+    /// # Errors
+    /// Why it cannot work.
+    fn of(profile: SsiProfile, families: &Families, wished: Option<&Settings>) -> Result<Self, Text> {
+        let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout(&error))?;
+        let family = profile.family.as_deref().and_then(|key| families.named(key));
+        let sends = |family: &Family, settings: &Settings| {
+            settings.resolve(family).is_ok_and(|resolved| *resolved.layout.descriptor() == profile.descriptor)
+        };
+        let settings = family.and_then(|family| {
+            let wished = wished.filter(|wished| sends(family, wished));
+            wished.cloned().or_else(|| family.settings_of(&profile.descriptor))
+        });
+        let resolved = family.zip(settings.as_ref()).and_then(|(family, settings)| settings.resolve(family).ok());
+        let advice = resolved.map(|resolved| resolved.advice).unwrap_or_default();
+        Ok(Design { profile, layout, settings, advice })
+    }
+}
+
+impl Default for Design {
+    /// The least frame.
+    fn default() -> Self {
+        let layout = Layout::default();
+        let profile = SsiProfile::new(layout.descriptor().clone());
+        Design { profile, layout, settings: None, advice: Vec::new() }
+    }
+}
+
+impl Designer {
+    /// With a layout as it is saved. One that cannot work, which no file holds, is left out.
+    fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
+        let now = Design::of(profile, &families, None).unwrap_or_default();
+        let saved = now.profile.clone();
+        Designer { families, now, saved, history: History::default(), problem: None }
+    }
+
+    /// With the layout of a family as delivered.
+    pub(super) fn delivered(families: Arc<Families>) -> Self {
+        let profile = of_text(TO_BEGIN_WITH, &families);
+        Designer::with(profile, families)
+    }
+
+    /// With the layout that a virtual encoder sends; nobody knows what another one does.
+    pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
+        let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
+        let mut profile = of_text(sent.unwrap_or(DELIVERED), &families);
+        profile.reading = read_over(profile.reading, url, |_| true);
+        Designer::with(profile, families)
+    }
+
+    /// How one reads over another link to the same wire: what that says otherwise counts, and what was set here stays.
+    pub(super) fn reading_over(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
+        read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
+    }
+
+    /// The frame that a virtual encoder at this link sends.
+    pub(super) fn sent_by(&self, url: &LinkUrl) -> Descriptor {
+        of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
+    }
+
+    /// Another layout, as it is saved.
+    pub(super) fn open(&mut self, profile: SsiProfile) {
+        *self = Designer::with(profile, self.families.clone());
+    }
+
+    /// The layout as it is designed.
+    pub fn design(&self) -> &Design {
+        &self.now
+    }
+
+    /// Its frame.
+    pub fn layout(&self) -> &Layout {
+        &self.now.layout
+    }
+
+    /// All families known.
+    pub fn families(&self) -> &Families {
+        &self.families
+    }
+
+    /// The family whose limits and times count.
+    pub fn family(&self) -> Option<&Family> {
+        self.families.named(self.now.profile.family.as_deref()?)
+    }
+
+    /// What the times of the family allow; `None` without one.
+    pub fn times(&self) -> Option<&Times> {
+        self.family().map(|family| &family.times)
+    }
+
+    /// Error and parity bits go with the position's end: as the family is set, else as the frame looks.
+    pub fn errors_follow(&self) -> bool {
+        let settings = self.family().zip(self.now.settings.as_ref());
+        match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
+            Some(resolved) => resolved.errors == ErrorPlace::Following,
+            None => strip::follows(&self.now.layout),
+        }
+    }
+
+    /// Why the last change was refused.
+    pub fn problem(&self) -> Option<&Text> {
+        self.problem.as_ref()
+    }
+
+    /// As it was saved.
+    pub(super) fn saved(&self) -> &SsiProfile {
+        &self.saved
+    }
+
+    /// It is not as it was saved.
+    pub fn is_dirty(&self) -> bool {
+        self.now.profile != self.saved
+    }
+
+    /// There is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    /// There is a step to do again.
+    pub fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+
+    /// Other families are known: what one makes of the layout is looked at anew.
+    pub(super) fn take_families(&mut self, families: Arc<Families>) {
+        self.families = families;
+        if let Ok(design) = Design::of(self.now.profile.clone(), &self.families, self.now.settings.as_ref()) {
+            self.now = design;
+        }
+    }
+
+    /// Changes the layout, as one step that can be undone. False where it stays as it is.
+    pub(super) fn edit(&mut self, edit: Edit) -> bool {
+        let wished = match &edit {
+            Edit::Settings(settings) => Some((**settings).clone()),
+            _ => self.now.settings.clone(),
+        };
+        match self.edited(edit).and_then(|profile| Design::of(profile, &self.families, wished.as_ref())) {
+            Ok(design) => {
+                self.problem = None;
+                if design.profile == self.now.profile {
+                    // Other settings may send the same frame.
+                    self.now = design;
+                    return false;
+                }
+                let before = std::mem::replace(&mut self.now, design);
+                self.history.note(before.profile);
+                true
+            }
+            Err(why) => {
+                self.problem = Some(why);
+                false
+            }
+        }
+    }
+
+    /// Something was entered that stands for nothing.
+    pub(super) fn refuse(&mut self, why: Text) {
+        self.problem = Some(why);
+    }
+
+    /// The layout after a change.
+    fn edited(&self, edit: Edit) -> Result<SsiProfile, Text> {
+        let mut profile = self.now.profile.clone();
+        match edit {
+            Edit::Family(key) => {
+                let Some(family) = self.families.named(&key) else {
+                    return Err(Text::new("ssi.no_family").with("key", key));
+                };
+                // A preset of the one before stands for another place.
+                profile.preset = 0;
+                return resolved(profile, family, Settings::default());
+            }
+            Edit::Free => profile.family = None,
+            Edit::Settings(settings) => {
+                let Some(family) = self.family() else { return Err(Text::new("ssi.no_family").with("key", "–")) };
+                return resolved(profile, family, *settings);
+            }
+            Edit::Frame(descriptor) => profile.descriptor = *descriptor,
+            Edit::Position(range, code) => {
+                profile.descriptor =
+                    reshape::with_positions(&profile.descriptor, range, code).map_err(|error| words::layout(&error))?;
+            }
+            Edit::Direction(direction) => profile.direction = direction,
+            Edit::Preset(preset) => profile.preset = preset,
+            Edit::Reading(reading) => profile.reading = reading,
+            Edit::Name(name) => profile.name = name,
+            Edit::Whole(whole) => return Ok(*whole),
+            Edit::LinuxCnc(format) => {
+                let layout = from_linuxcnc(&format).map_err(|error| words::format(&error))?;
+                profile.family = None;
+                profile.descriptor = layout.descriptor().clone();
+            }
+        }
+        // A preset beyond the positions that there are now stands for none of them.
+        let last = profile.descriptor.range.last().unwrap_or(0);
+        if profile.preset > last {
+            return Err(Text::new("ssi.preset_range").with("preset", profile.preset).with("most", last));
+        }
+        Ok(profile)
+    }
+
+    /// Undoes the last step.
+    pub(super) fn undo(&mut self) -> bool {
+        self.step_by(History::undo)
+    }
+
+    /// Does the last undone step again.
+    pub(super) fn redo(&mut self) -> bool {
+        self.step_by(History::redo)
+    }
+
+    fn step_by(&mut self, step: fn(&mut History<SsiProfile>, &mut SsiProfile) -> bool) -> bool {
+        let mut profile = self.now.profile.clone();
+        if !step(&mut self.history, &mut profile) {
+            return false;
+        }
+        self.problem = None;
+        // It could work when the step was made.
+        let Ok(design) = Design::of(profile, &self.families, self.now.settings.as_ref()) else { return false };
+        self.now = design;
+        true
+    }
+
+    /// All changes are taken back, as one step.
+    pub(super) fn revert(&mut self) -> bool {
+        self.edit(Edit::Whole(Box::new(self.saved.clone())))
+    }
+
+    /// It is saved like this now; changes stay changes.
+    pub(super) fn saved_as(&mut self, profile: SsiProfile) {
+        self.saved = profile;
+    }
+}
+
+/// How one reads over a link, as those of its parameters say that count.
+fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
+    let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
+    let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());
+    ReadingSettings {
+        clock_hz: number("clock").unwrap_or(reading.clock_hz),
+        pause_us: pause_us.unwrap_or(reading.pause_us),
+        ..reading
+    }
+}
+
+/// The layout that a text stands for; the least one where it stands for none.
+fn of_text(text: &str, families: &Families) -> SsiProfile {
+    let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
+        let family = families.named(&key)?;
+        Some(SsiProfile::of_family(family, &settings.resolve(family).ok()?))
+    });
+    resolved.unwrap_or_else(|| Design::default().profile)
+}
+
+/// What a family with these settings sends. Direction and preset are the profile's own.
+fn resolved(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
+    let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
+    let resolved = settings.resolve(family).map_err(|error| words::settings(&error))?;
+    profile.descriptor = resolved.layout.descriptor().clone();
+    profile.family = Some(family.key.clone());
+    Ok(profile)
+}

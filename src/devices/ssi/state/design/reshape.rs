@@ -1,0 +1,117 @@
+//! A frame with other positions or another code: it grows and shrinks with them, as a person would draw it again.
+
+use crate::devices::ssi::protocol::{Code, Coding, Descriptor, LayoutError, Range};
+
+/// The frame with these positions in this code. Zeros behind the position take up what it gives or needs, where there are
+/// any; where there are none, what stands behind the position moves, and the frame is longer or shorter.
+///
+/// # Errors
+/// No such positions or code words. Whether the frame can work is looked at where it is used.
+pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> Result<Descriptor, LayoutError> {
+    let bits_before = bits(&before.range, before.code)?;
+    let bits_now = bits(&range, code)?;
+    let mut now = Descriptor { range, code, ..before.clone() };
+    let parted = matches!(range, Range::Bits { multiturn, singleturn } if multiturn > 0 && singleturn > 0);
+    if !parted || code == Code::Bcd {
+        now.between = 0;
+    }
+    let used = |descriptor: &Descriptor, bits: u8| {
+        u16::from(descriptor.lead) + u16::from(descriptor.between) + u16::from(bits)
+    };
+    let (used_before, used_now) = (used(before, bits_before), used(&now, bits_now));
+    let area = u16::from(before.area);
+    let is_padded = area > used_before;
+    let area_now = if is_padded && used_now <= area { area } else { used_now };
+    let moved = |clock: u8| {
+        let clock = i32::from(clock) + i32::from(area_now) - i32::from(area);
+        u8::try_from(clock.clamp(0, 255)).unwrap_or(u8::MAX)
+    };
+    now.area = u8::try_from(area_now).unwrap_or(u8::MAX);
+    now.clocks = moved(before.clocks);
+    for error in now.errors.iter_mut().filter(|error| error.clock > before.area) {
+        error.clock = moved(error.clock);
+    }
+    if let Some(parity) = &mut now.parity {
+        parity.clock = moved(parity.clock);
+    }
+    if let Some(repeat) = &mut now.repeat {
+        // Both words are longer or shorter.
+        repeat.word = moved(repeat.word);
+        now.clocks = moved(now.clocks);
+    }
+    Ok(now)
+}
+
+fn bits(range: &Range, code: Code) -> Result<u8, LayoutError> {
+    Ok(Coding::new(code, range.last()?)?.bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::ssi::protocol::{ErrorBit, Layout, Meaning, Parity, Repeat};
+
+    fn error(clock: u8) -> ErrorBit {
+        ErrorBit {
+            name: "E".to_owned(),
+            clock,
+            meaning: Meaning::Invalid,
+            active_low: false,
+            cleared_by_transfer: false,
+        }
+    }
+
+    fn bits(multiturn: u8, singleturn: u8) -> Range {
+        Range::Bits { multiturn, singleturn }
+    }
+
+    #[test]
+    fn a_frame_without_zeros_grows_and_shrinks_with_its_position() {
+        // AFM60: 12 + 18 bits, error bit behind them on 31.
+        let before = Descriptor { clocks: 31, errors: vec![error(31)], ..Descriptor::plain(12, 18) };
+        let now = with_positions(&before, bits(12, 15), Code::Gray).unwrap();
+        assert_eq!((now.clocks, now.area, now.errors[0].clock, now.code), (28, 27, 28, Code::Gray));
+        let back = with_positions(&now, bits(12, 18), Code::Binary).unwrap();
+        assert_eq!(back, before);
+        // Decimal digits: 3600 steps need four, and 12 bits were 12 clocks.
+        let steps = Range::Steps { per_turn: 3600, turns: 1 };
+        let plain = Descriptor { range: steps, ..Descriptor::plain(0, 12) };
+        let bcd = with_positions(&plain, steps, Code::Bcd).unwrap();
+        assert_eq!((bcd.clocks, bcd.area), (16, 16));
+    }
+
+    #[test]
+    fn zeros_behind_the_position_take_up_what_it_gives() {
+        // AHS36: 14 clocks for the position, the error bit on 15.
+        let before = Descriptor { clocks: 15, area: 14, errors: vec![error(15)], ..Descriptor::plain(0, 12) };
+        let now = with_positions(&before, bits(0, 13), Code::Binary).unwrap();
+        assert_eq!((now.clocks, now.area, now.errors[0].clock), (15, 14, 15));
+        let longer = with_positions(&before, bits(0, 16), Code::Binary).unwrap();
+        assert_eq!((longer.clocks, longer.area, longer.errors[0].clock), (17, 16, 17));
+        assert!(Layout::new(longer).is_ok());
+    }
+
+    #[test]
+    fn a_repeated_frame_grows_twice() {
+        let before = Descriptor {
+            clocks: 27,
+            parity: Some(Parity { clock: 13, even: true }),
+            repeat: Some(Repeat { word: 13, gap: 1 }),
+            ..Descriptor::plain(0, 12)
+        };
+        let now = with_positions(&before, bits(0, 14), Code::Binary).unwrap();
+        assert_eq!((now.clocks, now.parity.unwrap().clock, now.repeat.unwrap().word), (31, 15, 15));
+        assert!(Layout::new(now).is_ok());
+    }
+
+    #[test]
+    fn what_cannot_be_says_so() {
+        let plain = Descriptor::plain(0, 12);
+        assert!(with_positions(&plain, bits(0, 0), Code::Binary).is_err());
+        let odd = Range::Steps { per_turn: 361, turns: 1 };
+        assert!(with_positions(&plain, odd, Code::GrayExcess).is_err());
+        // Too long to be a frame, and no panic.
+        let long = with_positions(&Descriptor { lead: 40, ..plain }, bits(32, 32), Code::Binary).unwrap();
+        assert!(Layout::new(long).is_err());
+    }
+}

@@ -1,0 +1,90 @@
+//! SSI encoders among the devices of the studio.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::action::Action;
+use super::design::Edit;
+use super::encoder::Encoder;
+use crate::app::services::Services;
+use crate::app::session::Source;
+use crate::app::studio::{SessionId, Studio};
+use crate::app::tab::Tab;
+use crate::app::{AnyDevice, Severity, explain};
+use crate::devices::ssi::protocol::Families;
+use crate::store::StoreError;
+
+impl Studio {
+    /// The encoder or layout that the SSI tab shows.
+    pub fn ssi(&self) -> Option<&Encoder> {
+        self.device(self.shown.of(Tab::Ssi)?)?.ssi()
+    }
+
+    /// Shows a tab. A layout needs no device: where there is none, one to begin with.
+    pub(crate) fn show_tab(&mut self, tab: Tab) {
+        self.settings.tab = tab;
+        if tab == Tab::Ssi && self.ssi().is_none() {
+            self.new_layout();
+        }
+    }
+
+    /// A layout that is in no file yet, with the first name that no other such layout has.
+    pub(crate) fn new_layout(&mut self) {
+        let taken = |name: &PathBuf| {
+            let others = self.devices.iter().map(AnyDevice::source);
+            others.into_iter().any(|source| matches!(source, Source::New { suggested } if suggested == name))
+        };
+        let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
+        let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);
+        let Some(name) = names.find(|name| !taken(name)) else { return };
+        let id = self.new_id();
+        let layout = Encoder::new_layout(id, name, &mut self.services);
+        self.devices.push(AnyDevice::Ssi(Box::new(layout)));
+        self.show(Tab::Ssi, id);
+    }
+
+    pub(crate) fn act_ssi(&mut self, id: SessionId, action: Action) {
+        match action {
+            Action::Reconnect => self.reconnect(id),
+            Action::WriteInto(target) => {
+                let Some(profile) = self.device(id).and_then(AnyDevice::ssi).map(Encoder::wanted_profile) else {
+                    return;
+                };
+                self.show(Tab::Ssi, target);
+                self.with_ssi(target, |encoder, _| encoder.edit(Edit::Whole(Box::new(profile))));
+            }
+            Action::SendLayout => {
+                let link = self.device(id).and_then(AnyDevice::ssi).and_then(Encoder::link_to_send);
+                let Some(url) = link else { return };
+                self.with_device(id, |device, services| {
+                    // The draft belongs to the encoder that the link before stands for.
+                    device.leave_draft(services);
+                    device.take_link(url);
+                });
+                self.reconnect(id);
+            }
+            action => self.with_ssi(id, |encoder, services| encoder.act(action, services)),
+        }
+    }
+
+    pub(crate) fn with_ssi(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
+        self.with_device(id, |device, services| {
+            if let Some(encoder) = device.ssi_mut() {
+                act(encoder, services);
+            }
+        });
+    }
+
+    /// The families were read; those that cannot be used are told.
+    pub(crate) fn take_families(&mut self, families: Arc<Families>, broken: &[StoreError]) {
+        for error in broken {
+            self.services.tell(Severity::Warning, vec![explain::store(error)], None);
+        }
+        for device in &mut self.devices {
+            if let Some(encoder) = device.ssi_mut() {
+                encoder.take_families(families.clone());
+            }
+        }
+        self.services.families = families;
+    }
+}

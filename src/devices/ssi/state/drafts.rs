@@ -1,0 +1,92 @@
+//! Changes of a layout, kept over a crash: entry by entry, so that what others change in the file meanwhile stays.
+
+use super::design::Edit;
+use super::encoder::Encoder;
+use crate::app::Text;
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Session, Source};
+use crate::devices::ssi::jobs::Ssi;
+use crate::devices::ssi::profile::SsiProfile;
+use crate::profile::{Body, Change, Document, Profile};
+
+/// What is changed, an entry each; none where the layout is as it was saved. Earlier versions kept the whole of it, as the
+/// text of a profile.
+pub(crate) type Drafts = Vec<String>;
+
+impl OnDesk for Encoder {
+    type Device = Ssi;
+
+    fn session(&self) -> &Session<Ssi> {
+        &self.session
+    }
+
+    fn session_mut(&mut self) -> &mut Session<Ssi> {
+        &mut self.session
+    }
+}
+
+impl Drafted for Encoder {
+    /// SSI encoders do not say who they are: a layout belongs to the wire at which it was used; a virtual encoder is the one
+    /// that its link describes.
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        let Source::Link(url) = &self.session.source else { return None };
+        let wire = if self.session.is_virtual() {
+            self.session.place()
+        } else {
+            format!("{}:{}", url.scheme.word(), url.target)
+        };
+        Some(("link".to_owned(), wire))
+    }
+
+    fn edited(&self) -> Drafts {
+        let changes = document_of(self.designer.saved()).changes_to(&document_of(&self.wanted_profile()));
+        changes.iter().filter_map(|change| ron::to_string(change).ok()).collect()
+    }
+
+    fn take_edits(&mut self, edits: Drafts) {
+        let mut profiles =
+            edits.iter().filter_map(|text| Document::parse(text, SsiProfile::FORMATS).ok()?.body.into_profile().ok());
+        let whole = profiles.next_back().or_else(|| {
+            let changes: Vec<Change> = edits.iter().filter_map(|text| ron::from_str(text).ok()).collect();
+            let all = changes.len() == edits.len();
+            let changed =
+                document_of(self.designer.saved()).changed(&changes, SsiProfile::FORMATS).ok().filter(|_| all)?;
+            changed.body.into_profile().ok()
+        });
+        match whole {
+            Some(profile) => self.edit(Edit::Whole(Box::new(profile))),
+            None if edits.is_empty() => {}
+            // What the file says by now and what was changed make no frame together.
+            None => self.designer.refuse(Text::new("ssi.draft_unfit")),
+        }
+    }
+
+    fn revert_edits(&mut self) {
+        self.act_revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
+        let Some(profile) = document.body.get::<SsiProfile>() else { return };
+        let before = self.designer.layout().clone();
+        // What was done and undone stays, unless the file holds something else by now: then what was changed stays changed.
+        if self.designer.design().profile == *profile {
+            self.designer.saved_as(profile.clone());
+        } else {
+            let edits = self.edited();
+            self.designer.open(profile.clone());
+            self.take_edits(edits);
+        }
+        self.follow_layout(&before);
+        self.session.take_document(file, document);
+    }
+
+    fn written_beside(&mut self, document: Document) {
+        if let Ok(profile) = document.body.into_profile() {
+            self.designer.saved_as(profile);
+        }
+    }
+}
+
+/// A layout as a profile of no file.
+fn document_of(profile: &SsiProfile) -> Document {
+    Document { saved: None, ..Document::new(String::new(), Body::new(profile.clone())) }
+}

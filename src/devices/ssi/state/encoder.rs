@@ -1,0 +1,245 @@
+//! An SSI encoder on the desk, or a layout of one: the layout on the drawing board, a frame to try it with, what was read,
+//! and what was found about it. The encoder has no memory; nothing is ever written into it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::design::{Design, Designer, Edit};
+use super::record::{Record, Seen, Streamed};
+use super::search::Hunt;
+use super::trial::{Decoded, Trial};
+use crate::app::Text;
+use crate::app::check::CheckLine;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
+use crate::app::studio::SessionId;
+use crate::devices::ssi::jobs::Ssi;
+use crate::devices::ssi::procedures::{Asking, Identity};
+use crate::devices::ssi::profile::SsiProfile;
+use crate::devices::ssi::protocol::{Families, Layout, Reads};
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::sim::Motor;
+
+/// An SSI encoder, or a layout of one.
+pub struct Encoder {
+    /// What every session has.
+    pub session: Session<Ssi>,
+    /// The layout.
+    pub designer: Designer,
+    /// The frame that it is tried with.
+    pub trial: Trial,
+    /// The frame that it is tried with is the word that was read last.
+    pub(super) follows: bool,
+    /// What was read.
+    pub record: Record,
+    /// The search for the layout.
+    pub hunt: Hunt,
+    /// Searches that were begun.
+    pub(super) searches: u32,
+    /// Who the adapter is and how it takes words, once it has told.
+    pub identity: Option<Identity>,
+    /// The last device check.
+    pub check: Option<Vec<CheckLine>>,
+    /// What turns the virtual encoder's shaft.
+    pub motor: Option<Motor>,
+    /// Words have so many clocks while a layout is looked for.
+    pub(super) clocks: Option<u8>,
+    /// How the adapter was last told to take words.
+    pub(super) told: Option<Asking>,
+}
+
+impl Encoder {
+    /// An encoder at a link that is being opened.
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
+        let families = services.ssi_families();
+        let designer = Designer::at_link(&url, families);
+        Encoder::with(Session::at_link(id, url), designer)
+    }
+
+    /// A layout that is in no file yet, and a name for one: a family's as delivered.
+    pub(crate) fn new_layout(id: SessionId, suggested: PathBuf, services: &mut Services) -> Self {
+        let designer = Designer::delivered(services.ssi_families());
+        let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
+        encoder.load_draft(services);
+        encoder
+    }
+
+    /// A layout in a file.
+    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &mut Services) -> Self {
+        let families = services.ssi_families();
+        let mut designer = Designer::delivered(families);
+        if let Some(profile) = document.body.get::<SsiProfile>() {
+            designer.open(profile.clone());
+        }
+        let mut encoder = Encoder::with(Session::in_file(id, file, document), designer);
+        encoder.load_draft(services);
+        encoder
+    }
+
+    fn with(session: Session<Ssi>, designer: Designer) -> Self {
+        let mut trial = Trial::default();
+        // A position whose bits can be told apart.
+        trial.set_position(designer.layout(), designer.layout().coding().last() / 3);
+        Encoder {
+            record: Record::new(designer.layout().clone()),
+            session,
+            designer,
+            trial,
+            follows: true,
+            hunt: Hunt::default(),
+            searches: 0,
+            identity: None,
+            check: None,
+            motor: None,
+            clocks: None,
+            told: None,
+        }
+    }
+
+    /// The layout as it is designed.
+    pub fn design(&self) -> &Design {
+        self.designer.design()
+    }
+
+    /// The frame that is shown: the word that was read last where that is wished and there is one, else the one to try with.
+    pub fn shown(&self) -> Decoded {
+        let live = || self.record.last().and_then(|seen| seen.decoded.clone());
+        self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
+    }
+
+    /// What is shown is the word that was read last.
+    pub fn is_following(&self) -> bool {
+        self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
+    }
+
+    /// The word that was read last; `None`: none was.
+    pub fn last(&self) -> Option<&Seen> {
+        self.record.last()
+    }
+
+    /// What an adapter streams now; `None` where it does not.
+    pub fn streamed(&self) -> Option<&Streamed> {
+        self.record.streamed().filter(|_| self.session.is_polling())
+    }
+
+    /// Clocks of the words that are read: those of the layout, unless others are tried.
+    pub fn clocks(&self) -> u8 {
+        self.clocks.unwrap_or_else(|| self.designer.layout().clocks())
+    }
+
+    /// Other clocks than those of the layout are tried.
+    pub fn has_own_clocks(&self) -> bool {
+        self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
+    }
+
+    /// How the adapter is to take words.
+    pub(crate) fn asking(&self) -> Asking {
+        let reading = &self.design().profile.reading;
+        Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
+    }
+
+    pub(crate) fn edits(&self) -> usize {
+        usize::from(self.designer.is_dirty())
+    }
+
+    pub(crate) fn can_undo(&self) -> bool {
+        self.designer.can_undo()
+    }
+
+    pub(crate) fn can_redo(&self) -> bool {
+        self.designer.can_redo()
+    }
+
+    /// The layout is not as it was saved.
+    pub fn is_dirty(&self) -> bool {
+        self.designer.is_dirty()
+    }
+
+    /// The layout as it would be saved.
+    pub(crate) fn wanted_profile(&self) -> SsiProfile {
+        self.design().profile.clone()
+    }
+
+    /// The user's own families were read.
+    pub(crate) fn take_families(&mut self, families: Arc<Families>) {
+        self.designer.take_families(families);
+    }
+
+    /// Changes the layout; everything that stands on it follows.
+    pub(super) fn edit(&mut self, edit: Edit) {
+        let before = self.designer.layout().clone();
+        if self.designer.edit(edit) {
+            self.follow_layout(&before);
+        }
+    }
+
+    /// Another link leads to the same wire: it is read as that says.
+    pub(crate) fn take_link(&mut self, url: &LinkUrl) {
+        if let Source::Link(before) = &self.session.source {
+            self.edit(Edit::Reading(self.designer.reading_over(before, url)));
+        }
+    }
+
+    /// The layout was changed: what stands on it is changed too.
+    pub(super) fn follow_layout(&mut self, before: &Layout) {
+        if self.identity.is_some() {
+            self.name_after_family();
+        }
+        let now = self.designer.layout();
+        if before == now {
+            return;
+        }
+        self.trial.follow(before, now);
+        self.record.read_as(now);
+    }
+
+    /// The name of the device beside the link: that of its family.
+    pub(super) fn name_after_family(&mut self) {
+        let family = self.designer.family().map(|family| family.name.clone());
+        self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
+    }
+
+    /// The link to a virtual encoder that sends this layout, where it is connected to one that sends another; only what a
+    /// family sends can be said in a link.
+    pub fn link_to_send(&self) -> Option<LinkUrl> {
+        let Source::Link(url) = &self.session.source else { return None };
+        let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
+        let differs = self.session.is_virtual() && self.designer.sent_by(url) != self.design().profile.descriptor;
+        differs.then(|| {
+            let mut url = url.clone();
+            url.query.set("ssi", &settings.emit(&family.key));
+            url
+        })
+    }
+
+    /// It is a profile in a file, or one that will be.
+    pub fn is_profile(&self) -> bool {
+        !matches!(self.session.source, Source::Link(_))
+    }
+
+    /// Why the layout as it is cannot be asked of the adapter.
+    pub fn refusal(&self) -> Option<&Text> {
+        self.designer.problem()
+    }
+}
+
+impl Designer {
+    /// How one reads, for what the times allow.
+    pub fn reads(&self) -> Reads {
+        self.design().profile.reads()
+    }
+
+    /// What it is called: by its person, or after its family.
+    pub fn title(&self) -> String {
+        let profile = &self.design().profile;
+        if !profile.name.is_empty() {
+            return profile.name.clone();
+        }
+        match (self.family(), &self.design().settings) {
+            (Some(family), Some(settings)) => settings.emit(&family.key),
+            (Some(family), None) => family.name.clone(),
+            (None, _) => "SSI".to_owned(),
+        }
+    }
+}

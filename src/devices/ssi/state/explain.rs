@@ -1,0 +1,230 @@
+//! SSI in words: what a frame gives cause to say, what was set that the manual does not speak of, and why no words come.
+
+mod check;
+mod family;
+mod refused;
+
+use crate::app::Text;
+use crate::app::explain::link;
+use crate::buses::bridge::state::adapter;
+use crate::devices::ssi::jobs::JobError;
+use crate::devices::ssi::protocol::{
+    Advice, Code, Coded, Doubt, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning,
+};
+
+pub use check::check;
+pub use family::note;
+pub(crate) use refused::{PHRASES, cannot_work};
+pub use refused::{format, frame_text, layout, settings};
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    vec![match error {
+        JobError::Link(error) => link(error),
+        JobError::Adapter(error) => adapter(error),
+        JobError::Cancelled => Text::new("encoder.cancelled"),
+    }]
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    match error {
+        JobError::Link(error) => Some(link(error)),
+        JobError::Adapter(_) | JobError::Cancelled => None,
+    }
+}
+
+/// Something that a frame gives cause to say.
+pub fn finding(finding: &Finding) -> Text {
+    match finding {
+        Finding::Error { name, meaning, cleared_by_transfer } => {
+            let id = match (meaning, cleared_by_transfer) {
+                (Meaning::Invalid, false) => "ssi.error",
+                (Meaning::Invalid, true) => "ssi.error_since",
+                (Meaning::Warning, _) => "ssi.warning",
+            };
+            Text::new(id).with("name", name)
+        }
+        Finding::Pattern { name, meaning: Meaning::Invalid } => Text::new("ssi.pattern").with("name", name),
+        Finding::Pattern { name, meaning: Meaning::Warning } => Text::new("ssi.pattern_perhaps").with("name", name),
+        Finding::StuckHigh { sure: true } => Text::new("ssi.stuck_high"),
+        Finding::StuckHigh { sure: false } => Text::new("ssi.stuck_high_perhaps"),
+        Finding::StuckLow { sure: true } => Text::new("ssi.stuck_low"),
+        Finding::StuckLow { sure: false } => Text::new("ssi.stuck_low_perhaps"),
+        Finding::Code => Text::new("ssi.code"),
+        Finding::Padding => Text::new("ssi.padding"),
+        Finding::Parity => Text::new("ssi.parity"),
+        Finding::Repeat => Text::new("ssi.repeat"),
+    }
+}
+
+/// Something that is accepted although the manual does not speak of it.
+pub fn advice(advice: &Advice) -> Text {
+    match advice {
+        Advice::Code(code) => Text::new("ssi.other_code").with("code", code),
+        Advice::Clocks { bits, clocks } => Text::new("ssi.more_clocks").with("bits", bits).with("clocks", clocks),
+    }
+}
+
+/// A time of a transfer that does not fit.
+pub fn timing(warning: &Warning) -> Text {
+    let micros = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
+    let kilohertz = |hz: f64| hz / 1000.0;
+    match warning {
+        Warning::EncoderClock { most_hz } => {
+            Text::new("ssi.clock_encoder").with_number("khz", kilohertz((*most_hz).into()), 0)
+        }
+        Warning::CableClock { most_hz } => {
+            Text::new("ssi.clock_cable").with_number("khz", kilohertz((*most_hz).into()), 0)
+        }
+        Warning::CableLong => Text::new("ssi.cable_long"),
+        Warning::ClockSlow { least_hz } => Text::new("ssi.clock_slow").with_number("khz", kilohertz(*least_hz), 1),
+        Warning::PauseShort { least } => Text::new("ssi.pause_short").with_number("micros", micros(least), 0),
+        Warning::PauseLong { most } => Text::new("ssi.pause_long").with_number("millis", micros(most) / 1000.0, 0),
+        Warning::Repeats { update } => Text::new("ssi.repeats").with_number("micros", micros(update), 0),
+        Warning::NoSynchronous => Text::new("ssi.no_synchronous"),
+    }
+}
+
+/// A frame in a line: its clocks, its positions, its code, its error bits.
+pub fn frame(layout: &Layout) -> Text {
+    let descriptor = layout.descriptor();
+    let range = match descriptor.range {
+        Range::Bits { multiturn: 0, singleturn } => Text::new("ssi_range.single").with("singleturn", singleturn),
+        Range::Bits { multiturn, singleturn } => {
+            Text::new("ssi_range.multi").with("multiturn", multiturn).with("singleturn", singleturn)
+        }
+        Range::Steps { per_turn, turns } => Text::new("ssi_range.steps").with("steps", per_turn).with("turns", turns),
+        Range::RoundAxis { steps, revolutions } => Text::new("ssi_range.round")
+            .with("steps", steps)
+            .with("above", revolutions.numerator)
+            .with("below", revolutions.denominator),
+        Range::Length { bits, step_nanometres } => {
+            Text::new("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
+        }
+    };
+    // A name that ends with its clock says it.
+    let named = |name: &str, clock: u8| match name.ends_with(&clock.to_string()) {
+        true => name.to_owned(),
+        false => format!("{name} {clock}"),
+    };
+    let errors = descriptor.errors.iter().map(|bit| named(&bit.name, bit.clock)).collect::<Vec<_>>();
+    let errors = if errors.is_empty() { "–".to_owned() } else { errors.join(", ") };
+    let line = Text::new("ssi.frame_line")
+        .with("clocks", layout.clocks())
+        .with_text("range", range)
+        .with_text("code", code(descriptor.code))
+        .with("lead", descriptor.lead)
+        .with("errors", errors);
+    unusual(layout)
+        .into_iter()
+        .fold(line, |line, more| Text::new("ssi.frame_and").with_text("line", line).with_text("more", more))
+}
+
+/// What few frames have.
+fn unusual(layout: &Layout) -> Vec<Text> {
+    let descriptor = layout.descriptor();
+    let between = (descriptor.between > 0).then(|| Text::new("ssi.frame_between").with("zeros", descriptor.between));
+    let over = (descriptor.coded != Coded::Position).then(|| Text::new("ssi.frame_over"));
+    let parity = descriptor.parity.map(|parity| {
+        Text::new(if parity.even { "ssi.frame_even" } else { "ssi.frame_odd" }).with("clock", parity.clock)
+    });
+    let repeat = descriptor.repeat.map(|repeat| Text::new("ssi.frame_twice").with("bits", repeat.word));
+    let inverted = descriptor.inverted.then(|| Text::new("ssi.frame_inverted"));
+    [between, over, parity, repeat, inverted].into_iter().flatten().collect()
+}
+
+/// A code by its name.
+pub fn code(code: Code) -> Text {
+    Text::new(match code {
+        Code::Binary => "ssi_form.binary",
+        Code::Gray => "ssi_form.gray",
+        Code::GrayExcess => "ssi_form.gray_excess",
+        Code::Bcd => "ssi_form.bcd",
+    })
+}
+
+/// What would tell layouts apart.
+pub fn open(open: Open) -> Text {
+    match open {
+        Open::TurnOnce => Text::new("ssi_find.turn_once"),
+        Open::TurnFarther { from, to } if from == to => Text::new("ssi_find.turn_farther_one").with("clock", from),
+        Open::TurnFarther { from, to } => Text::new("ssi_find.turn_farther").with("from", from).with("to", to),
+        Open::PassAnEnd => Text::new("ssi_find.pass_the_end"),
+        Open::Direction => Text::new("ssi_find.direction"),
+        Open::OtherSpeed => Text::new("ssi_find.other_speed"),
+        Open::PassTheEnd { least, most } => Text::new("ssi_find.steps").with("least", least).with("most", most),
+        Open::Unexplained { clock } => Text::new("ssi_find.unexplained").with("clock", clock),
+        Open::SeeAnError => Text::new("ssi_find.see_an_error"),
+        Open::TypeLabel => Text::new("ssi_find.type_label"),
+    }
+}
+
+/// Why the first layout that was found is not to be relied on, or that it is.
+pub fn doubt(doubt: Option<Doubt>) -> Text {
+    Text::new(match doubt {
+        None => "ssi_find.sure",
+        Some(Doubt::Standing) => "ssi_find.standing",
+        Some(Doubt::Stuck { high: true }) => "ssi.stuck_high",
+        Some(Doubt::Stuck { high: false }) => "ssi.stuck_low",
+        Some(Doubt::Nothing) => "ssi_find.nothing_fits",
+        Some(Doubt::Close) => "ssi_find.close",
+        Some(Doubt::Open) => "ssi_find.open",
+    })
+}
+
+/// What speaks for a layout.
+pub fn evidence(evidence: &Evidence) -> Text {
+    Text::new("ssi_find.evidence")
+        .with("steps", evidence.steps_a_frame)
+        .with("jumps", evidence.jumps)
+        .with("misfits", evidence.misfits)
+        .with("bits", evidence.bits_seen)
+}
+
+/// How often and when there was something to say.
+pub fn noted(noted: &Noted) -> Text {
+    let seconds = |time: crate::analysis::Time| time.nanoseconds() as f64 / 1e9;
+    let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
+    Text::new(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(
+        "last",
+        seconds(noted.last),
+        3,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::buses::bridge::procedures::AdapterError;
+    use crate::link::{LinkError, LinkErrorKind};
+
+    /// What happened, and what to do: two sentences or more in both languages, with the facts in them.
+    #[test]
+    fn every_error_says_what_happened_and_what_to_do() {
+        let name = || "bench adapter".to_owned();
+        let cases = [
+            (JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost)), "COM3"),
+            (JobError::Adapter(AdapterError::Silent), "."),
+            (JobError::Adapter(AdapterError::NoSsi { name: name() }), "bench adapter"),
+            (JobError::Adapter(AdapterError::Version { expected: 1, got: 2 }), "2"),
+        ];
+        for (error, fact) in cases {
+            for language in [English, German] {
+                let words: Vec<String> = job(&error).iter().map(|text| text.words(language)).collect();
+                let words = words.join(" ");
+                assert!(words.contains(fact) && !words.contains('{') && words.ends_with('.'), "{words}");
+                assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wire_that_is_gone_is_a_loss_and_no_other_error_is() {
+        let gone = JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost));
+        assert_eq!(loss(&gone).unwrap().id(), "link.lost");
+        assert_eq!(loss(&JobError::Adapter(AdapterError::Silent)), None);
+        assert_eq!(job(&JobError::Cancelled)[0].id(), "encoder.cancelled");
+    }
+}

@@ -1,0 +1,143 @@
+//! Why a layout cannot be: what the frame, its family or a format string says, in both languages.
+
+use crate::app::Text;
+use crate::app::explain::{phrase, plain};
+use crate::devices::ssi::protocol::{FormatError, FrameTextError, LayoutError, SettingsError};
+
+/// What the floor below says of frames in phrases; the first that fits counts.
+pub(crate) const PHRASES: &[&str] = &[
+    "phrase.ssi_position",
+    "phrase.ssi_parity",
+    "phrase.ssi_error_bits",
+    "phrase.ssi_patterns",
+    "phrase.ssi_clocks",
+    "phrase.ssi_area",
+    "phrase.ssi_wide",
+    "phrase.ssi_between",
+    "phrase.ssi_overlap",
+    "phrase.ssi_behind",
+    "phrase.ssi_many",
+    "phrase.ssi_not_gray",
+    "phrase.ssi_inside_coded",
+    "phrase.ssi_inside_shifted",
+    "phrase.ssi_lost",
+    "phrase.ssi_repeat",
+    "phrase.ssi_pattern_bits",
+    "phrase.ssi_field_bits",
+    "phrase.ssi_single",
+    "phrase.ssi_revolutions",
+    "phrase.ssi_odd",
+    "phrase.ssi_digits",
+    "phrase.ssi_lc_form",
+    "phrase.ssi_lc_kind",
+    "phrase.ssi_lc_two",
+    "phrase.ssi_lc_none",
+    "phrase.ssi_lc_long",
+    "phrase.ssi_lc_gray_over",
+    "phrase.ssi_lc_between",
+    "phrase.ssi_lc_inverted",
+];
+
+/// A frame that cannot work.
+pub fn layout(error: &LayoutError) -> Text {
+    refused(cannot_work(error))
+}
+
+/// Why a frame cannot work.
+pub(crate) fn cannot_work(error: &LayoutError) -> Text {
+    match error {
+        LayoutError::Overlap { clock, first, second } => Text::new("phrase.ssi_overlap")
+            .with("clock", clock)
+            .with_text("first", phrase(first))
+            .with_text("second", phrase(second)),
+        LayoutError::Behind { name, clock, clocks } => {
+            Text::new("phrase.ssi_behind").with_text("name", phrase(name)).with("clock", clock).with("clocks", clocks)
+        }
+        LayoutError::Many { what, limit, count } => {
+            Text::new("phrase.ssi_many").with("limit", limit).with_text("what", phrase(what)).with("count", count)
+        }
+        other => phrase(&other.to_string()),
+    }
+}
+
+/// Settings that a family does not have.
+pub fn settings(error: &SettingsError) -> Text {
+    let why = match error {
+        SettingsError::None { family, field } => {
+            Text::new("ssi.lacks").with("family", family).with_text("field", field_name(field))
+        }
+        SettingsError::Both(one, other) => {
+            Text::new("ssi.both").with_text("one", field_name(one)).with_text("other", field_name(other))
+        }
+        SettingsError::Limit { family, field, least, most, value } => Text::new("ssi.limit")
+            .with("family", family)
+            .with_text("field", field_name(field))
+            .with("least", least)
+            .with("most", most)
+            .with("value", value),
+        SettingsError::Align { family, bits, align, possible } => Text::new("ssi.align_refused")
+            .with("family", family)
+            .with("bits", bits)
+            .with("align", align)
+            .with("possible", possible),
+        SettingsError::Errors { family, place, possible } => {
+            Text::new("ssi.errors_refused").with("family", family).with("place", place).with("possible", possible)
+        }
+        SettingsError::Clocks { family, most, clocks } => {
+            Text::new("ssi.clocks_refused").with("family", family).with("most", most).with("clocks", clocks)
+        }
+        SettingsError::Layout(error) => return layout(error),
+        other => phrase(&other.to_string()),
+    };
+    refused(why)
+}
+
+/// A format string of LinuxCNC that is no frame, or a frame that has none.
+pub fn format(error: &FormatError) -> Text {
+    match error {
+        FormatError::Cannot(what) => Text::new("ssi.lc_cannot").with_text("what", phrase(what)),
+        FormatError::Layout(error) => layout(error),
+        other => refused(phrase(&other.to_string())),
+    }
+}
+
+/// Why a text is no frame.
+pub fn frame_text(error: &FrameTextError) -> Text {
+    match error {
+        FrameTextError::Form(text) => Text::new("ssi_trial.form").with("text", text),
+        FrameTextError::Bits { text, bits, clocks, .. } => {
+            Text::new("ssi_trial.bits").with("text", text).with("bits", bits).with("clocks", clocks)
+        }
+    }
+}
+
+fn refused(why: Text) -> Text {
+    Text::new("ssi.refused").with_text("why", why)
+}
+
+/// What a family's description calls a setting.
+fn field_name(field: &str) -> Text {
+    let id = match field {
+        "mt" | "multiturn" => "ssi_field.multiturn",
+        "multiturn bits" => "ssi_field.multiturn_bits",
+        "st" => "ssi_field.singleturn",
+        "singleturn bits" => "ssi_field.singleturn_bits",
+        "bits" => "ssi_field.bits",
+        "steps" => "ssi_field.steps",
+        "steps per turn" => "ssi_field.steps_per_turn",
+        "steps altogether" => "ssi_field.steps_altogether",
+        "steps over so many revolutions" => "ssi_field.steps_around",
+        "turns" | "number of turns without steps" => "ssi_field.turns",
+        "revolutions" => "ssi_field.revolutions",
+        "revolutions above the line" => "ssi_field.revolutions_above",
+        "revolutions below the line" => "ssi_field.revolutions_below",
+        "round axis" => "ssi_field.round_axis",
+        "number of steps that is not a power of two" => "ssi_field.any_steps",
+        "shifting to the right" => "ssi_field.shift",
+        "step" | "length of a step" => "ssi_field.step",
+        "preset" => "ssi_field.preset",
+        "frame" => "ssi_field.frame",
+        other => return plain(other),
+    };
+    Text::new(id)
+}

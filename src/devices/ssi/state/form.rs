@@ -1,0 +1,389 @@
+//! Everything about a layout that can be typed or chosen, row by row, as plain data; and what an entry changes. A family
+//! with its settings has the rows that its encoders can be set to; any other frame has all.
+
+mod family;
+mod free;
+
+use super::design::{Designer, Edit};
+use crate::app::{Text, explain};
+use crate::devices::ssi::protocol::{Code, Coded, Descriptor, Direction, Fraction, Range};
+use crate::devices::ssi::state::explain as words;
+
+/// A row of the form.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// What it is about.
+    pub field: Field,
+    /// Its name.
+    pub name: Text,
+    /// What stands in it.
+    pub entry: Entry,
+    /// What it means, as a row of the texts.
+    pub hint: Option<&'static str>,
+}
+
+/// What stands in a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Entry {
+    /// A whole number.
+    Number {
+        /// As it is.
+        value: u64,
+        /// Its unit.
+        unit: Option<Text>,
+    },
+    /// One of several.
+    Choice {
+        /// All of them.
+        options: Vec<Text>,
+        /// Which is chosen.
+        chosen: usize,
+    },
+    /// On or off.
+    Switch(bool),
+    /// A name.
+    Words(String),
+}
+
+/// What is put into a row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// A whole number.
+    Number(u64),
+    /// The option of this number.
+    Choice(usize),
+    /// On or off.
+    Switch(bool),
+    /// A name.
+    Words(String),
+}
+
+/// What a row is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Field {
+    /// What the positions are: bits, steps, a round axis, a length.
+    Range,
+    /// Bits of the turns.
+    Multiturn,
+    /// Bits within a turn.
+    Singleturn,
+    /// Steps in a turn, or altogether.
+    Steps,
+    /// Turns with so many steps each.
+    Turns,
+    /// Turns of a round axis, above the line.
+    RevolutionsAbove,
+    /// Turns of a round axis, below the line.
+    RevolutionsBelow,
+    /// Bits of a length.
+    Bits,
+    /// Length of a step in nanometres.
+    StepLength,
+    /// The code.
+    Code,
+    /// What a Gray code goes over.
+    Over,
+    /// Where the position stands.
+    Align,
+    /// One clock later.
+    Shift,
+    /// Where the error bits stand.
+    Errors,
+    /// Clocks of a burst.
+    Clocks,
+    /// Zeros before the position.
+    Lead,
+    /// Zeros between turns and steps.
+    Between,
+    /// Clocks of the position and its zeros.
+    Area,
+    /// The data wires are exchanged.
+    Inverted,
+    /// A parity bit, even or odd.
+    Parity,
+    /// Which clock the parity bit is on.
+    ParityClock,
+    /// The frame comes twice.
+    Repeat,
+    /// Zeros between both.
+    Gap,
+    /// Which way the positions count.
+    Direction,
+    /// The position at the shaft's zero.
+    Preset,
+    /// What an error bit is called.
+    ErrorName(usize),
+    /// Which clock it is on.
+    ErrorClock(usize),
+    /// What it says of the position.
+    ErrorMeaning(usize),
+    /// It speaks when it is 0.
+    ErrorLow(usize),
+    /// A transfer clears it.
+    ErrorCleared(usize),
+    /// Clock in hertz.
+    ClockRate,
+    /// Microseconds between two bursts.
+    Pause,
+    /// Cable in metres; 0: it is not looked at.
+    Cable,
+    /// Positions are made when the host clocks.
+    Synchronous,
+}
+
+/// Rows that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Their heading, as a row of the texts.
+    pub title: &'static str,
+    /// The rows.
+    pub rows: Vec<Row>,
+}
+
+impl Group {
+    /// The error bit that it is about.
+    pub fn error(&self) -> Option<usize> {
+        match self.rows.first()?.field {
+            Field::ErrorName(index) => Some(index),
+            _ => None,
+        }
+    }
+
+    /// Error bits can be added to what it is about: a frame that no family prescribes.
+    pub fn takes_error_bits(&self) -> bool {
+        self.rows.iter().any(|row| row.field == Field::Lead)
+    }
+}
+
+impl Row {
+    /// `unit` is its symbol; empty for none.
+    fn number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
+        let unit = match unit {
+            "" => None,
+            "bit" => Some(Text::new("ssi_form.bit")),
+            symbol => Some(explain::plain(symbol)),
+        };
+        Row { field, name: Text::new(name), entry: Entry::Number { value: value.into(), unit }, hint: None }
+    }
+
+    fn switch(field: Field, name: &'static str, is_on: bool) -> Self {
+        Row { field, name: Text::new(name), entry: Entry::Switch(is_on), hint: None }
+    }
+
+    /// A choice; the options stand in `all` with their words.
+    fn choice<T: PartialEq>(field: Field, name: &'static str, all: &[(T, Text)], own: &T) -> Self {
+        let chosen = all.iter().position(|(one, _)| one == own).unwrap_or(usize::MAX);
+        let options = all.iter().map(|(_, words)| words.clone()).collect();
+        Row { field, name: Text::new(name), entry: Entry::Choice { options, chosen }, hint: None }
+    }
+
+    fn hinted(self, hint: &'static str) -> Self {
+        Row { hint: Some(hint), ..self }
+    }
+}
+
+impl Designer {
+    /// The form of the layout as it is.
+    pub fn form(&self) -> Vec<Group> {
+        let mut groups = match (self.family(), &self.design().settings) {
+            (Some(family), Some(settings)) => family::groups(self, family, settings),
+            _ => free::groups(self),
+        };
+        groups.push(counting(self));
+        groups
+    }
+
+    /// How it is read, as a form.
+    pub fn reading_form(&self) -> Vec<Row> {
+        let reading = &self.design().profile.reading;
+        let mut rows = vec![
+            Row::number(Field::ClockRate, "ssi_form.clock", reading.clock_hz, "Hz"),
+            Row::number(Field::Pause, "ssi_form.pause", reading.pause_us, "µs").hinted("ssi_form.pause_hint"),
+            Row::number(Field::Cable, "ssi_form.cable", reading.cable_metres.unwrap_or(0), "m")
+                .hinted("ssi_form.cable_hint"),
+        ];
+        if reading.synchronous || self.times().is_some_and(|times| times.synchronous.is_some()) {
+            rows.push(
+                Row::switch(Field::Synchronous, "ssi_form.synchronous", reading.synchronous)
+                    .hinted("ssi_form.synchronous_hint"),
+            );
+        }
+        rows
+    }
+
+    /// What an entry changes.
+    ///
+    /// # Errors
+    /// It cannot be: why.
+    pub(super) fn entered(&self, field: Field, input: &Input) -> Result<Edit, Text> {
+        let wrong = || Text::new("ssi_form.wrong");
+        match (field, input) {
+            (Field::Direction, Input::Choice(0)) => return Ok(Edit::Direction(Direction::Clockwise)),
+            (Field::Direction, Input::Choice(_)) => return Ok(Edit::Direction(Direction::CounterClockwise)),
+            (Field::Preset, Input::Number(preset)) => return Ok(Edit::Preset(*preset)),
+            (Field::ClockRate | Field::Pause | Field::Cable | Field::Synchronous, input) => {
+                return self.reading_entered(field, input).ok_or_else(wrong);
+            }
+            _ => {}
+        }
+        match (self.family(), &self.design().settings) {
+            (Some(family), Some(settings)) => {
+                let entered = family::entered(self, family, settings, field, input);
+                entered.map(|settings| Edit::Settings(Box::new(settings))).ok_or_else(wrong)
+            }
+            _ => free::entered(self, field, input).ok_or_else(wrong),
+        }
+    }
+
+    fn reading_entered(&self, field: Field, input: &Input) -> Option<Edit> {
+        let mut reading = self.design().profile.reading;
+        match (field, input) {
+            (Field::ClockRate, Input::Number(hz)) => {
+                reading.clock_hz = u32::try_from(*hz).ok().filter(|hz| (1_000..=20_000_000).contains(hz))?;
+            }
+            (Field::Pause, Input::Number(us)) => reading.pause_us = u16::try_from(*us).ok().filter(|us| *us > 0)?,
+            (Field::Cable, Input::Number(metres)) => {
+                reading.cable_metres = Some(u16::try_from(*metres).ok()?).filter(|metres| *metres > 0);
+            }
+            (Field::Synchronous, Input::Switch(is_on)) => reading.synchronous = *is_on,
+            _ => return None,
+        }
+        Some(Edit::Reading(reading))
+    }
+}
+
+/// Direction and preset.
+fn counting(designer: &Designer) -> Group {
+    let profile = &designer.design().profile;
+    let is_length = matches!(profile.descriptor.range, Range::Length { .. });
+    let words = |direction| {
+        Text::new(match (direction, is_length) {
+            (Direction::Clockwise, false) => "ssi_form.cw",
+            (Direction::CounterClockwise, false) => "ssi_form.ccw",
+            (Direction::Clockwise, true) => "ssi_form.forwards",
+            (Direction::CounterClockwise, true) => "ssi_form.backwards",
+        })
+    };
+    let all = [Direction::Clockwise, Direction::CounterClockwise].map(|own| (own, words(own)));
+    Group {
+        title: "ssi_form.counting",
+        rows: vec![
+            Row::choice(Field::Direction, "ssi_form.direction", &all, &profile.direction)
+                .hinted("ssi_form.direction_hint"),
+            Row::number(Field::Preset, "ssi_form.preset", profile.preset, "").hinted("ssi_form.preset_hint"),
+        ],
+    }
+}
+
+/// The codes in the order of their list.
+const CODES: [Code; 4] = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd];
+const OVER: [Coded; 3] = [Coded::Position, Coded::Area, Coded::AreaAndErrors];
+
+fn code_row(own: Code) -> Row {
+    let all = CODES.map(|code| (code, words::code(code)));
+    Row::choice(Field::Code, "ssi_form.code", &all, &own)
+}
+
+fn over_row(own: Coded) -> Row {
+    let words = |coded| {
+        Text::new(match coded {
+            Coded::Position => "ssi_form.over_position",
+            Coded::Area => "ssi_form.over_area",
+            Coded::AreaAndErrors => "ssi_form.over_errors",
+        })
+    };
+    Row::choice(Field::Over, "ssi_form.over", &OVER.map(|coded| (coded, words(coded))), &own)
+        .hinted("ssi_form.over_hint")
+}
+
+/// What kind of positions there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RangeKind {
+    Bits,
+    Steps,
+    RoundAxis,
+    Length,
+}
+
+impl RangeKind {
+    fn of(range: &Range) -> Self {
+        match range {
+            Range::Bits { .. } => RangeKind::Bits,
+            Range::Steps { .. } => RangeKind::Steps,
+            Range::RoundAxis { .. } => RangeKind::RoundAxis,
+            Range::Length { .. } => RangeKind::Length,
+        }
+    }
+
+    fn words(self) -> Text {
+        Text::new(match self {
+            RangeKind::Bits => "ssi_form.range_bits",
+            RangeKind::Steps => "ssi_form.range_steps",
+            RangeKind::RoundAxis => "ssi_form.range_round",
+            RangeKind::Length => "ssi_form.range_length",
+        })
+    }
+}
+
+/// What the positions of a frame are and how they are coded, where they can be of these kinds.
+fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) -> Vec<Row> {
+    let mut rows = Vec::new();
+    if kinds.len() > 1 {
+        rows.push(range_row(kinds, &descriptor.range));
+    }
+    match descriptor.range {
+        Range::Bits { multiturn, singleturn } => {
+            rows.extend(has_turns.then(|| Row::number(Field::Multiturn, "ssi_form.multiturn", multiturn, "bit")));
+            rows.push(Row::number(Field::Singleturn, "ssi_form.singleturn", singleturn, "bit"));
+        }
+        Range::Steps { per_turn, turns } => {
+            rows.push(Row::number(Field::Steps, "ssi_form.steps_per_turn", per_turn, ""));
+            rows.extend(has_turns.then(|| Row::number(Field::Turns, "ssi_form.turns", turns, "")));
+        }
+        Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
+            rows.push(Row::number(Field::Steps, "ssi_form.steps_around", steps, ""));
+            rows.push(
+                Row::number(Field::RevolutionsAbove, "ssi_form.revolutions", numerator, "")
+                    .hinted("ssi_form.revolutions_hint"),
+            );
+            rows.push(Row::number(Field::RevolutionsBelow, "ssi_form.revolutions_below", denominator, ""));
+        }
+        Range::Length { bits, step_nanometres } => {
+            rows.push(Row::number(Field::Bits, "ssi_form.bits", bits, "bit"));
+            rows.push(Row::number(Field::StepLength, "ssi_form.step", step_nanometres, "nm"));
+        }
+    }
+    rows.push(code_row(descriptor.code));
+    if descriptor.code == Code::Gray {
+        rows.push(over_row(descriptor.coded));
+    }
+    rows
+}
+
+fn range_row(kinds: &[RangeKind], range: &Range) -> Row {
+    let all: Vec<(RangeKind, Text)> = kinds.iter().map(|kind| (*kind, kind.words())).collect();
+    Row::choice(Field::Range, "ssi_form.range", &all, &RangeKind::of(range))
+}
+
+/// A whole number as people write one: 3600, 3 600, 0x0E10.
+///
+/// # Errors
+/// In words.
+pub fn whole(text: &str) -> Result<u64, Text> {
+    let plain: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '_' | '’' | '\'')).collect();
+    let number = match plain.strip_prefix("0x").or_else(|| plain.strip_prefix("0X")) {
+        Some(hex) => u64::from_str_radix(hex, 16),
+        None => plain.parse(),
+    };
+    let signed = plain.contains(['+', '-']);
+    number.ok().filter(|_| !signed).ok_or_else(|| Text::new("ssi_form.whole").with("text", text.trim()))
+}
+
+/// A number that a byte holds.
+fn byte(number: u64) -> Option<u8> {
+    u8::try_from(number).ok()
+}
+
+fn word(number: u64) -> Option<u32> {
+    u32::try_from(number).ok()
+}

@@ -1,0 +1,139 @@
+//! The rows of a family: what its encoders can be set to.
+
+use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
+use crate::app::Text;
+use crate::devices::ssi::protocol::{Align, Code, ErrorPlace, Family, Fraction, Frame, Range, Settings};
+use crate::devices::ssi::state::design::Designer;
+
+pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) -> Vec<Group> {
+    let descriptor = &designer.design().profile.descriptor;
+    let kinds = kinds(family);
+    let position = position_rows(&kinds, family.multiturn.is_some(), descriptor);
+    let mut frame = Vec::new();
+    let resolved = settings.resolve(family).ok();
+    if family.align.len() > 1 {
+        let own = resolved.as_ref().map_or(Align::Left, |resolved| resolved.align);
+        let all: Vec<(Align, Text)> = family.align.iter().map(|align| (*align, align_words(*align))).collect();
+        frame.push(Row::choice(Field::Align, "ssi_form.align", &all, &own).hinted("ssi_form.align_hint"));
+    }
+    if family.shift {
+        frame.push(Row::switch(Field::Shift, "ssi_form.shift", settings.shift).hinted("ssi_form.shift_hint"));
+    }
+    let places = places(designer, family);
+    if places.len() > 1 {
+        let own = resolved.as_ref().map_or(ErrorPlace::None, |resolved| resolved.errors);
+        let all: Vec<(ErrorPlace, Text)> = places.iter().map(|place| (*place, place_words(*place))).collect();
+        frame.push(Row::choice(Field::Errors, "ssi_form.errors", &all, &own));
+    }
+    frame.push(Row::number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""));
+    vec![Group { title: "ssi_form.position", rows: position }, Group { title: "ssi_form.frame", rows: frame }]
+}
+
+/// The settings with another entry; `None` where it cannot stand there.
+pub(super) fn entered(
+    designer: &Designer,
+    family: &Family,
+    settings: &Settings,
+    field: Field,
+    input: &Input,
+) -> Option<Settings> {
+    let mut next = settings.clone();
+    let range = designer.design().profile.descriptor.range;
+    match (field, input) {
+        (Field::Range, Input::Choice(kind)) => {
+            let others = Settings {
+                multiturn: None,
+                singleturn: None,
+                steps: None,
+                turns: None,
+                revolutions: None,
+                // What fits bits may not fit steps.
+                align: None,
+                clocks: None,
+                ..next
+            };
+            next = match kinds(family).get(*kind)? {
+                RangeKind::Steps => Settings { steps: Some(360), ..others },
+                RangeKind::RoundAxis => {
+                    let revolutions = Some(Fraction { numerator: 1, denominator: 1 });
+                    Settings { steps: Some(360), revolutions, ..others }
+                }
+                RangeKind::Bits | RangeKind::Length => others,
+            };
+            if next.code == Some(Code::GrayExcess) && next.steps.is_none() {
+                next.code = None;
+            }
+        }
+        (Field::Multiturn, Input::Number(bits)) => next.multiturn = Some(byte(*bits)?),
+        (Field::Singleturn | Field::Bits, Input::Number(bits)) => next.singleturn = Some(byte(*bits)?),
+        (Field::Steps, Input::Number(steps)) => next.steps = Some(word(*steps)?),
+        (Field::Turns, Input::Number(turns)) => next.turns = Some(word(*turns)?),
+        (Field::RevolutionsAbove | Field::RevolutionsBelow, Input::Number(number)) => {
+            let Range::RoundAxis { revolutions, .. } = range else { return None };
+            let number = word(*number)?;
+            next.revolutions = Some(match field {
+                Field::RevolutionsAbove => Fraction { numerator: number, ..revolutions },
+                _ => Fraction { denominator: number, ..revolutions },
+            });
+        }
+        (Field::StepLength, Input::Number(length)) => next.step_nanometres = Some(word(*length)?),
+        (Field::Code, Input::Choice(code)) => {
+            next.code = Some(*CODES.get(*code)?);
+            if next.code != Some(Code::Gray) {
+                next.coded = None;
+            }
+        }
+        (Field::Over, Input::Choice(over)) => next.coded = Some(*OVER.get(*over)?),
+        (Field::Align, Input::Choice(align)) => next.align = Some(*family.align.get(*align)?),
+        (Field::Shift, Input::Switch(is_on)) => next.shift = *is_on,
+        (Field::Errors, Input::Choice(place)) => {
+            next.errors = Some(*places(designer, family).get(*place)?);
+            // With them the frame has its own length again.
+            next.clocks = None;
+        }
+        (Field::Clocks, Input::Number(clocks)) => next.clocks = Some(byte(*clocks)?),
+        _ => return None,
+    }
+    // A number of clocks that was not asked for follows the resolution.
+    if matches!(field, Field::Multiturn | Field::Singleturn | Field::Bits | Field::Steps | Field::Turns)
+        && settings.clocks.is_none()
+    {
+        next.clocks = None;
+    }
+    Some(next)
+}
+
+/// What positions its encoders can have.
+fn kinds(family: &Family) -> Vec<RangeKind> {
+    if family.step_nanometres.is_some() {
+        return vec![RangeKind::Length];
+    }
+    let steps = family.steps.is_some().then_some(RangeKind::Steps);
+    let round = family.steps.is_some_and(|limits| limits.revolutions.is_some()).then_some(RangeKind::RoundAxis);
+    std::iter::once(RangeKind::Bits).chain(steps).chain(round).collect()
+}
+
+/// Where the error bits of the frame may stand.
+fn places(designer: &Designer, family: &Family) -> Vec<ErrorPlace> {
+    let bits = designer.layout().coding().bits();
+    let frame: Option<&Frame> = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
+    frame.map(|frame| frame.place.clone()).unwrap_or_default()
+}
+
+fn align_words(align: Align) -> Text {
+    Text::new(match align {
+        Align::Left => "ssi_form.left",
+        Align::Right24 => "ssi_form.right24",
+        Align::Right25 => "ssi_form.right25",
+        Align::Tree12 => "ssi_form.tree12",
+        Align::Tree13 => "ssi_form.tree13",
+    })
+}
+
+fn place_words(place: ErrorPlace) -> Text {
+    Text::new(match place {
+        ErrorPlace::None => "ssi_form.errors_none",
+        ErrorPlace::Fix => "ssi_form.errors_fix",
+        ErrorPlace::Following => "ssi_form.errors_following",
+    })
+}

@@ -1,0 +1,228 @@
+//! The rows of a frame that belongs to no family, or that its family does not send.
+
+use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
+use crate::app::Text;
+use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
+use crate::devices::ssi::state::design::{Designer, Edit};
+
+const KINDS: [RangeKind; 4] = [RangeKind::Bits, RangeKind::Steps, RangeKind::RoundAxis, RangeKind::Length];
+/// Error bits that a frame may have.
+const MOST_ERRORS: usize = 8;
+
+pub(super) fn groups(designer: &Designer) -> Vec<Group> {
+    let descriptor = &designer.design().profile.descriptor;
+    let position = position_rows(&KINDS, true, descriptor);
+    let mut groups = vec![
+        Group { title: "ssi_form.position", rows: position },
+        Group { title: "ssi_form.frame", rows: frame(descriptor) },
+    ];
+    groups.extend(descriptor.errors.iter().enumerate().map(|(index, bit)| error(index, bit)));
+    groups
+}
+
+fn frame(descriptor: &Descriptor) -> Vec<Row> {
+    let mut rows = vec![
+        Row::number(Field::Clocks, "ssi_form.clocks", descriptor.clocks, ""),
+        Row::number(Field::Lead, "ssi_form.lead", descriptor.lead, "bit"),
+    ];
+    if descriptor.range.multiturn_bits() > 0 {
+        rows.push(Row::number(Field::Between, "ssi_form.between", descriptor.between, "bit"));
+    }
+    rows.push(Row::number(Field::Area, "ssi_form.area", descriptor.area, "").hinted("ssi_form.area_hint"));
+    rows.push(Row::switch(Field::Shift, "ssi_form.shift", descriptor.shift_right).hinted("ssi_form.shift_hint"));
+    rows.push(Row::switch(Field::Inverted, "ssi_form.inverted", descriptor.inverted).hinted("ssi_form.inverted_hint"));
+    let own = descriptor.parity.map(|parity| parity.even);
+    let all = [
+        (None, Text::new("ssi_form.parity_none")),
+        (Some(true), Text::new("ssi_form.parity_even")),
+        (Some(false), Text::new("ssi_form.parity_odd")),
+    ];
+    rows.push(Row::choice(Field::Parity, "ssi_form.parity", &all, &own));
+    if let Some(parity) = descriptor.parity {
+        rows.push(Row::number(Field::ParityClock, "ssi_form.parity_clock", parity.clock, ""));
+    }
+    rows.push(
+        Row::switch(Field::Repeat, "ssi_form.repeat", descriptor.repeat.is_some()).hinted("ssi_form.repeat_hint"),
+    );
+    if let Some(repeat) = descriptor.repeat {
+        rows.push(Row::number(Field::Gap, "ssi_form.gap", repeat.gap, "bit"));
+    }
+    rows
+}
+
+fn error(index: usize, bit: &ErrorBit) -> Group {
+    let all = [(Meaning::Invalid, Text::new("ssi_form.invalid")), (Meaning::Warning, Text::new("ssi_form.warning"))];
+    let name = super::Entry::Words(bit.name.clone());
+    Group {
+        title: "ssi_form.error_bit",
+        rows: vec![
+            Row { field: Field::ErrorName(index), name: Text::new("ssi_form.error_name"), entry: name, hint: None },
+            Row::number(Field::ErrorClock(index), "ssi_form.error_clock", bit.clock, ""),
+            Row::choice(Field::ErrorMeaning(index), "ssi_form.error_meaning", &all, &bit.meaning),
+            Row::switch(Field::ErrorLow(index), "ssi_form.error_low", bit.active_low),
+            Row::switch(Field::ErrorCleared(index), "ssi_form.error_cleared", bit.cleared_by_transfer),
+        ],
+    }
+}
+
+/// What an entry changes; `None` where it cannot stand there.
+pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Option<Edit> {
+    let before = &designer.design().profile.descriptor;
+    if let Some(range) = range_entered(&before.range, field, input) {
+        return Some(Edit::Position(range, before.code));
+    }
+    if let (Field::Code, Input::Choice(code)) = (field, input) {
+        return Some(Edit::Position(before.range, *CODES.get(*code)?));
+    }
+    let mut next = before.clone();
+    match (field, input) {
+        (Field::Over, Input::Choice(over)) => next.coded = *OVER.get(*over)?,
+        (Field::Clocks, Input::Number(clocks)) => next.clocks = byte(*clocks)?,
+        // What stands behind the position moves with it.
+        (Field::Lead, Input::Number(lead)) => {
+            return Some(Edit::Frame(Box::new(pushed(before, byte(*lead)?, before.between)?)));
+        }
+        (Field::Between, Input::Number(between)) => {
+            return Some(Edit::Frame(Box::new(pushed(before, before.lead, byte(*between)?)?)));
+        }
+        (Field::Area, Input::Number(area)) => next.area = byte(*area)?,
+        (Field::Shift, Input::Switch(is_on)) => next.shift_right = *is_on,
+        (Field::Inverted, Input::Switch(is_on)) => next.inverted = *is_on,
+        (Field::Parity, Input::Choice(choice)) => next = with_parity(next, *choice)?,
+        (Field::ParityClock, Input::Number(clock)) => next.parity.as_mut()?.clock = byte(*clock)?,
+        (Field::Repeat, Input::Switch(true)) if before.repeat.is_none() => {
+            next.repeat = Some(Repeat { word: before.clocks, gap: 1 });
+            next.clocks = before.clocks.checked_mul(2)?.checked_add(1)?;
+        }
+        (Field::Repeat, Input::Switch(false)) => {
+            next.clocks = before.word();
+            next.repeat = None;
+        }
+        (Field::Gap, Input::Number(gap)) => {
+            let repeat = next.repeat.as_mut()?;
+            repeat.gap = byte(*gap)?;
+            next.clocks = repeat.word.checked_mul(2)?.checked_add(repeat.gap)?;
+        }
+        (Field::ErrorName(index), Input::Words(name)) => name.trim().clone_into(&mut next.errors.get_mut(index)?.name),
+        (Field::ErrorClock(index), Input::Number(clock)) => next.errors.get_mut(index)?.clock = byte(*clock)?,
+        (Field::ErrorMeaning(index), Input::Choice(choice)) => {
+            next.errors.get_mut(index)?.meaning = if *choice == 0 { Meaning::Invalid } else { Meaning::Warning };
+        }
+        (Field::ErrorLow(index), Input::Switch(is_on)) => next.errors.get_mut(index)?.active_low = *is_on,
+        (Field::ErrorCleared(index), Input::Switch(is_on)) => next.errors.get_mut(index)?.cleared_by_transfer = *is_on,
+        _ => return None,
+    }
+    Some(Edit::Frame(Box::new(next)))
+}
+
+/// Other positions.
+fn range_entered(range: &Range, field: Field, input: &Input) -> Option<Range> {
+    if let (Field::Range, Input::Choice(kind)) = (field, input) {
+        let bits = range.bits().unwrap_or(12);
+        return Some(match KINDS.get(*kind)? {
+            RangeKind::Bits => Range::Bits { multiturn: bits.saturating_sub(13), singleturn: bits.min(13) },
+            RangeKind::Steps => Range::Steps { per_turn: 360, turns: 1 },
+            RangeKind::RoundAxis => {
+                Range::RoundAxis { steps: 360, revolutions: Fraction { numerator: 1, denominator: 1 } }
+            }
+            RangeKind::Length => Range::Length { bits, step_nanometres: 1_000 },
+        });
+    }
+    let Input::Number(number) = input else { return None };
+    Some(match (*range, field) {
+        (Range::Bits { singleturn, .. }, Field::Multiturn) => Range::Bits { multiturn: byte(*number)?, singleturn },
+        (Range::Bits { multiturn, .. }, Field::Singleturn) => Range::Bits { multiturn, singleturn: byte(*number)? },
+        (Range::Steps { turns, .. }, Field::Steps) => Range::Steps { per_turn: word(*number)?, turns },
+        (Range::Steps { per_turn, .. }, Field::Turns) => Range::Steps { per_turn, turns: word(*number)? },
+        (Range::RoundAxis { revolutions, .. }, Field::Steps) => Range::RoundAxis { steps: word(*number)?, revolutions },
+        (Range::RoundAxis { steps, revolutions }, Field::RevolutionsAbove) => {
+            Range::RoundAxis { steps, revolutions: Fraction { numerator: word(*number)?, ..revolutions } }
+        }
+        (Range::RoundAxis { steps, revolutions }, Field::RevolutionsBelow) => {
+            Range::RoundAxis { steps, revolutions: Fraction { denominator: word(*number)?, ..revolutions } }
+        }
+        (Range::Length { step_nanometres, .. }, Field::Bits) => Range::Length { bits: byte(*number)?, step_nanometres },
+        (Range::Length { bits, .. }, Field::StepLength) => Range::Length { bits, step_nanometres: word(*number)? },
+        _ => return None,
+    })
+}
+
+/// The frame with so many zeros before the position and in it; what stands behind moves along.
+fn pushed(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
+    let by = i16::from(lead) + i16::from(between) - i16::from(before.lead) - i16::from(before.between);
+    let moved = |clock: u8| u8::try_from(i16::from(clock) + by).ok();
+    let mut next =
+        Descriptor { lead, between, area: moved(before.area)?, clocks: moved(before.clocks)?, ..before.clone() };
+    for error in next.errors.iter_mut().filter(|error| error.clock > before.area) {
+        error.clock = moved(error.clock)?;
+    }
+    if let Some(parity) = &mut next.parity {
+        parity.clock = moved(parity.clock)?;
+    }
+    if let Some(repeat) = &mut next.repeat {
+        repeat.word = moved(repeat.word)?;
+        next.clocks = moved(next.clocks)?;
+    }
+    Some(next)
+}
+
+/// The frame with another parity; a new parity bit is a further clock at the end.
+fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
+    match (choice, next.parity) {
+        (0, Some(parity)) => {
+            next.parity = None;
+            // The clock that only it had goes with it.
+            if next.repeat.is_none() && parity.clock == next.clocks {
+                next.clocks -= 1;
+            }
+        }
+        (0, None) => {}
+        (choice, Some(parity)) => next.parity = Some(Parity { even: choice == 1, ..parity }),
+        (choice, None) => {
+            let clock = next.word().checked_add(1)?;
+            next.parity = Some(Parity { clock, even: choice == 1 });
+            match &mut next.repeat {
+                Some(repeat) => {
+                    repeat.word = clock;
+                    next.clocks = next.clocks.checked_add(2)?;
+                }
+                None => next.clocks = clock,
+            }
+        }
+    }
+    Some(next)
+}
+
+impl Designer {
+    /// The frame with one more error bit behind the others; `None` where it has as many as it may.
+    pub fn with_error_bit(&self) -> Option<Descriptor> {
+        let mut next = self.design().profile.descriptor.clone();
+        if next.errors.len() >= MOST_ERRORS || next.repeat.is_some() || next.clocks >= 64 {
+            return None;
+        }
+        next.clocks += 1;
+        let name =
+            (1..).map(|number| format!("ERR{number}")).find(|name| next.errors.iter().all(|own| own.name != *name))?;
+        next.errors.push(ErrorBit {
+            name,
+            clock: next.clocks,
+            meaning: Meaning::Invalid,
+            active_low: false,
+            cleared_by_transfer: false,
+        });
+        Some(next)
+    }
+
+    /// The frame without an error bit; its clock stays, as a zero.
+    pub fn without_error_bit(&self, index: usize) -> Descriptor {
+        let mut next = self.design().profile.descriptor.clone();
+        if index < next.errors.len() {
+            let removed = next.errors.remove(index);
+            // The last clock goes with what only it carried.
+            if next.repeat.is_none() && next.parity.is_none() && removed.clock == next.clocks {
+                next.clocks -= 1;
+            }
+        }
+        next
+    }
+}

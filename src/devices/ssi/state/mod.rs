@@ -1,0 +1,48 @@
+//! The SSI tab: layouts on the drawing board, encoders behind an adapter, and the search for a layout. Complete without a
+//! window; nothing is ever written into an encoder.
+
+mod act;
+mod action;
+mod connect_form;
+mod design;
+mod desk;
+mod drafts;
+mod encoder;
+pub mod explain;
+mod export;
+mod form;
+mod news;
+mod record;
+mod search;
+pub mod strip;
+pub mod timing;
+mod trace;
+mod trial;
+mod words;
+
+pub use action::{Action, Try};
+pub use connect_form::{SsiForm, SsiWay};
+pub use design::{Design, Designer, Edit};
+pub use encoder::Encoder;
+pub use export::Format;
+pub use form::{Entry, Field, Group, Input, Row, whole};
+pub use record::{Record, Seen, Streamed};
+pub use search::{Frames, Hunt, Origin, read_clocks, read_frames};
+pub use trial::{Decoded, Trial};
+
+use std::path::PathBuf;
+
+use crate::store::FileError;
+
+/// What tasks come back with.
+pub enum Done {
+    /// The search is over.
+    Found {
+        /// Which one.
+        number: u32,
+        /// How it stands.
+        hunt: Box<Hunt>,
+    },
+    /// A file was written, or not.
+    Written(PathBuf, Result<(), FileError>),
+}

@@ -1,0 +1,152 @@
+//! What the line to an SSI encoder tells: who the adapter is, words, and its loss.
+
+use std::convert::Infallible;
+
+use super::drafts::Drafts;
+use super::encoder::Encoder;
+use super::{trace, words};
+use crate::app::action::{Attempt, Done, Opened};
+use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::session::{Drafted, Kind, OnLine};
+use crate::app::{Severity, Text};
+use crate::buses::bridge::procedures::AdapterError;
+use crate::devices::ssi::jobs::{JobError, Ssi, SsiJob, SsiOutput};
+use crate::devices::ssi::procedures::{Identity, Words};
+use crate::devices::ssi::protocol::KIND;
+use crate::devices::ssi::state::explain as explained;
+use crate::link::TraceEntry;
+use crate::sim::Motor;
+use crate::worker::{JobId, Session};
+
+impl Kind for Ssi {
+    const KIND: &'static str = KIND;
+    type Edits = Drafts;
+    type Aside = Option<Motor>;
+
+    fn aside(session: &Session<Self>) -> Option<Motor> {
+        session.motor()
+    }
+
+    fn opener(world: &World) -> &Opener<Self> {
+        &world.open_ssi
+    }
+
+    fn opened(attempt: Attempt<Self>) -> Done {
+        Done::OpenedSsi(attempt)
+    }
+
+    fn job(job: &SsiJob) -> Text {
+        words::job(job)
+    }
+
+    fn survey() -> SsiJob {
+        SsiJob::Hello
+    }
+
+    fn doing(_: &Self::Doing) -> Text {
+        Text::new("ssi_job.words")
+    }
+
+    fn why(error: &JobError) -> Vec<Text> {
+        explained::job(error)
+    }
+
+    fn loss(error: &JobError) -> Option<Text> {
+        explained::loss(error)
+    }
+}
+
+impl Encoder {
+    /// The link is open: the adapter is asked who it is.
+    pub(crate) fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.motor = opened.aside.clone();
+        self.told = None;
+        self.session.take_line(opened, services);
+        if !self.session.drafting.has_looked() {
+            self.load_draft(services);
+        }
+        self.submit(SsiJob::Hello, services);
+    }
+
+    /// The layout has other clocks, or is read otherwise, than the adapter was told.
+    fn tell_asking(&mut self, services: &mut Services) {
+        let asking = self.asking();
+        // Once it has said who it is, and nothing else runs; what it refused is not asked again.
+        if self.identity.is_some() && self.session.is_ready() && self.told != Some(asking) {
+            self.told = Some(asking);
+            self.submit(SsiJob::Set(asking), services);
+        }
+    }
+
+    /// What comes like this is to be seen, unless it comes anyway.
+    fn see_a_word(&mut self, services: &mut Services) {
+        if !self.session.is_polling() {
+            self.submit(SsiJob::Read, services);
+        }
+    }
+
+    fn take_identity(&mut self, identity: Identity, services: &mut Services) {
+        let fresh = std::mem::take(&mut self.session.just_connected);
+        self.name_after_family();
+        if fresh {
+            let hello = &identity.hello;
+            let adapter = Text::new("log.adapter")
+                .with("name", &hello.name)
+                .with("firmware", &hello.firmware)
+                .with("serial", &hello.serial);
+            self.session.log_answer(vec![adapter], services);
+        }
+        self.identity = Some(identity);
+    }
+}
+
+impl OnLine for Encoder {
+    fn sampled(&mut self, samples: Vec<Words>, dropped: u64) {
+        self.record.add(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        self.session.trace.add(frames, missed, trace::meaning);
+    }
+
+    fn pump(&mut self, services: &mut Services) {
+        self.hear(services);
+        self.tell_asking(services);
+    }
+
+    fn remarked(&mut self, remark: Infallible, _: &mut Services) {
+        match remark {}
+    }
+
+    fn finished(&mut self, output: SsiOutput, services: &mut Services) {
+        match output {
+            SsiOutput::Hello(identity) => {
+                self.told = Some(identity.asking);
+                self.take_identity(*identity, services);
+                self.see_a_word(services);
+            }
+            SsiOutput::Set(identity) => {
+                self.identity = Some(*identity);
+                self.see_a_word(services);
+            }
+            SsiOutput::Read(words) => self.record.add(vec![words], 0),
+            SsiOutput::Check(lines) => self.check = Some(explained::check(&lines)),
+        }
+    }
+
+    /// The adapter does not answer.
+    fn is_silence(&self, error: &JobError) -> bool {
+        matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
+    }
+
+    fn forget_asked(&mut self) {
+        (self.motor, self.told, self.identity) = (None, None, None);
+    }
+
+    fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
+        services.job_ends(self.session.id, id, JobEnd::Cancelled);
+        services.tell(Severity::Warning, Ssi::why(error), Some(&self.session.name()));
+    }
+}

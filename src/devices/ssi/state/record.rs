@@ -1,0 +1,291 @@
+//! What is recorded of an SSI encoder while it is read: its words as they came, what the layout makes of them as lines over
+//! time, and what its error bits said. Another layout reads the same words anew.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use jiff::Zoned;
+
+use super::trial::Decoded;
+use crate::analysis::Time;
+use crate::app::recorder::{GroupId, Line, Recorder};
+use crate::app::track::{Meaning, Sighting, Track, Watchable};
+use crate::devices::ssi::procedures::Words;
+use crate::devices::ssi::protocol::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
+use crate::units::Moment;
+
+/// Words that are kept as they came, to be read with another layout and to be searched.
+const KEPT: usize = 40_000;
+
+/// Nothing is watched beside the position: SSI has no other values.
+#[derive(Clone, Debug, PartialEq)]
+enum Nothing {}
+
+/// The words of an encoder, and what the layout makes of them.
+pub struct Record {
+    track: Track<Nothing>,
+    layout: Layout,
+    meaning: Meaning,
+    kept: VecDeque<Words>,
+    /// Words in `kept`.
+    held: usize,
+    tally: Tally,
+    /// What was said until then is not to be told any more.
+    forgotten: Option<Moment>,
+    last: Option<Seen>,
+    stream: Option<Streamed>,
+    lost: u64,
+}
+
+/// A word with what it says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// When it was taken.
+    pub at: Moment,
+    /// Its bits.
+    pub clocks: u8,
+    /// What the layout makes of it; `None`: it has another number of clocks.
+    pub decoded: Option<Decoded>,
+    /// The word as it came, right-justified.
+    pub word: u64,
+}
+
+/// The stream that came last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Streamed {
+    next: u64,
+    period_ns: i64,
+    is_limited: bool,
+}
+
+impl Streamed {
+    /// Words a second.
+    pub fn hz(&self) -> f64 {
+        1e9 / self.period_ns.max(1) as f64
+    }
+
+    /// Words cannot come as close to each other as was wished.
+    pub const fn is_limited(&self) -> bool {
+        self.is_limited
+    }
+}
+
+impl Record {
+    pub(super) fn new(layout: Layout) -> Self {
+        Record {
+            track: Track::default(),
+            meaning: meaning(&layout),
+            tally: Tally::default(),
+            forgotten: None,
+            layout,
+            kept: VecDeque::new(),
+            held: 0,
+            last: None,
+            stream: None,
+            lost: 0,
+        }
+    }
+
+    /// A session has begun.
+    pub(super) fn begin(&mut self, began: &Zoned) {
+        self.track.begin(began);
+        self.kept.clear();
+        (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
+    }
+
+    /// Positions are wished at this interval from now on.
+    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+        if interval.is_none() {
+            self.stream = None;
+        }
+    }
+
+    /// Takes what has come; `dropped` were not taken in time.
+    pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
+        match self.stream {
+            // Whatever was dropped, the numbers of the words tell how many there were.
+            Some(_) if dropped > 0 => self.track.gap(),
+            _ => self.track.lose(dropped),
+        }
+        for run in runs {
+            self.follow(&run);
+            self.see(&run);
+            self.keep(run);
+        }
+    }
+
+    /// How a run goes on from the one before: words that are missing are counted and never joined.
+    fn follow(&mut self, run: &Words) {
+        let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
+        let missing = before.unwrap_or(run.lost);
+        if run.is_streamed() && (run.begins() || missing > 0) {
+            self.track.gap();
+        }
+        self.lost += missing;
+        let next = run.first + run.words.len() as u64;
+        self.stream =
+            run.is_streamed().then_some(Streamed { next, period_ns: run.period_ns, is_limited: run.is_limited });
+    }
+
+    fn see(&mut self, run: &Words) {
+        let fits = run.clocks == self.layout.clocks();
+        let mut sightings = Vec::with_capacity(run.words.len());
+        for (at, word) in run.timed() {
+            if !fits {
+                sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                continue;
+            }
+            let reading = self.layout.decode(word);
+            if self.forgotten.is_none_or(|until| at > until) {
+                self.tally.note(&self.layout, reading, Time::from(at));
+            }
+            let is_bad = !self.layout.is_valid(reading);
+            let warned = || self.layout.findings(reading).iter().any(|finding| finding.meaning() == Says::Warning);
+            let position = i64::try_from(reading.position).ok();
+            // Nothing is said in most words, and then nothing has to be looked for.
+            let is_warned = reading.flags != Flags::NONE && warned();
+            sightings.push(Sighting { at, position, is_bad, is_warned });
+        }
+        self.track.add(&sightings, &self.meaning);
+        if let Some((at, word)) = run.timed().last() {
+            self.last =
+                Some(Seen { at, clocks: run.clocks, decoded: fits.then(|| Decoded::of(&self.layout, word)), word });
+        }
+    }
+
+    fn keep(&mut self, run: Words) {
+        self.held += run.words.len();
+        self.kept.push_back(run);
+        while self.held > KEPT && self.kept.len() > 1 {
+            self.held -= self.kept.pop_front().map_or(0, |run| run.words.len());
+        }
+    }
+
+    /// Another layout: the words that are kept are read with it, what was recorded before them cannot be. Where only names
+    /// are others, everything stays.
+    pub(super) fn read_as(&mut self, layout: &Layout) {
+        if self.layout == *layout {
+            return;
+        }
+        let before = std::mem::replace(&mut self.layout, layout.clone());
+        if nameless(&before) == nameless(layout) {
+            self.tally.rename();
+            if let Some(last) = self.last.as_mut() {
+                last.decoded = (last.clocks == layout.clocks()).then(|| Decoded::of(layout, last.word));
+            }
+            return;
+        }
+        self.meaning = meaning(layout);
+        self.tally.reset();
+        self.track.begin_again(self.held);
+        let kept = std::mem::take(&mut self.kept);
+        let (lost, stream) = (self.lost, self.stream);
+        for run in &kept {
+            self.follow(run);
+            self.see(run);
+        }
+        (self.kept, self.lost, self.stream) = (kept, lost, stream);
+    }
+
+    /// The words that are kept with so many clocks, the newest run of them without a gap.
+    pub(super) fn words(&self, clocks: u8) -> Vec<u64> {
+        let mut runs: Vec<&Words> = self.runs(clocks).collect();
+        runs.reverse();
+        runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
+    }
+
+    /// How many words are kept with so many clocks, the newest run of them without a gap.
+    pub fn count(&self, clocks: u8) -> usize {
+        self.runs(clocks).map(|run| run.words.len()).sum()
+    }
+
+    /// The newest run first; each goes on where the one before it ends.
+    fn runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
+        let mut later: Option<&Words> = None;
+        self.kept.iter().rev().take_while(move |run| {
+            let goes_on = later.is_none_or(|later| {
+                let ends = run.first + run.words.len() as u64;
+                !later.begins() && later.first == ends && later.period_ns == run.period_ns
+            });
+            later = Some(run);
+            goes_on && run.clocks == clocks
+        })
+    }
+
+    /// What error bits, patterns and the like have said.
+    pub fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// Nothing was said until now, also where words are read anew.
+    pub(super) fn forget_tally(&mut self) {
+        self.tally.reset();
+        self.forgotten = self.last.as_ref().map(|last| last.at);
+    }
+
+    /// The last word.
+    pub fn last(&self) -> Option<&Seen> {
+        self.last.as_ref()
+    }
+
+    /// The stream that came last; `None` where words came one by one since.
+    pub(super) fn streamed(&self) -> Option<&Streamed> {
+        self.stream.as_ref()
+    }
+
+    /// Words that came too fast to be recorded, and those that an adapter could not send.
+    pub fn dropped(&self) -> u64 {
+        self.track.dropped().saturating_add(self.lost)
+    }
+
+    /// Words that are recorded.
+    pub fn positions(&self) -> u64 {
+        self.track.positions()
+    }
+
+    /// Position, speed and acceleration as lines.
+    pub fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+}
+
+/// What makes positions and verdicts of words.
+fn nameless(layout: &Layout) -> Descriptor {
+    let mut descriptor = layout.descriptor().clone();
+    descriptor.errors.iter_mut().for_each(|bit| bit.name.clear());
+    descriptor.patterns.iter_mut().for_each(|pattern| pattern.name.clear());
+    descriptor
+}
+
+/// What the positions of a layout are.
+fn meaning(layout: &Layout) -> Meaning {
+    let range = layout.descriptor().range;
+    let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));
+    match range {
+        Range::Bits { singleturn, .. } => Meaning::of_turns(all, f64::from(singleturn).exp2()),
+        Range::Steps { per_turn, .. } => Meaning::of_turns(all, per_turn.into()),
+        Range::RoundAxis { steps, revolutions } => {
+            let around = f64::from(steps) * f64::from(revolutions.denominator);
+            Meaning::of_turns(all, around / f64::from(revolutions.numerator))
+        }
+        Range::Length { step_nanometres, .. } => Meaning::of_millimetres(f64::from(step_nanometres) * 1e-6),
+    }
+}
+
+impl Watchable for Nothing {
+    fn is_whole(&self) -> bool {
+        match *self {}
+    }
+
+    fn line(&self, _: GroupId) -> Line {
+        match *self {}
+    }
+}
+
+#[cfg(test)]
+mod tests;

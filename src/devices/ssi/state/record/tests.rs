@@ -1,0 +1,79 @@
+//! Words of an AFS60: 18 bits of position, then ERRDIG, ERRSI and ERRSYNC (reference section 8).
+
+use super::*;
+use crate::devices::ssi::protocol::{Families, Finding, Settings};
+
+const GOOD: u64 = 0x15_5E68;
+
+fn layout(text: &str) -> Layout {
+    let (key, settings) = Settings::parse(text).unwrap();
+    settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
+}
+
+/// Words of a stream, a millisecond apart.
+fn run(first: u64, words: &[u64]) -> Words {
+    Words {
+        first,
+        at: Moment::after_start(Duration::from_millis(10 + first)),
+        period_ns: 1_000_000,
+        lost: 0,
+        clocks: 21,
+        words: words.to_vec(),
+        clock_hz: 400_000,
+        is_limited: false,
+    }
+}
+
+fn names(record: &Record) -> Vec<(String, u64)> {
+    let name = |finding: &Finding| match finding {
+        Finding::Error { name, .. } => name.clone(),
+        other => format!("{other:?}"),
+    };
+    record.tally().noted().iter().map(|noted| (name(&noted.finding), noted.count)).collect()
+}
+
+#[test]
+fn words_between_which_some_were_dropped_do_not_follow_each_other() {
+    let mut record = Record::new(layout("afs60"));
+    record.add(vec![run(0, &[1, 2, 3]), run(3, &[4, 5])], 0);
+    assert_eq!((record.words(21), record.count(21)), (vec![1, 2, 3, 4, 5], 5));
+    // Two runs of three words were not taken in time.
+    record.add(vec![run(11, &[6, 7]), run(13, &[8])], 2);
+    assert_eq!((record.words(21), record.count(21)), (vec![6, 7, 8], 3));
+    assert_eq!((record.dropped(), record.count(20)), (6, 0));
+}
+
+#[test]
+fn another_name_of_an_error_bit_takes_nothing_away() {
+    let mut record = Record::new(layout("afs60"));
+    record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
+    // So much is not kept of words, but recorded.
+    record.kept.clear();
+    let mut descriptor = record.layout.descriptor().clone();
+    descriptor.errors[2].name = "LIGHT".to_owned();
+    record.read_as(&Layout::new(descriptor).unwrap());
+    record.add(vec![run(3, &[GOOD | 1])], 0);
+    assert_eq!(record.positions(), 4);
+    assert_eq!(names(&record), [("ERRSYNC".to_owned(), 1), ("LIGHT".to_owned(), 1)]);
+    record.read_as(&layout("afs60,code=gray"));
+    assert_eq!(record.positions(), 1, "only the last word is kept");
+}
+
+#[test]
+fn what_was_forgotten_stays_so_with_another_layout() {
+    let mut record = Record::new(layout("afs60"));
+    record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
+    record.forget_tally();
+    record.add(vec![run(3, &[GOOD | 2])], 0);
+    record.read_as(&layout("afs60,code=gray"));
+    assert_eq!((names(&record), record.positions()), (vec![("ERRSI".to_owned(), 1)], 4));
+}
+
+#[test]
+fn the_last_word_is_of_this_session() {
+    let mut record = Record::new(layout("afs60"));
+    record.add(vec![run(0, &[GOOD])], 0);
+    assert!(record.last().is_some());
+    record.begin(&Zoned::now());
+    assert_eq!(record.last(), None);
+}

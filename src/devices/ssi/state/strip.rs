@@ -1,0 +1,293 @@
+//! A frame as a row of cells, one a clock, and what can be taken hold of in it: the boundaries between its fields, and
+//! the bits that stand alone. It says what a frame becomes when something is moved; it changes none.
+
+mod moving;
+#[cfg(test)]
+mod tests;
+mod words;
+
+pub use moving::moved;
+pub use words::{bare, cell, clocks, field, handle, hint, name, reach, short, value};
+
+use crate::devices::ssi::protocol::{Coded, Flags, Layout, Meaning, Range, Role, Word};
+
+/// A frame in cells and fields.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strip {
+    layout: Layout,
+    cells: Vec<Cell>,
+    fields: Vec<Field>,
+    handles: Vec<Handle>,
+}
+
+/// A clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell {
+    /// Counted from 1.
+    pub clock: u8,
+    /// What it carries.
+    pub role: Role,
+    /// Which of the strip's fields it belongs to.
+    pub field: usize,
+}
+
+/// Clocks that belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// What they carry.
+    pub kind: Kind,
+    /// The first of them.
+    pub first: u8,
+    /// The last of them.
+    pub last: u8,
+}
+
+/// What a field carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Nothing, before the position.
+    Before,
+    /// Nothing, between turns and steps.
+    Between,
+    /// Nothing, behind the position.
+    Behind,
+    /// Nothing, between the frame and its repetition.
+    Gap,
+    /// Nothing, behind the repetition.
+    After,
+    /// Bits of the turns.
+    Turns,
+    /// Bits of the steps within a turn.
+    Steps,
+    /// Bits of a position that has none for turns and steps.
+    Position,
+    /// This error bit.
+    Error(usize),
+    /// The parity bit.
+    Parity,
+    /// The frame once more.
+    Again,
+}
+
+/// What can be moved. A boundary stands behind a clock, 0 at the beginning; a bit and the position stand on one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Handle {
+    /// Where the position begins: it gets bits of the turns from the zeros before it.
+    LeadEnd,
+    /// Between turns and steps: bits go from one to the other. There are no zeros between.
+    Split,
+    /// Where the turns end and zeros before the steps begin.
+    TurnsEnd,
+    /// Where the steps begin behind zeros.
+    BetweenEnd,
+    /// Where the position ends: the steps get bits from what is free behind it.
+    StepsEnd,
+    /// The last clock that is coded or shifted together with the position.
+    AreaEnd,
+    /// Where the first of two equal words ends.
+    WordEnd,
+    /// Where the repetition begins.
+    GapEnd,
+    /// Where the frame ends.
+    FrameEnd,
+    /// The whole position, by its first clock.
+    Position,
+    /// This error bit.
+    Error(usize),
+    /// The parity bit.
+    Parity,
+}
+
+/// How a cell of a frame looks that has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Its bit.
+    pub bit: bool,
+    /// What it tells of the position: an error bit that speaks, a bit that has to be 0 and is not.
+    pub tells: Option<Meaning>,
+}
+
+impl Strip {
+    /// A frame in cells.
+    pub fn of(layout: &Layout) -> Self {
+        let descriptor = layout.descriptor();
+        let roles = layout.roles();
+        let is_position = |role: &Role| matches!(role, Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_));
+        let is_turns = |role: &Role| matches!(role, Role::Multiturn(_));
+        let is_steps = |role: &Role| matches!(role, Role::Singleturn(_));
+        let begins = roles.iter().position(is_position).unwrap_or(0);
+        let between = match (roles.iter().rposition(is_turns), roles.iter().position(is_steps)) {
+            (Some(last), Some(first)) => last..first,
+            _ => 0..0,
+        };
+        let word = usize::from(descriptor.word());
+        let gap = descriptor.repeat.map_or(0, |repeat| usize::from(repeat.gap));
+        let kind = |at: usize, role: Role| match role {
+            Role::Zero if at >= word + gap => Kind::After,
+            Role::Zero if at >= word => Kind::Gap,
+            Role::Zero if at < begins => Kind::Before,
+            Role::Zero if between.contains(&at) => Kind::Between,
+            Role::Zero => Kind::Behind,
+            Role::Multiturn(_) => Kind::Turns,
+            Role::Singleturn(_) => Kind::Steps,
+            Role::Position(_) => Kind::Position,
+            Role::Error(index) => Kind::Error(index),
+            Role::Parity => Kind::Parity,
+            Role::Again(_) => Kind::Again,
+        };
+        // Without a repetition there is only one kind of end.
+        let kind = |at: usize, role: Role| match kind(at, role) {
+            Kind::After if descriptor.repeat.is_none() => Kind::Behind,
+            kind => kind,
+        };
+        let (mut cells, mut fields): (Vec<Cell>, Vec<Field>) = (Vec::new(), Vec::new());
+        for (at, (clock, role)) in (1..=layout.clocks()).zip(&roles).enumerate() {
+            let kind = kind(at, *role);
+            match fields.last_mut() {
+                Some(field) if field.kind == kind => field.last = clock,
+                _ => fields.push(Field { kind, first: clock, last: clock }),
+            }
+            cells.push(Cell { clock, role: *role, field: fields.len().saturating_sub(1) });
+        }
+        let handles = moving::handles(layout);
+        Strip { layout: layout.clone(), cells, fields, handles }
+    }
+
+    /// The frame.
+    pub const fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Its clocks, the first at the beginning.
+    pub fn cells(&self) -> &[Cell] {
+        &self.cells
+    }
+
+    /// Its fields in the same order.
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// What can be moved, from the first clock to the last.
+    pub fn handles(&self) -> &[Handle] {
+        &self.handles
+    }
+
+    /// Where something stands, 0 to 64; `None` where the frame has no such thing.
+    pub fn clock(&self, handle: Handle) -> Option<u8> {
+        moving::clock(&self.layout, handle)
+    }
+
+    /// The frame when something is moved there, as far as it can go; see [`moved`].
+    pub fn moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
+        Strip::of(&moved(&self.layout, handle, to, following))
+    }
+
+    /// The first and the last clock to which something can be moved.
+    pub fn limits(&self, handle: Handle, following: bool) -> (u8, u8) {
+        let end = |to| moving::clock(&moved(&self.layout, handle, to, following), handle).unwrap_or(to);
+        (end(0), end(u8::MAX))
+    }
+
+    /// Clocks of the position, from its first to its last.
+    pub fn position(&self) -> Option<(u8, u8)> {
+        let own = |field: &&Field| matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position);
+        let first = self.fields.iter().find(own)?;
+        let last = self.fields.iter().rfind(own)?;
+        Some((first.first, last.last))
+    }
+
+    /// What each cell of a frame looks like.
+    pub fn shown(&self, frame: u64) -> Vec<Shown> {
+        let descriptor = self.layout.descriptor();
+        let flags = self.layout.decode(frame).flags;
+        let cells = self.layout.cells(frame).into_iter();
+        cells
+            .map(|cell| {
+                let tells = match cell.role {
+                    Role::Error(index) if flags.has(Flags::error(index)) => {
+                        descriptor.errors.get(index).map(|bit| bit.meaning)
+                    }
+                    // Elsewhere a zero may carry what the Gray code of its neighbours makes of it.
+                    Role::Zero if descriptor.coded == Coded::Position && cell.bit != descriptor.inverted => {
+                        Some(Meaning::Warning)
+                    }
+                    Role::Parity if flags.has(Flags::PARITY) => Some(Meaning::Invalid),
+                    Role::Again(clock) if self.bit(frame, clock) != cell.bit => Some(Meaning::Invalid),
+                    _ => None,
+                };
+                Shown { bit: cell.bit, tells }
+            })
+            .collect()
+    }
+
+    fn bit(&self, frame: u64, clock: u8) -> bool {
+        let behind = self.layout.clocks().saturating_sub(clock);
+        frame >> behind & 1 == 1
+    }
+}
+
+impl Field {
+    /// How many clocks it has.
+    pub const fn count(&self) -> u8 {
+        self.last.saturating_sub(self.first) + 1
+    }
+
+    /// It carries nothing.
+    pub const fn is_zeros(&self) -> bool {
+        matches!(self.kind, Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After)
+    }
+
+    /// It is a bit of its own, however many stand beside it.
+    pub const fn is_single(&self) -> bool {
+        matches!(self.kind, Kind::Error(_) | Kind::Parity)
+    }
+}
+
+impl Handle {
+    /// It stands on a clock and not between two.
+    pub const fn is_cell(self) -> bool {
+        matches!(self, Handle::Error(_) | Handle::Parity | Handle::Position)
+    }
+}
+
+/// Error and parity bits directly behind the position follow it: as the frame is, not as anybody has said.
+pub fn follows(layout: &Layout) -> bool {
+    !moving::chain(layout).is_empty()
+}
+
+/// The words of a frame's patterns are bits of it, which another length would make others.
+fn has_words(layout: &Layout) -> bool {
+    layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
+}
+
+/// What a position is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Parts {
+    /// Bits of the turns and of the steps, both more than none.
+    Both(u8, u8),
+    /// Bits of one kind, as many as one likes.
+    One(u8),
+    /// As many bits as its number of steps needs.
+    Whole(u8),
+}
+
+impl Parts {
+    fn of(layout: &Layout) -> Self {
+        let bits = layout.coding().bits();
+        match layout.descriptor().range {
+            Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn => {
+                if multiturn > 0 && singleturn > 0 { Parts::Both(multiturn, singleturn) } else { Parts::One(bits) }
+            }
+            Range::Length { bits: own, .. } if bits == own => Parts::One(bits),
+            _ => Parts::Whole(bits),
+        }
+    }
+
+    const fn bits(self) -> u8 {
+        match self {
+            Parts::Both(turns, steps) => turns + steps,
+            Parts::One(bits) | Parts::Whole(bits) => bits,
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! What a frame becomes when something in it is moved. Whatever is tried, what comes is a frame that works: of the clocks
+//! between the one asked for and the one where it is, the first that does.
+
+use super::{Handle, Parts, has_words};
+use crate::devices::ssi::protocol::{Coded, Descriptor, Layout, Parity, Pattern, Range, Repeat, Word};
+
+/// The frame when something is moved to a clock, or as near to it as it can be. What stands beyond its neighbours stays
+/// where it is, except that error and parity bits directly behind the position go with its end if they are `following`.
+/// A bit that comes to where another is exchanges places with it.
+#[must_use]
+pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout {
+    let Some(at) = clock(layout, handle) else { return layout.clone() };
+    let to = to.min(64);
+    let between = to.abs_diff(at);
+    let tried = (0..between).map(|back| if to > at { to - back } else { to + back });
+    let mut tried = tried.filter_map(|to| Layout::new(with(layout, handle, (at, to), following)?).ok());
+    tried.next().unwrap_or_else(|| layout.clone())
+}
+
+/// What can be moved in a frame, from its first clock to its last.
+pub(super) fn handles(layout: &Layout) -> Vec<Handle> {
+    let descriptor = layout.descriptor();
+    let mut handles = vec![Handle::Position];
+    match Parts::of(layout) {
+        Parts::Both(..) if descriptor.between == 0 => {
+            handles.extend([Handle::LeadEnd, Handle::Split, Handle::BetweenEnd, Handle::StepsEnd]);
+        }
+        Parts::Both(..) => handles.extend([Handle::LeadEnd, Handle::TurnsEnd, Handle::BetweenEnd, Handle::StepsEnd]),
+        Parts::One(_) => handles.extend([Handle::LeadEnd, Handle::StepsEnd]),
+        Parts::Whole(_) => {}
+    }
+    if area_counts(descriptor) {
+        handles.push(Handle::AreaEnd);
+    }
+    handles.extend((0..descriptor.errors.len()).map(Handle::Error));
+    handles.extend(descriptor.parity.map(|_| Handle::Parity));
+    if descriptor.repeat.is_some() && !has_words(layout) {
+        handles.extend([Handle::WordEnd, Handle::GapEnd]);
+    }
+    handles.push(Handle::FrameEnd);
+    handles.sort_by_key(|handle| clock(layout, *handle));
+    handles
+}
+
+/// Where something stands; `None` where the frame has no such thing.
+pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
+    let descriptor = layout.descriptor();
+    let begins = descriptor.lead + u8::from(descriptor.shift_right);
+    let parts = Parts::of(layout);
+    let is_bits = !matches!(parts, Parts::Whole(_));
+    match (handle, parts) {
+        (Handle::LeadEnd, _) => is_bits.then_some(begins),
+        (Handle::Split | Handle::TurnsEnd, Parts::Both(turns, _)) => Some(begins + turns),
+        (Handle::BetweenEnd, Parts::Both(turns, _)) => Some(begins + turns + descriptor.between),
+        (Handle::StepsEnd, parts) => is_bits.then_some(begins + descriptor.between + parts.bits()),
+        (Handle::AreaEnd, _) => area_counts(descriptor).then_some(descriptor.area),
+        (Handle::WordEnd, _) => descriptor.repeat.map(|repeat| repeat.word),
+        (Handle::GapEnd, _) => descriptor.repeat.map(|repeat| repeat.word + repeat.gap),
+        (Handle::FrameEnd, _) => Some(descriptor.clocks),
+        (Handle::Position, _) => Some(begins + 1),
+        (Handle::Error(index), _) => descriptor.errors.get(index).map(|bit| bit.clock),
+        (Handle::Parity, _) => descriptor.parity.map(|parity| parity.clock),
+        _ => None,
+    }
+}
+
+/// A bit that stands alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Single {
+    Error(usize),
+    Parity,
+}
+
+/// Error and parity bits behind the position without a zero before or between them.
+pub(super) fn chain(layout: &Layout) -> Vec<Single> {
+    let descriptor = layout.descriptor();
+    let mut next = end(layout) + 1;
+    let mut chain = Vec::new();
+    while let Some(single) = single_on(descriptor, next) {
+        chain.push(single);
+        next += 1;
+    }
+    chain
+}
+
+fn single_on(descriptor: &Descriptor, clock: u8) -> Option<Single> {
+    let error = descriptor.errors.iter().position(|bit| bit.clock == clock).map(Single::Error);
+    error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| Single::Parity))
+}
+
+/// The last clock of the position; what is shifted out of its area has none.
+pub(super) fn end(layout: &Layout) -> u8 {
+    let descriptor = layout.descriptor();
+    let late = u8::from(descriptor.shift_right);
+    (descriptor.lead + descriptor.between + Parts::of(layout).bits() + late).min(descriptor.area)
+}
+
+/// Where the area ends can be told from a frame.
+const fn area_counts(descriptor: &Descriptor) -> bool {
+    descriptor.shift_right || !matches!(descriptor.coded, Coded::Position)
+}
+
+/// The frame with something moved from a clock to another, whether it works or not; `None` where that cannot be written
+/// down.
+fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<Descriptor> {
+    let by = i16::from(to) - i16::from(at);
+    let mut new = layout.descriptor().clone();
+    let both = matches!(Parts::of(layout), Parts::Both(..));
+    match handle {
+        Handle::LeadEnd => {
+            new.lead = plus(new.lead, by)?;
+            new.range = if both { resized(new.range, -by, 0)? } else { resized_one(new.range, -by)? };
+        }
+        Handle::Split if new.between > 0 => return None,
+        Handle::Split => new.range = resized(new.range, by, -by)?,
+        Handle::TurnsEnd => {
+            new.range = resized(new.range, by, 0)?;
+            new.between = plus(new.between, -by)?;
+        }
+        Handle::BetweenEnd => {
+            new.range = resized(new.range, 0, -by)?;
+            new.between = plus(new.between, by)?;
+        }
+        Handle::StepsEnd => {
+            new.range = if both { resized(new.range, 0, by)? } else { resized_one(new.range, by)? };
+            follow(layout, &mut new, by, following)?;
+        }
+        Handle::Position => {
+            new.lead = plus(new.lead, by)?;
+            follow(layout, &mut new, by, following)?;
+        }
+        Handle::AreaEnd => new.area = to,
+        Handle::WordEnd => {
+            new.repeat = new.repeat.map(|repeat| Repeat { word: to, ..repeat });
+            new.clocks = plus(new.clocks, 2 * by)?;
+        }
+        Handle::GapEnd => {
+            let Repeat { word, gap } = new.repeat?;
+            new.repeat = Some(Repeat { word, gap: plus(gap, by)? });
+            new.clocks = plus(new.clocks, by)?;
+        }
+        Handle::FrameEnd => {
+            new.clocks = to;
+            new.patterns = new.patterns.into_iter().map(|pattern| longer(pattern, by)).collect::<Option<_>>()?;
+        }
+        Handle::Error(index) => put(&mut new, Single::Error(index), at, to),
+        Handle::Parity => put(&mut new, Single::Parity, at, to),
+    }
+    if !area_counts(&new) {
+        // It says nothing: it only has to have room, and to be there.
+        let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
+        new.area = new.area.max(u8::try_from(needed).ok()?).min(new.word());
+    }
+    Some(new)
+}
+
+/// Bits of a code word; moving keeps the code.
+fn bits(new: &Descriptor, old: &Layout) -> u8 {
+    match Parts::of(old) {
+        Parts::Whole(bits) => bits,
+        Parts::Both(..) | Parts::One(_) => new.range.bits().unwrap_or(u8::MAX),
+    }
+}
+
+/// What goes with the end of the position.
+fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Option<()> {
+    let chain = chain(old);
+    if !following || chain.is_empty() {
+        return Some(());
+    }
+    if area_counts(new) && end(old) == new.area {
+        new.area = plus(new.area, by)?;
+    }
+    for single in chain {
+        let clock = clock_of(new, single)?;
+        set(new, single, plus(clock, by)?);
+    }
+    Some(())
+}
+
+/// A bit to another clock; the one that is there comes to where it was.
+fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
+    let other = single_on(descriptor, to);
+    set(descriptor, single, to);
+    if let Some(other) = other {
+        set(descriptor, other, at);
+    }
+}
+
+fn clock_of(descriptor: &Descriptor, single: Single) -> Option<u8> {
+    match single {
+        Single::Error(index) => descriptor.errors.get(index).map(|bit| bit.clock),
+        Single::Parity => descriptor.parity.map(|parity| parity.clock),
+    }
+}
+
+fn set(descriptor: &mut Descriptor, single: Single, clock: u8) {
+    match single {
+        Single::Error(index) => {
+            if let Some(bit) = descriptor.errors.get_mut(index) {
+                bit.clock = clock;
+            }
+        }
+        Single::Parity => descriptor.parity = descriptor.parity.map(|parity| Parity { clock, ..parity }),
+    }
+}
+
+fn plus(value: u8, by: i16) -> Option<u8> {
+    u8::try_from(i16::from(value) + by).ok()
+}
+
+/// With other numbers of bits for turns and steps; both keep one at least.
+fn resized(range: Range, turns: i16, steps: i16) -> Option<Range> {
+    let Range::Bits { multiturn, singleturn } = range else { return None };
+    let multiturn = plus(multiturn, turns).filter(|bits| *bits > 0)?;
+    let singleturn = plus(singleturn, steps).filter(|bits| *bits > 0)?;
+    Some(Range::Bits { multiturn, singleturn })
+}
+
+/// With another number of bits, of which there is one kind only; one stays at least.
+fn resized_one(range: Range, by: i16) -> Option<Range> {
+    let more = |bits| plus(bits, by).filter(|bits| *bits > 0);
+    match range {
+        Range::Bits { multiturn, singleturn: 0 } => Some(Range::Bits { multiturn: more(multiturn)?, singleturn: 0 }),
+        Range::Bits { multiturn, singleturn } => Some(Range::Bits { multiturn, singleturn: more(singleturn)? }),
+        Range::Length { bits, step_nanometres } => Some(Range::Length { bits: more(bits)?, step_nanometres }),
+        Range::Steps { .. } | Range::RoundAxis { .. } => None,
+    }
+}
+
+/// The same word with further clocks behind it, or without zeros that it ends with.
+fn longer(pattern: Pattern, by: i16) -> Option<Pattern> {
+    let Word::Bits(word) = pattern.word else { return Some(pattern) };
+    let count = u32::from(by.unsigned_abs());
+    let word = if by >= 0 {
+        word.checked_shl(count).filter(|longer| longer >> count == word)?
+    } else {
+        word.checked_shr(count).filter(|shorter| shorter << count == word)?
+    };
+    Some(Pattern { word: Word::Bits(word), ..pattern })
+}

@@ -1,0 +1,248 @@
+//! Frames by their cells; what is moved, against frames that the reference gives (section 8), and there and back.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::app::Language;
+use crate::devices::ssi::protocol::{Code, Descriptor, ErrorBit, Families, Fraction, Parity, Repeat, Settings};
+
+fn bit(name: &str, clock: u8) -> ErrorBit {
+    ErrorBit { name: name.to_owned(), clock, meaning: Meaning::Invalid, active_low: false, cleared_by_transfer: false }
+}
+
+fn family(key: &str, settings: &Settings) -> Strip {
+    let families = Families::built_in();
+    Strip::of(&settings.resolve(families.named(key).unwrap()).unwrap().layout)
+}
+
+fn frame(strip: &Strip, position: u64, errors: &[usize]) -> u64 {
+    let flags = errors.iter().fold(Flags::NONE, |all, index| all.with(Flags::error(*index)));
+    strip.layout().encode(position, flags).unwrap()
+}
+
+fn kinds(strip: &Strip) -> Vec<(Kind, u8, u8)> {
+    strip.fields().iter().map(|field| (field.kind, field.first, field.last)).collect()
+}
+
+/// Anything that works, its error and parity bits anywhere.
+fn layouts() -> impl Strategy<Value = Layout> {
+    let range = prop_oneof![
+        (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
+        (1..10_u8, 1..10_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
+        (2..5000_u32, 1..500_u32).prop_map(|(per_turn, turns)| Range::Steps { per_turn, turns }),
+        (2..100_000_u32, 1..50_u32, 1..50_u32).prop_map(|(steps, numerator, denominator)| Range::RoundAxis {
+            steps,
+            revolutions: Fraction { numerator, denominator },
+        }),
+        (1..=40_u8).prop_map(|bits| Range::Length { bits, step_nanometres: 1000 }),
+    ];
+    let code =
+        prop_oneof![3 => Just(Code::Binary), 3 => Just(Code::Gray), 1 => Just(Code::GrayExcess), 1 => Just(Code::Bcd)];
+    let coded = prop_oneof![3 => Just(Coded::Position), 1 => Just(Coded::Area), 1 => Just(Coded::AreaAndErrors)];
+    let zeros = (0..6_u8, 0..4_u8, 0..6_u8, 0..4_u8);
+    let bits = (prop::collection::vec(0..20_u8, 0..4), prop::option::of((0..20_u8, any::<bool>())));
+    let rest = (any::<bool>(), any::<bool>(), prop::option::of((0..3_u8, 0..3_u8)));
+    (range, code, coded, zeros, bits, rest).prop_filter_map(
+        "cannot work",
+        |(range, code, coded, (lead, between, tail, late), (errors, parity), (shift_right, inverted, twice))| {
+            let bits = crate::devices::ssi::protocol::Coding::new(code, range.last().ok()?).ok()?.bits();
+            let between = if matches!(range, Range::Bits { multiturn: 1.., singleturn: 1.. }) { between } else { 0 };
+            let needed = lead + between + bits;
+            let area = needed + tail;
+            let word = area + late + errors.len() as u8 + 3;
+            let errors: Vec<_> =
+                errors.iter().enumerate().map(|(i, at)| bit(&format!("E{i}"), needed + 1 + at)).collect();
+            let repeat = twice.map(|(gap, _)| Repeat { word, gap });
+            Layout::new(Descriptor {
+                clocks: twice.map_or(Some(word), |(gap, behind)| word.checked_mul(2)?.checked_add(gap + behind))?,
+                range,
+                code,
+                coded,
+                area,
+                lead,
+                between,
+                shift_right,
+                errors,
+                parity: parity.map(|(at, even)| Parity { clock: needed + 1 + at, even }),
+                repeat,
+                inverted,
+                patterns: Vec::new(),
+            })
+            .ok()
+        },
+    )
+}
+
+/// An area that says nothing may be any: here it is the whole word.
+fn without_area(layout: &Layout) -> Descriptor {
+    let mut descriptor = layout.descriptor().clone();
+    if !descriptor.shift_right && descriptor.coded == Coded::Position {
+        descriptor.area = descriptor.word();
+    }
+    descriptor
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: 200_000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_moved_comes_back(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8, following: bool) {
+        let strip = Strip::of(&layout);
+        let handle = strip.handles()[which.index(strip.handles().len())];
+        let at = strip.clock(handle).unwrap();
+        let there = strip.moved(handle, to, following);
+        let reached = there.clock(handle).unwrap();
+        prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
+        // A bit that has come to stand directly behind others goes with them from now on.
+        prop_assume!(moving::chain(there.layout()).len() == moving::chain(&layout).len() || !following);
+        // So does the end of an area that the position has come to fill.
+        let fills = |layout: &Layout| moving::end(layout) == layout.descriptor().area;
+        prop_assume!(fills(there.layout()) == fills(&layout) || !following);
+        let back = there.moved(handle, at, following);
+        prop_assert_eq!(back.clock(handle), Some(at), "{:?} at {}", handle, reached);
+        prop_assert_eq!(without_area(back.layout()), without_area(&layout), "{:?}: {} to {}", handle, at, reached);
+    }
+
+    #[test]
+    fn limits_are_reached_and_not_passed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8) {
+        let strip = Strip::of(&layout);
+        let handle = strip.handles()[which.index(strip.handles().len())];
+        let (least, most) = strip.limits(handle, false);
+        for end in [least, most] {
+            prop_assert_eq!(strip.moved(handle, end, false).clock(handle), Some(end));
+        }
+        let reached = strip.moved(handle, to, false).clock(handle).unwrap();
+        prop_assert!((least..=most).contains(&reached));
+    }
+
+    #[test]
+    fn every_clock_is_in_a_field_and_has_words(layout in layouts()) {
+        let strip = Strip::of(&layout);
+        let mut next = 1;
+        for field in strip.fields() {
+            prop_assert_eq!(field.first, next);
+            next = field.last + 1;
+        }
+        prop_assert_eq!(next, layout.clocks() + 1);
+        prop_assert_eq!(strip.cells().len(), usize::from(layout.clocks()));
+        for clock in 1..=layout.clocks() {
+            let words = cell(&strip, clock).words(Language::English);
+            prop_assert!(words.starts_with(&format!("Clock {clock}: ")) && !words.contains('{'), "{}", words);
+        }
+        for own in strip.handles() {
+            for text in [handle(&strip, *own), value(&strip, *own), hint(*own)] {
+                let words = text.words(Language::German);
+                prop_assert!(words != text.id() && !words.contains('{'), "{}", words);
+            }
+        }
+    }
+}
+
+#[test]
+fn fields_of_a_frame() {
+    let tree = family("atm60", &Settings { multiturn: Some(8), singleturn: Some(8), ..Settings::default() });
+    let position = [(Kind::Before, 1, 4), (Kind::Turns, 5, 12), (Kind::Steps, 13, 20), (Kind::Behind, 21, 25)];
+    assert_eq!(kinds(&tree), position);
+    let handles = [Handle::LeadEnd, Handle::Position, Handle::Split, Handle::BetweenEnd, Handle::StepsEnd];
+    assert_eq!(tree.handles()[..5], handles);
+    assert_eq!(tree.handles()[5..], [Handle::FrameEnd]);
+    assert_eq!(tree.position(), Some((5, 20)));
+    // MT is 5 to 12, so that its fourth bit from below is on clock 9.
+    assert_eq!(cell(&tree, 9).words(Language::English), "Clock 9: MT3, one of 8 bits of the turns");
+    assert_eq!(short(&tree, &tree.fields()[2]).words(Language::German), "ST 8");
+
+    let twice = Layout::new(Descriptor {
+        clocks: 20,
+        parity: Some(Parity { clock: 9, even: false }),
+        repeat: Some(Repeat { word: 9, gap: 1 }),
+        ..Descriptor::plain(0, 8)
+    });
+    let twice = Strip::of(&twice.unwrap());
+    let fields =
+        [(Kind::Steps, 1, 8), (Kind::Parity, 9, 9), (Kind::Gap, 10, 10), (Kind::Again, 11, 19), (Kind::After, 20, 20)];
+    assert_eq!(kinds(&twice), fields);
+    assert_eq!(cell(&twice, 9).words(Language::German), "Takt 9: Parität über die Takte 1 bis 8, ungerade");
+    assert_eq!(cell(&twice, 13).words(Language::English), "Clock 13: the same as on clock 3");
+}
+
+/// AHS36 with 14 bits, its error bit on clock 15; then with 12.
+#[test]
+fn steps_end_earlier_and_error_bits_follow_or_do_not() {
+    let strip = family("ahs36", &Settings::default());
+    assert!(follows(strip.layout()));
+    let fixed = strip.moved(Handle::StepsEnd, 12, false);
+    assert_eq!(frame(&fixed, 0xABC, &[0]), 0x55E1);
+    let following = strip.moved(Handle::StepsEnd, 12, true);
+    assert_eq!(frame(&following, 0xABC, &[0]), 0x55E4);
+    assert_eq!((follows(fixed.layout()), follows(following.layout())), (false, true));
+    // The error bit is in the way; a bit that follows is not, the end of the frame is.
+    assert_eq!(strip.limits(Handle::StepsEnd, false), (1, 14));
+    assert_eq!(strip.limits(Handle::StepsEnd, true), (1, 14));
+    assert_eq!(fixed.limits(Handle::StepsEnd, true), (1, 14));
+}
+
+/// ATM60 of 25 bits: 8 bits of turns and 8 of steps, as trees of either kind and right-aligned.
+#[test]
+fn boundaries_make_the_formats_of_the_manual() {
+    let position = 0xA5 << 8 | 0x3C;
+    let whole = Strip::of(&Layout::new(Descriptor::plain(12, 13)).unwrap());
+    let tree = whole.moved(Handle::LeadEnd, 4, true).moved(Handle::StepsEnd, 20, true);
+    assert_eq!(frame(&tree, position, &[]), 0x014_A780);
+    let other = whole.moved(Handle::Split, 13, true).moved(Handle::LeadEnd, 5, true);
+    assert_eq!(frame(&other.moved(Handle::StepsEnd, 21, true), position, &[]), 0x00A_53C0);
+    let right = tree.moved(Handle::Position, 9, true);
+    assert_eq!(frame(&right, position, &[]), 0x001_4A78);
+    // Two zeros between: the turns' lowest bits are theirs now.
+    let apart = tree.moved(Handle::BetweenEnd, 14, true);
+    assert_eq!(kinds(&apart)[1..4], [(Kind::Turns, 5, 12), (Kind::Between, 13, 14), (Kind::Steps, 15, 20)]);
+    assert_eq!(apart.moved(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
+    assert!(apart.handles().contains(&Handle::TurnsEnd) && !apart.handles().contains(&Handle::Split));
+}
+
+/// TTK70 with 31 clocks; KH53, whose pattern is bits of the whole frame.
+#[test]
+fn the_end_of_the_frame_brings_zeros() {
+    let ttk = family("ttk70", &Settings::default());
+    let longer = ttk.moved(Handle::FrameEnd, 31, true);
+    assert_eq!(frame(&longer, 0x12_3456, &[0]), 0x091A_2B40);
+    assert_eq!(ttk.limits(Handle::FrameEnd, true), (26, 64));
+    let kh53 = family("kh53", &Settings::default());
+    let longer = kh53.moved(Handle::FrameEnd, 26, true);
+    assert!(longer.layout().decode(0x3FF_FFF8).flags.has(Flags::pattern(0)));
+    assert!(!longer.layout().decode(0xFF_FFFE).flags.has(Flags::pattern(0)));
+    assert_eq!(longer.moved(Handle::FrameEnd, 0, true).layout(), kh53.layout());
+}
+
+#[test]
+fn error_bits_exchange_places() {
+    let strip = family("afs60", &Settings::default());
+    let names = |strip: &Strip| [19, 20, 21].map(|clock| strip.layout().role_name(strip.cells()[clock - 1].role));
+    assert_eq!(names(&strip), ["ERRDIG", "ERRSI", "ERRSYNC"]);
+    let moved = strip.moved(Handle::Error(0), 21, true);
+    assert_eq!(names(&moved), ["ERRSYNC", "ERRSI", "ERRDIG"]);
+    // A position's bit is no place for it, and behind the frame there is none.
+    assert_eq!(strip.moved(Handle::Error(2), 5, true).clock(Handle::Error(2)), Some(19));
+    assert_eq!(strip.moved(Handle::Error(0), 64, true).clock(Handle::Error(0)), Some(21));
+}
+
+#[test]
+fn positions_of_steps_move_as_a_whole() {
+    let settings = Settings { steps: Some(3600), ..Settings::default() };
+    let strip = family("ahs36", &settings);
+    let inside = [Handle::LeadEnd, Handle::Split, Handle::TurnsEnd, Handle::BetweenEnd, Handle::StepsEnd];
+    assert!(inside.iter().all(|handle| !strip.handles().contains(handle) && strip.clock(*handle).is_none()));
+    // 12 bits on clocks 1 to 12, two zeros, the error bit on clock 15.
+    assert_eq!(strip.limits(Handle::Position, true), (1, 3));
+    assert_eq!(kinds(&strip.moved(Handle::Position, 9, true))[..2], [(Kind::Before, 1, 2), (Kind::Position, 3, 14)]);
+}
+
+#[test]
+fn cells_tell_what_they_say() {
+    let strip = family("afs60", &Settings { singleturn: Some(13), clocks: Some(18), ..Settings::default() });
+    // 1234h, ERRSI, and a 1 on clock 18, which is always 0.
+    let shown = strip.shown(0x91A2 << 2 | 1);
+    let tells: Vec<_> = (1..).zip(&shown).filter_map(|(clock, cell)| cell.tells.map(|tells| (clock, tells))).collect();
+    assert_eq!(tells, [(15, Meaning::Invalid), (18, Meaning::Warning)]);
+    let bits: String = shown.iter().map(|cell| if cell.bit { '1' } else { '0' }).collect();
+    assert_eq!(bits, "100100011010001001");
+}

@@ -1,0 +1,286 @@
+//! A burst in time, to scale: what the lines do, which times there are, and where the axis of time is broken because
+//! nothing happens. Seconds count from the first falling edge (SICK SSI description 2.2; reference sections 1 and 5).
+
+#[cfg(test)]
+mod tests;
+
+use super::strip::{Field, Strip, cell};
+use crate::app::Text;
+use crate::devices::ssi::protocol::{Layout, Reads, Taken, Times, Timing};
+
+/// A burst and what comes behind it, until the next one has begun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagram {
+    strip: Strip,
+    timing: Timing,
+    pieces: Vec<Piece>,
+    spans: Vec<Span>,
+    marks: Vec<Mark>,
+}
+
+/// A stretch of time that is drawn. Between two of them the axis is broken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Where it begins, in seconds.
+    pub from: f64,
+    /// Where it ends, in seconds.
+    pub to: f64,
+}
+
+/// A time with its beginning and end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// What takes so long.
+    pub what: Lasting,
+    /// Where it begins, in seconds.
+    pub from: f64,
+    /// Where it ends at the latest, in seconds.
+    pub to: f64,
+    /// Where it may end already, in seconds.
+    pub least: f64,
+}
+
+/// What takes its time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Lasting {
+    /// A clock.
+    Period,
+    /// All clocks.
+    Burst,
+    /// From a burst to the next.
+    Pause,
+    /// The data line stays low.
+    Monoflop,
+    /// The pause must be longer.
+    LeastPause,
+    /// A position is made.
+    Making,
+}
+
+/// A moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    /// What happens then.
+    pub what: Moment,
+    /// In seconds.
+    pub at: f64,
+}
+
+/// What happens at a moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Moment {
+    /// The position that is sent is kept.
+    Latched,
+    /// A position is taken, which the next burst sends.
+    Taken,
+    /// A position begins to be made.
+    Started,
+    /// It can be fetched.
+    Ready,
+    /// The next burst begins.
+    Next,
+}
+
+/// A bit on the data line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bit {
+    /// The clock that brings it, counted from 1.
+    pub clock: u8,
+    /// From here, in seconds.
+    pub from: f64,
+    /// To here, in seconds.
+    pub to: f64,
+}
+
+/// Nothing happens for longer than so many bursts: the axis is broken there,
+const LONG: f64 = 1.5;
+/// and so much of a burst is left on either side.
+const KEPT: f64 = 0.4;
+/// Clocks of the next burst that are drawn.
+const NEXT: f64 = 2.5;
+
+impl Diagram {
+    /// A burst of a frame, read like this.
+    pub fn of(layout: &Layout, times: &Times, reads: &Reads) -> Self {
+        let reads = Reads { clocks: layout.clocks(), ..*reads };
+        let timing = times.reckon(&reads);
+        let (period, burst) = (timing.period.as_secs_f64(), timing.burst.as_secs_f64());
+        let (pause, cycle) = (reads.pause.as_secs_f64(), timing.cycle.as_secs_f64());
+        let (least, most) = timing.monoflop;
+        let span = |what, from, to| Span { what, from, to, least: to };
+        let mut spans = vec![
+            span(Lasting::Period, 0.0, period),
+            span(Lasting::Burst, 0.0, burst),
+            span(Lasting::Pause, burst, burst + pause),
+            Span { least: burst + least.as_secs_f64(), ..span(Lasting::Monoflop, burst, burst + most.as_secs_f64()) },
+            span(Lasting::LeastPause, burst, burst + timing.least_pause.as_secs_f64()),
+        ];
+        let mode = times.synchronous.filter(|_| reads.synchronous);
+        let first =
+            if matches!(mode.map(|mode| mode.taken), Some(Taken::FirstEdge)) { Moment::Taken } else { Moment::Latched };
+        let mut marks = vec![Mark { what: first, at: 0.0 }];
+        if let Some(Taken::Behind { starts, ready }) = mode.map(|mode| mode.taken) {
+            let (starts, ready) = (burst + starts * 1e-6, burst + (starts + ready) * 1e-6);
+            spans.push(span(Lasting::Making, starts, ready));
+            marks.extend([Mark { what: Moment::Started, at: starts }, Mark { what: Moment::Ready, at: ready }]);
+        }
+        marks.push(Mark { what: Moment::Next, at: cycle });
+        marks.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let pieces = pieces(burst, cycle + NEXT * period, &spans, &marks);
+        Diagram { strip: Strip::of(layout), timing, pieces, spans, marks }
+    }
+
+    /// The frame in cells and fields.
+    pub const fn strip(&self) -> &Strip {
+        &self.strip
+    }
+
+    /// What is drawn of the axis of time, from its beginning to its end.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// How long the axis is broken behind a piece, in seconds; 0 behind the last.
+    pub fn broken(&self, piece: usize) -> f64 {
+        let ends = self.pieces.get(piece).zip(self.pieces.get(piece + 1));
+        ends.map_or(0.0, |(own, next)| next.from - own.to)
+    }
+
+    /// Times with their ends.
+    pub fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    /// Moments, the first of them first.
+    pub fn marks(&self) -> &[Mark] {
+        &self.marks
+    }
+
+    /// Where the clock line changes, in seconds; it rests high, so that the first is a falling edge.
+    pub fn edges(&self) -> Vec<f64> {
+        let (half, cycle) = (self.timing.period.as_secs_f64() / 2.0, self.timing.cycle.as_secs_f64());
+        let own = (0..2 * u32::from(self.clocks())).map(|edge| f64::from(edge) * half);
+        let next = (0..6).map(|edge| cycle + f64::from(edge) * half).filter(|at| *at < self.end());
+        own.chain(next).collect()
+    }
+
+    /// The bits on the data line: each comes with a rising edge.
+    pub fn bits(&self) -> Vec<Bit> {
+        let period = self.timing.period.as_secs_f64();
+        let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
+        let burst = self.timing.burst.as_secs_f64();
+        (1..=self.clocks()).map(|clock| Bit { clock, from: comes(clock), to: comes(clock + 1).min(burst) }).collect()
+    }
+
+    /// From where to where a field is on the data line, in seconds.
+    pub fn field(&self, field: &Field) -> (f64, f64) {
+        let period = self.timing.period.as_secs_f64();
+        let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
+        (comes(field.first), comes(field.last + 1).min(self.timing.burst.as_secs_f64()))
+    }
+
+    /// Where the data line is low behind the bits, and from when to when it rises again, in seconds. It does so with the
+    /// next burst at the latest.
+    pub fn low(&self) -> (f64, f64, f64) {
+        let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
+        let (least, most) = self.timing.monoflop;
+        (burst, (burst + least.as_secs_f64()).min(cycle), (burst + most.as_secs_f64()).min(cycle))
+    }
+
+    /// From when on the next bits come, in seconds.
+    pub fn next(&self) -> f64 {
+        self.timing.cycle.as_secs_f64() + self.timing.period.as_secs_f64() / 2.0
+    }
+
+    /// The end of the axis, in seconds.
+    pub fn end(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |piece| piece.to)
+    }
+
+    /// What is at a moment: the time, and the clock with what it carries, or what the lines wait for.
+    pub fn told(&self, at: f64) -> Vec<Text> {
+        let mut told = vec![Text::new("ssi.timing_at").with_text("time", time(at))];
+        if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
+            told.push(cell(&self.strip, bit.clock));
+        } else {
+            let waits = [Lasting::Monoflop, Lasting::Making, Lasting::Pause];
+            let is_in = |span: &&Span| waits.contains(&span.what) && (span.from..span.to).contains(&at);
+            told.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
+        }
+        told
+    }
+
+    /// A span in words, with how long it is.
+    pub fn words(&self, span: &Span) -> Text {
+        let long = time(span.to - span.from);
+        let text = match span.what {
+            Lasting::Period => Text::new("ssi.timing_period"),
+            Lasting::Burst => Text::new("ssi.timing_burst").with("clocks", self.clocks()),
+            Lasting::Pause => Text::new("ssi.timing_pause"),
+            Lasting::Monoflop if span.least < span.to => {
+                Text::new("ssi.timing_monoflop_between").with_text("least", time(span.least - span.from))
+            }
+            Lasting::Monoflop => Text::new("ssi.timing_monoflop"),
+            Lasting::LeastPause => Text::new("ssi.timing_least_pause"),
+            Lasting::Making => Text::new("ssi.timing_making"),
+        };
+        text.with_text("time", long)
+    }
+
+    fn clocks(&self) -> u8 {
+        self.strip.layout().clocks()
+    }
+}
+
+impl Moment {
+    /// In words.
+    pub fn words(self) -> Text {
+        Text::new(match self {
+            Moment::Latched => "ssi.timing_latched",
+            Moment::Taken => "ssi.timing_taken",
+            Moment::Started => "ssi.timing_started",
+            Moment::Ready => "ssi.timing_ready",
+            Moment::Next => "ssi.timing_next",
+        })
+    }
+}
+
+/// What is left out where the axis is broken, in words.
+pub fn left_out(seconds: f64) -> Text {
+    Text::new("ssi.timing_break").with_text("time", time(seconds))
+}
+
+/// A time with four figures at most, in the unit that suits it.
+pub fn time(seconds: f64) -> Text {
+    const UNITS: [(&str, f64); 4] =
+        [("ssi.time_ns", 1e-9), ("ssi.time_us", 1e-6), ("ssi.time_ms", 1e-3), ("ssi.time_s", 1.0)];
+    // What rounds to a thousand of a unit is one of the next.
+    let fits = UNITS.into_iter().rfind(|(_, unit)| seconds.abs() >= unit * 0.99995);
+    let (id, unit) = fits.unwrap_or(if seconds == 0.0 { ("ssi.time_us", 1e-6) } else { ("ssi.time_ns", 1e-9) });
+    let value = seconds / unit;
+    let whole = value.abs().max(1.0).log10().floor() as usize;
+    let most = 3_usize.saturating_sub(whole);
+    let figures = format!("{value:.most$}");
+    let decimals = figures.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len());
+    Text::new(id).with_number("value", value, decimals)
+}
+
+/// The axis of time: the burst whole, and behind it all that is near to something that happens.
+fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[Mark]) -> Vec<Piece> {
+    let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
+    let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();
+    let end = moments.iter().copied().fold(end, f64::max);
+    moments.push(end);
+    moments.sort_by(f64::total_cmp);
+    let mut pieces = Vec::new();
+    let (mut from, mut last) = (0.0, burst);
+    for at in moments {
+        if at - last > LONG * burst {
+            pieces.push(Piece { from, to: last + KEPT * burst });
+            from = at - KEPT * burst;
+        }
+        last = at;
+    }
+    pieces.push(Piece { from, to: end });
+    pieces
+}

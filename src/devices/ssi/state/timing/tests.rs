@@ -1,0 +1,122 @@
+//! Bursts in time: what the reference's times come to, and an axis that leaves nothing out that happens.
+
+use std::time::Duration;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::app::Language;
+use crate::devices::ssi::protocol::{Families, Settings};
+use crate::devices::ssi::state::strip::Kind;
+
+fn diagram(family: &str, clock_hz: f64, pause_us: f64, synchronous: bool) -> Diagram {
+    let families = Families::built_in();
+    let family = families.named(family).unwrap();
+    let layout = Settings::default().resolve(family).unwrap().layout;
+    let pause = Duration::from_secs_f64(pause_us * 1e-6);
+    let reads = Reads { clocks: layout.clocks(), clock_hz, pause, cable_metres: None, synchronous, any_steps: false };
+    Diagram::of(&layout, &family.times, &reads)
+}
+
+fn micros(seconds: f64) -> f64 {
+    (seconds * 1e9).round() / 1e3
+}
+
+fn said(diagram: &Diagram) -> Vec<String> {
+    diagram.spans().iter().map(|span| diagram.words(span).words(Language::English)).collect()
+}
+
+/// Reference section 1: 33 bits at 400 kHz take 82.5 µs, tm is 15 to 25 µs.
+#[test]
+fn a_burst_without_a_break() {
+    let diagram = diagram("afm60", 400e3, 40.0, false);
+    let times =
+        ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs to 25 µs", "Pause at least: 25 µs"];
+    assert_eq!(said(&diagram), times);
+    // 122.5 µs from burst to burst, and two and a half clocks of the next.
+    assert_eq!(diagram.pieces().len(), 1);
+    assert_eq!(micros(diagram.end()), 128.75);
+    let edges: Vec<f64> = diagram.edges().into_iter().map(micros).collect();
+    assert_eq!(edges[..3], [0.0, 1.25, 2.5]);
+    assert_eq!(edges[65..], [81.25, 122.5, 123.75, 125.0, 126.25, 127.5]);
+    let bits = diagram.bits();
+    assert_eq!((micros(bits[0].from), micros(bits[0].to), bits.len()), (1.25, 3.75, 33));
+    assert_eq!((micros(bits[32].from), micros(bits[32].to)), (81.25, 82.5), "then the line is low");
+    let (from, least, most) = diagram.low();
+    assert_eq!([from, least, most].map(micros), [82.5, 97.5, 107.5]);
+    let steps = diagram.strip().fields().iter().find(|field| field.kind == Kind::Steps).unwrap();
+    let (from, to) = diagram.field(steps);
+    assert_eq!([from, to].map(micros), [31.25, 76.25], "clocks 13 to 30");
+}
+
+/// AHM36, synchronous: a position is begun 20 µs behind the last clock and ready 125 µs later.
+#[test]
+fn when_a_position_is_made() {
+    let synchronous = diagram("ahm36", 400e3, 200.0, true);
+    let marks: Vec<_> = synchronous.marks().iter().map(|mark| (mark.what, micros(mark.at))).collect();
+    // 27 clocks take 67.5 µs.
+    let expected = [(Moment::Latched, 0.0), (Moment::Started, 87.5), (Moment::Ready, 212.5), (Moment::Next, 267.5)];
+    assert_eq!(marks, expected);
+    assert_eq!(said(&synchronous)[4..], ["Pause at least: 150 µs", "New position in the making: 125 µs"]);
+    let first_edge = diagram("atm60", 500e3, 300.0, true);
+    assert_eq!(first_edge.marks()[0], Mark { what: Moment::Taken, at: 0.0 });
+    assert_eq!(said(&first_edge)[3], "tm = 150 µs");
+    assert_eq!(diagram("ahm36", 400e3, 200.0, false).marks().len(), 2);
+}
+
+#[test]
+fn a_long_pause_is_broken_and_says_so() {
+    let diagram = diagram("afm60", 400e3, 82_500.0, false);
+    // The burst, what comes behind it up to 25 µs and two fifths of a burst; the same before the next burst.
+    let pieces: Vec<_> = diagram.pieces().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
+    assert_eq!(pieces, [(0.0, 140.5), (82_549.5, 82_588.75)]);
+    assert_eq!(left_out(diagram.broken(0)).words(Language::German), "82,41 ms ausgelassen");
+    assert_eq!(diagram.broken(1), 0.0);
+}
+
+#[test]
+fn a_moment_is_told() {
+    let diagram = diagram("afm60", 400e3, 40.0, false);
+    let told = |at: f64| diagram.told(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
+    assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: MT11, one of 12 bits of the turns"]);
+    assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs to 25 µs"]);
+    assert_eq!(told(0.5), ["500 ns after the first edge"]);
+}
+
+#[test]
+fn times_are_said_with_four_figures() {
+    for (seconds, words) in [
+        (0.0, "0 µs"),
+        (62.5e-6, "62.5 µs"),
+        (16.666_67e-6, "16.67 µs"),
+        (1e-6, "1 µs"),
+        (0.999_99e-6, "1 µs"),
+        (250e-9, "250 ns"),
+        (0.001, "1 ms"),
+        (0.999e-3, "999 µs"),
+        (0.1234, "123.4 ms"),
+        (2.0, "2 s"),
+        (1234.5, "1234 s"),
+    ] {
+        assert_eq!(time(seconds).words(Language::English), words);
+    }
+}
+
+proptest! {
+    /// Whatever happens is on the axis, which is in order and never longer than what it shows.
+    #[test]
+    fn nothing_that_happens_is_left_out(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
+        let diagram = diagram(["ahm36", "atm60", "ttk70"][key], hz, pause, synchronous);
+        let pieces = diagram.pieces();
+        prop_assert!(pieces.iter().all(|piece| piece.from < piece.to));
+        prop_assert!(pieces.windows(2).all(|two| two[0].to < two[1].from));
+        let ends = diagram.spans().iter().flat_map(|span| [span.from, span.least, span.to]);
+        for at in ends.chain(diagram.marks().iter().map(|mark| mark.at)).chain(diagram.edges()) {
+            prop_assert!(pieces.iter().any(|piece| (piece.from..=piece.to).contains(&at)), "{at}: {pieces:?}");
+        }
+        // What is left of the pause does not squeeze the burst to nothing.
+        let burst = diagram.timing.burst.as_secs_f64();
+        let drawn: f64 = pieces.iter().map(|piece| piece.to - piece.from).sum();
+        prop_assert!(drawn < 14.0 * burst, "{drawn} of {burst}");
+    }
+}

@@ -1,0 +1,113 @@
+//! A frame to try a layout with: a position and its bits, from the one to the other and back.
+
+use crate::app::Text;
+use crate::devices::ssi::protocol::{Cell, Finding, Flags, Layout, Place, Reading, parse_frame};
+use crate::devices::ssi::state::explain as words;
+
+/// The frame that a layout is tried with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trial {
+    frame: u64,
+    problem: Option<Text>,
+}
+
+/// A frame with what it says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decoded {
+    /// The frame, right-justified.
+    pub frame: u64,
+    /// Its position and flags.
+    pub reading: Reading,
+    /// The position, if the bits are one, and what it is on the shaft or scale.
+    pub place: Option<(u64, Place)>,
+    /// What there is to say of it.
+    pub findings: Vec<Finding>,
+    /// The position may be used.
+    pub is_valid: bool,
+}
+
+impl Decoded {
+    /// What a frame says.
+    pub fn of(layout: &Layout, frame: u64) -> Self {
+        let reading = layout.decode(frame);
+        let is_none = reading.flags.has(Flags::CODE);
+        let place = (!is_none).then(|| (reading.position, layout.descriptor().range.place(reading.position)));
+        Decoded { frame, reading, place, findings: layout.findings(reading), is_valid: layout.is_valid(reading) }
+    }
+
+    /// Its bits with what each carries.
+    pub fn cells(&self, layout: &Layout) -> Vec<Cell> {
+        layout.cells(self.frame)
+    }
+}
+
+impl Trial {
+    /// The frame, right-justified.
+    pub fn frame(&self) -> u64 {
+        self.frame
+    }
+
+    /// Why the last entry was refused.
+    pub fn problem(&self) -> Option<&Text> {
+        self.problem.as_ref()
+    }
+
+    /// What the frame says.
+    pub fn decoded(&self, layout: &Layout) -> Decoded {
+        Decoded::of(layout, self.frame)
+    }
+
+    /// The frame of a position; error bits stay as they are.
+    pub(super) fn set_position(&mut self, layout: &Layout, position: u64) {
+        let errors = error_bits(layout, layout.decode(self.frame).flags);
+        match layout.encode(position, errors) {
+            Some(frame) => self.set(frame),
+            None => {
+                let most = layout.coding().last();
+                self.problem = Some(Text::new("ssi_trial.range").with("position", position).with("most", most));
+            }
+        }
+    }
+
+    /// The frame of a turn and the steps within it.
+    pub(super) fn set_place(&mut self, layout: &Layout, turns: u64, steps: u64) {
+        match layout.descriptor().range.position(turns, steps) {
+            Some(position) => self.set_position(layout, position),
+            None => self.problem = Some(Text::new("ssi_trial.place").with("turns", turns).with("steps", steps)),
+        }
+    }
+
+    /// A frame as it was written down.
+    pub(super) fn set_text(&mut self, layout: &Layout, text: &str) {
+        match parse_frame(text, layout.clocks()) {
+            Ok(frame) => self.set(frame),
+            Err(error) => self.problem = Some(words::frame_text(&error)),
+        }
+    }
+
+    /// The other value for a bit; clocks count from 1.
+    pub(super) fn toggle(&mut self, layout: &Layout, clock: u8) {
+        if (1..=layout.clocks()).contains(&clock) {
+            self.set(self.frame ^ 1 << (layout.clocks() - clock));
+        }
+    }
+
+    /// A frame that was read.
+    pub(super) fn set(&mut self, frame: u64) {
+        *self = Trial { frame, problem: None };
+    }
+
+    /// The layout is another: the position stays, where it has one there.
+    pub(super) fn follow(&mut self, before: &Layout, now: &Layout) {
+        let reading = before.decode(self.frame);
+        let position = reading.position.min(now.coding().last());
+        let frame = now.encode(position, Flags::NONE).unwrap_or(0);
+        self.set(frame);
+    }
+}
+
+/// The flags of error bits alone: only they can be encoded.
+fn error_bits(layout: &Layout, flags: Flags) -> Flags {
+    let all = (0..layout.descriptor().errors.len()).map(Flags::error);
+    all.filter(|error| flags.has(*error)).fold(Flags::NONE, Flags::with)
+}

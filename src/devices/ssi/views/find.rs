@@ -1,0 +1,190 @@
+//! The search for the layout of frames: those that were read last, or those in a file. What fits is ranked with what
+//! speaks for it; what these frames cannot tell apart is one class, with what would decide.
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::ssi::protocol::{Class, Descriptor, Doubt, Proposal, Search};
+use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::{Action as Ssi, Encoder, Hunt, Origin, read_clocks};
+use crate::ui::controls::{
+    card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,
+};
+use crate::ui::{Skin, icons};
+
+/// What is typed and does not count yet.
+#[derive(Default)]
+pub(super) struct View {
+    clocks: Option<(String, Option<Text>)>,
+    /// Classes whose other members are shown.
+    unfolded: Option<usize>,
+}
+
+/// Classes that are shown; what is further down fits worse still.
+const CLASSES: usize = 6;
+/// Members of a class that are shown at first.
+const MEMBERS: usize = 4;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    frames(ui, skin, encoder, view, actions);
+    ui.add_space(skin.space.groups);
+    match &encoder.hunt {
+        Hunt::Nothing => {}
+        Hunt::Running(_) => {
+            ui.horizontal(|ui| {
+                spinner(ui, skin);
+                ui.label(skin.say("ssi_find.running"));
+            });
+        }
+        Hunt::Failed(why) => {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(icons::X_CIRCLE).color(skin.palette.bad));
+                paragraph(ui, skin.words(why));
+            });
+        }
+        Hunt::Found { origin, clocks, search } => found(ui, skin, encoder, view, (origin, *clocks, search), actions),
+    }
+}
+
+/// Which frames are looked into.
+fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    let id = encoder.session.id;
+    let mut ask = |action| actions.push(Action::Ssi(id, action));
+    card(ui, skin, "ssi_find.title", |ui| {
+        paragraph(ui, skin.label(skin.say("ssi_find.words")));
+        ui.add_space(skin.space.inside);
+        let word = skin.say("ssi_find.clocks");
+        entry(ui, skin, &word, |ui| {
+            settled_entry(ui, &mut view.clocks, &encoder.clocks().to_string(), 56.0, &word, |text| {
+                ask(Ssi::SetClocks(Some(read_clocks(text)?)));
+                Ok(())
+            });
+            if encoder.has_own_clocks()
+                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_find.own_clocks")).clicked()
+            {
+                view.clocks = None;
+                ask(Ssi::SetClocks(None));
+            }
+        });
+        problem(ui, skin, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
+        let words = encoder.record.count(encoder.clocks());
+        row(ui, skin, &skin.say("ssi_find.read"), skin.mono(words.to_string()));
+        if !encoder.is_profile() && words == 0 {
+            paragraph(ui, skin.caption(skin.say("ssi_find.poll")));
+        }
+        ui.add_space(skin.space.inside);
+        ui.horizontal_wrapped(|ui| {
+            if enabled_button(ui, true, icons::FOLDER_OPEN, &skin.say("ssi_find.file")).clicked() {
+                ask(Ssi::AskFrames);
+            }
+            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &skin.say("ssi_find.save")).clicked() {
+                ask(Ssi::AskSaveFrames);
+            }
+            let running = matches!(encoder.hunt, Hunt::Running(_));
+            let find = primary(ui, skin, words > 0 && !running, icons::MAGNIFYING_GLASS, &skin.say("ssi_find.find"));
+            if find.on_disabled_hover_text(skin.say("ssi_find.poll")).clicked() {
+                ask(Ssi::Find);
+            }
+        });
+    });
+}
+
+fn found(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    view: &mut View,
+    (origin, clocks, search): (&Origin, u8, &Search),
+    actions: &mut Vec<Action>,
+) {
+    let source = match origin {
+        Origin::Live => Text::new("ssi_find.of_live"),
+        Origin::File(name) => Text::new("ssi_find.of_file").with("name", name),
+    };
+    let text = Text::new("ssi_find.frames")
+        .with("frames", search.frames)
+        .with("clocks", clocks)
+        .with("different", search.different)
+        .with_text("source", source);
+    paragraph(ui, skin.label(skin.words(&text)));
+    let (icon, colour) = match search.doubt {
+        None => (icons::CHECK_CIRCLE, skin.palette.good),
+        Some(Doubt::Open) => (icons::QUESTION, skin.palette.accent),
+        Some(Doubt::Stuck { .. }) => (icons::X_CIRCLE, skin.palette.bad),
+        Some(Doubt::Standing | Doubt::Nothing | Doubt::Close) => (icons::WARNING, skin.palette.warn),
+    };
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(colour));
+        paragraph(ui, skin.words(&words::doubt(search.doubt)));
+    });
+    for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
+        ui.add_space(skin.space.between);
+        ui.push_id(number, |ui| class_ui(ui, skin, encoder, (number, class), view, actions));
+    }
+}
+
+/// Layouts that these frames cannot tell apart.
+fn class_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    (number, class): (usize, &Class),
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let id = encoder.session.id;
+    let evidence = &class.evidence;
+    let rank = Text::new("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_a_frame, 2);
+    let aside = |ui: &mut Ui| {
+        ui.label(skin.caption(skin.words(&rank)));
+    };
+    card_with(ui, skin, if number == 0 { "ssi_find.best" } else { "ssi_find.other" }, aside, |ui| {
+        let all = view.unfolded == Some(number);
+        let shown = if all { class.members.len() } else { MEMBERS };
+        for (place, proposal) in class.members.iter().take(shown).enumerate() {
+            ui.horizontal(|ui| {
+                let word = skin.say("ssi_find.take");
+                let take = enabled_button(ui, true, icons::CHECK, &word);
+                if take.clicked() {
+                    actions.push(Action::Ssi(id, Ssi::Take(number, place)));
+                }
+                ui.vertical(|ui| {
+                    ui.spacing_mut().item_spacing.y = skin.space.inside;
+                    title(ui, skin, encoder, proposal);
+                    ui.add(egui::Label::new(skin.caption(skin.words(&words::frame(&proposal.layout)))).wrap());
+                });
+            });
+        }
+        let more = class.members.len().saturating_sub(shown);
+        if more > 0 {
+            let text = Text::new("ssi_find.more").with("count", more);
+            if ui.link(skin.words(&text)).clicked() {
+                view.unfolded = Some(number);
+            }
+        }
+        for open in &class.open {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(icons::QUESTION).color(skin.palette.accent));
+                paragraph(ui, skin.words(&words::open(*open)));
+            });
+        }
+        paragraph(ui, skin.caption(skin.words(&words::evidence(evidence))));
+    });
+}
+
+/// The family, and how it is set.
+fn title(ui: &mut Ui, skin: &Skin, encoder: &Encoder, proposal: &Proposal) {
+    let Some((key, settings)) = &proposal.family else {
+        ui.label(skin.say("ssi_find.any"));
+        return;
+    };
+    let family = encoder.designer.families().named(key);
+    // As few settings as there can be; exchanged wires are none of them.
+    let frame = Descriptor { inverted: false, ..proposal.layout.descriptor().clone() };
+    let fewest = family.and_then(|family| family.settings_of(&frame));
+    let name = family.map_or(key.as_str(), |family| family.name.as_str());
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new(name).font(skin.strong(skin.sizes.body)));
+        ui.label(skin.mono(fewest.as_ref().unwrap_or(settings).emit(key)));
+    });
+}

@@ -1,0 +1,97 @@
+//! The rows of a form: a number, a choice, a switch, a name. What they mean is said by the state.
+
+use std::collections::BTreeMap;
+
+use egui::{Key, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::ssi::state::{Action as Ssi, Encoder, Entry, Field, Input, Row, whole};
+use crate::ui::Skin;
+use crate::ui::controls::{LABELS, choice, entry, problem, settled_entry};
+
+/// What is typed and does not count yet.
+#[derive(Default)]
+pub(super) struct View {
+    drafts: BTreeMap<Field, Option<(String, Option<Text>)>>,
+}
+
+/// Width of the entry of a number.
+const NUMBER: f32 = 104.0;
+const NAME: f32 = 160.0;
+
+/// Draws rows.
+pub(super) fn rows_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    rows: &[Row],
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    for row in rows {
+        let word = skin.words(&row.name);
+        let mut put = |input| actions.push(Action::Ssi(encoder.session.id, Ssi::Enter(row.field, input)));
+        let response = match &row.entry {
+            Entry::Switch(is_on) => {
+                let mut is_on = *is_on;
+                ui.horizontal(|ui| {
+                    ui.add_space(LABELS.min(ui.available_width() * 0.4) + ui.spacing().item_spacing.x);
+                    let response = ui.checkbox(&mut is_on, &word);
+                    if response.changed() {
+                        put(Input::Switch(is_on));
+                    }
+                    response
+                })
+                .inner
+            }
+            Entry::Choice { options, chosen } => {
+                let mut own = *chosen;
+                let all = options.iter().enumerate().map(|(at, text)| (at, skin.words(text)));
+                let inner = ui.scope(|ui| {
+                    entry(ui, skin, &word, |ui| {
+                        if choice(ui, &word, &mut own, all) {
+                            put(Input::Choice(own));
+                        }
+                    });
+                });
+                inner.response
+            }
+            Entry::Number { value, unit } => {
+                let draft = view.drafts.entry(row.field).or_default();
+                entry(ui, skin, &word, |ui| {
+                    let response = settled_entry(ui, draft, &value.to_string(), NUMBER, &word, |text| {
+                        put(Input::Number(whole(text)?));
+                        Ok(())
+                    });
+                    // The arrow keys count.
+                    if response.has_focus() {
+                        let (up, down) =
+                            ui.input(|input| (input.key_pressed(Key::ArrowUp), input.key_pressed(Key::ArrowDown)));
+                        if up || down {
+                            *draft = None;
+                            put(Input::Number(if up { value.saturating_add(1) } else { value.saturating_sub(1) }));
+                        }
+                    }
+                    if let Some(unit) = unit {
+                        ui.label(skin.label(skin.words(unit)));
+                    }
+                    response
+                })
+            }
+            Entry::Words(words) => {
+                let draft = view.drafts.entry(row.field).or_default();
+                entry(ui, skin, &word, |ui| {
+                    settled_entry(ui, draft, words, NAME, &word, |text| {
+                        put(Input::Words(text.to_owned()));
+                        Ok(())
+                    })
+                })
+            }
+        };
+        if let Some(hint) = row.hint {
+            response.on_hover_text(skin.say(hint));
+        }
+        let refused = view.drafts.get(&row.field).and_then(|draft| draft.as_ref()?.1.as_ref());
+        problem(ui, skin, refused);
+    }
+}

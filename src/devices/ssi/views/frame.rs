@@ -1,0 +1,272 @@
+//! The frame on the drawing board: its family, the strip of its bits, everything that can be set, and a frame to try it with.
+
+use egui::{RichText, Ui};
+
+use super::View as Tab;
+use super::form::rows_ui;
+use super::trial;
+use crate::app::{Action, AnyDevice, Studio, Text, Wish};
+use crate::devices::ssi::protocol::Family;
+use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::strip::{self, Strip};
+use crate::devices::ssi::state::{Action as Ssi, Edit, Encoder, Group, Try};
+use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
+use crate::ui::controls::{
+    button, card_with, choice, enabled_button, icon_button, name, paragraph, primary, problem, settled_entry,
+    two_columns,
+};
+use crate::ui::{Skin, icons};
+
+/// What the page remembers.
+#[derive(Default)]
+pub(super) struct View {
+    /// The cell that is looked at, by its clock.
+    selected: Option<u8>,
+    format: String,
+    named: Option<(String, Option<Text>)>,
+}
+
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    encoder: &Encoder,
+    view: &mut Tab,
+    actions: &mut Vec<Action>,
+) {
+    layout(ui, skin, encoder, &mut view.frame, actions);
+    ui.add_space(skin.space.groups);
+    let form = encoder.designer.form();
+    let (left, right) = columns(&form);
+    two_columns(
+        ui,
+        skin,
+        (view, &mut *actions),
+        |ui, (view, actions)| {
+            trial::card_ui(ui, skin, encoder, &mut view.trial, actions);
+            for group in right {
+                ui.add_space(skin.space.groups);
+                group_ui(ui, skin, encoder, group, view, actions);
+            }
+        },
+        |ui, (view, actions)| {
+            for (number, group) in left.iter().enumerate() {
+                if number > 0 {
+                    ui.add_space(skin.space.groups);
+                }
+                group_ui(ui, skin, encoder, group, view, actions);
+            }
+        },
+    );
+    ui.add_space(skin.space.groups);
+    foot(ui, skin, studio, device, encoder, actions);
+}
+
+/// What stands beside the frame to try with, and what below it: direction and preset, and error bits.
+fn columns(form: &[Group]) -> (&[Group], &[Group]) {
+    form.split_at(form.len().min(2))
+}
+
+/// Family, strip, and what there is to say of both.
+fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    let designer = &encoder.designer;
+    let id = encoder.session.id;
+    let aside = |ui: &mut Ui| {
+        if icon_button(ui, encoder.designer.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
+            actions.push(Action::Ssi(id, Ssi::Redo));
+        }
+        if icon_button(ui, encoder.designer.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
+            actions.push(Action::Ssi(id, Ssi::Undo));
+        }
+    };
+    let mut asked = Vec::new();
+    card_with(ui, skin, "ssi_layout.title", aside, |ui| {
+        family(ui, skin, encoder, view, &mut asked);
+        ui.add_space(skin.space.between);
+        strip_ui(ui, skin, encoder, view, &mut asked);
+        if encoder.link_to_send().is_some() {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(RichText::new(icons::INFO).color(skin.palette.accent));
+                ui.label(skin.say("ssi_layout.sends_other"));
+                if button(ui, icons::PLAY, &skin.say("ssi_layout.send")).clicked() {
+                    asked.push(Action::Ssi(id, Ssi::SendLayout));
+                }
+            });
+        }
+        problem(ui, skin, designer.problem());
+        for advice in &designer.design().advice {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(icons::INFO).color(skin.palette.accent));
+                paragraph(ui, skin.caption(skin.words(&words::advice(advice))));
+            });
+        }
+        if designer.layout().loses_lowest_bit() {
+            paragraph(ui, RichText::new(skin.say("ssi_layout.loses")).color(skin.palette.warn));
+        }
+    });
+    actions.append(&mut asked);
+}
+
+fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    let designer = &encoder.designer;
+    let id = encoder.session.id;
+    let edit = |edit| Action::Ssi(id, Ssi::Edit(Box::new(edit)));
+    let families: Vec<&Family> = designer.families().iter().collect();
+    let own = designer.family().and_then(|own| families.iter().position(|family| family.key == own.key));
+    let mut chosen = own;
+    ui.horizontal_wrapped(|ui| {
+        let word = skin.say("ssi_layout.family");
+        ui.label(skin.label(&word));
+        let all = families.iter().enumerate().map(|(at, family)| (Some(at), family.name.clone()));
+        let free = std::iter::once((None, skin.say("ssi_layout.free")));
+        if choice(ui, &word, &mut chosen, free.chain(all)) {
+            let key = chosen.and_then(|at| families.get(at)).map(|family| family.key.clone());
+            actions.push(edit(key.map_or(Edit::Free, Edit::Family)));
+        }
+        let word = skin.say("ssi_layout.name");
+        let profile = &designer.design().profile;
+        ui.label(skin.label(&word));
+        settled_entry(ui, &mut view.named, &profile.name, 160.0, &word, |text| {
+            actions.push(edit(Edit::Name(text.trim().to_owned())));
+            Ok(())
+        });
+        ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, skin.say("ssi_layout.import")), |ui| {
+            ui.set_width(320.0);
+            paragraph(ui, skin.caption(skin.say("ssi_layout.import_words")));
+            if button(ui, icons::PLUS, &skin.say("ssi.new_layout")).clicked() {
+                actions.push(Action::NewLayout);
+                ui.close();
+            }
+            if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
+                actions.push(Action::AskOpen);
+                ui.close();
+            }
+            ui.separator();
+            let word = skin.say("ssi_layout.linuxcnc");
+            ui.label(skin.label(&word));
+            crate::ui::controls::mono_entry(ui, skin, &mut view.format, 300.0, &word, "error%1bposition%24ge");
+            if enabled_button(ui, !view.format.trim().is_empty(), icons::CHECK, &skin.say("ssi_layout.take")).clicked()
+            {
+                actions.push(edit(Edit::LinuxCnc(view.format.trim().to_owned())));
+                ui.close();
+            }
+        });
+    });
+    match designer.family() {
+        Some(family) if designer.design().settings.is_none() => {
+            ui.horizontal_wrapped(|ui| {
+                let text = Text::new("ssi_layout.by_hand").with("family", &family.name);
+                ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+                ui.label(skin.words(&text));
+                if button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_layout.delivered")).clicked() {
+                    actions.push(edit(Edit::Family(family.key.clone())));
+                }
+            });
+        }
+        Some(family) => {
+            paragraph(ui, skin.caption(skin.words(&words::note(&family.source))));
+        }
+        None => paragraph(ui, skin.caption(skin.say("ssi_layout.free_words"))),
+    }
+}
+
+fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    let layout = encoder.designer.layout();
+    let id = encoder.session.id;
+    let strip = Strip::of(layout);
+    let label = skin.say("ssi_layout.title");
+    let selected = view.selected.filter(|clock| *clock <= layout.clocks());
+    let model = BitStrip {
+        label: &label,
+        strip: &strip,
+        frame: Some(encoder.shown().frame),
+        selected,
+        toggles: true,
+        movable: true,
+        following: encoder.designer.errors_follow(),
+    };
+    match bit_strip(ui, skin, &model) {
+        Some(StripEvent::Moved(handle, to)) => actions.push(Action::Ssi(id, Ssi::Move(handle, to))),
+        Some(StripEvent::Selected(clock)) => view.selected = Some(clock),
+        Some(StripEvent::Toggled(clock)) => {
+            view.selected = Some(clock);
+            actions.push(Action::Ssi(id, Ssi::Try(Try::Toggle(clock))));
+        }
+        // It shows by itself what the frame would be.
+        Some(StripEvent::Preview(..)) | None => {}
+    }
+    let words = match selected {
+        Some(clock) => skin.words(&strip::cell(&strip, clock)),
+        None => skin.say("ssi_layout.hint"),
+    };
+    paragraph(ui, skin.caption(words));
+}
+
+fn group_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, group: &Group, view: &mut Tab, actions: &mut Vec<Action>) {
+    let id = encoder.session.id;
+    let error = group.error();
+    let mut asked = None;
+    let aside = |ui: &mut Ui| {
+        if let Some(index) = error
+            && icon_button(ui, true, icons::TRASH, &skin.say("ssi_form.remove_error")).clicked()
+        {
+            asked = Some(Ssi::RemoveErrorBit(index));
+        }
+    };
+    ui.push_id(error, |ui| {
+        card_with(ui, skin, group.title, aside, |ui| {
+            rows_ui(ui, skin, encoder, &group.rows, &mut view.form, actions);
+            if group.takes_error_bits()
+                && enabled_button(
+                    ui,
+                    encoder.designer.with_error_bit().is_some(),
+                    icons::PLUS,
+                    &skin.say("ssi_form.add_error"),
+                )
+                .clicked()
+            {
+                actions.push(Action::Ssi(id, Ssi::AddErrorBit));
+            }
+        });
+    });
+    actions.extend(asked.map(|asked| Action::Ssi(id, asked)));
+}
+
+/// Taking changes back, saving, and taking the layout for an encoder that is connected.
+fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let is_dirty = encoder.is_dirty();
+    ui.horizontal(|ui| {
+        if enabled_button(ui, is_dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
+            actions.push(device.wish(Wish::RevertAll));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if primary(ui, skin, true, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+                actions.push(Action::Save(device.id()));
+            }
+            take_for(ui, skin, studio, device, actions);
+            if is_dirty {
+                let words = RichText::new(skin.say("ssi_layout.unsaved")).color(skin.palette.staged);
+                ui.add(egui::Label::new(words).truncate());
+            }
+        });
+    });
+}
+
+/// The layout for an encoder that is connected: which one is chosen here.
+fn take_for(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+    let own = |other: &&AnyDevice| other.tab() == device.tab() && other.is_connected() && other.id() != device.id();
+    let targets: Vec<&AnyDevice> = studio.devices().iter().filter(own).collect();
+    if targets.is_empty() {
+        return;
+    }
+    let word = skin.say("ssi_layout.take_for");
+    let menu = ui.menu_button(format!("{}  {word}", icons::PLUGS_CONNECTED), |ui| {
+        for target in targets {
+            if ui.button(format!("{} · {}", target.name(), target.place())).clicked() {
+                actions.push(device.wish(Wish::WriteInto(target.id())));
+                ui.close();
+            }
+        }
+    });
+    name(menu.response, true, &word).on_hover_text(skin.say("ssi_layout.take_for_hint"));
+}

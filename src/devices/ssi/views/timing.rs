@@ -1,0 +1,88 @@
+//! What the times of a transfer allow: a burst to scale, how often one may ask and how old a position is, and what does not
+//! fit.
+
+use egui::{RichText, Ui};
+
+use super::form::{View, rows_ui};
+use crate::app::{Action, Text};
+use crate::devices::ssi::protocol::Timing;
+use crate::devices::ssi::state::Encoder;
+use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::state::timing::Diagram;
+use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
+use crate::ui::controls::{card, paragraph, row, two_columns};
+use crate::ui::{Skin, icons};
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    let designer = &encoder.designer;
+    let rows = designer.reading_form();
+    let Some(times) = designer.times() else {
+        card(ui, skin, "ssi_timing.reading", |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
+        ui.add_space(skin.space.groups);
+        card(ui, skin, "ssi_timing.title", |ui| paragraph(ui, skin.label(skin.say("ssi_timing.no_family"))));
+        return;
+    };
+    let reads = designer.reads();
+    let timing = times.reckon(&reads);
+    card(ui, skin, "ssi_timing.title", |ui| {
+        let diagram = Diagram::of(designer.layout(), times, &reads);
+        let label = skin.say("ssi_timing.title");
+        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
+        timing_diagram(ui, skin, &model);
+    });
+    ui.add_space(skin.space.groups);
+    two_columns(
+        ui,
+        skin,
+        (view, actions),
+        |ui, (view, actions)| {
+            card(ui, skin, "ssi_timing.reading", |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
+        },
+        |ui, _| card(ui, skin, "ssi_timing.result", |ui| result(ui, skin, &timing)),
+    );
+}
+
+fn result(ui: &mut Ui, skin: &Skin, timing: &Timing) {
+    let micros = |time: std::time::Duration| skin.number(time.as_secs_f64() * 1e6, 2);
+    let mut told = |id: &'static str, words: String| row(ui, skin, &skin.say(id), skin.mono(words));
+    told("ssi_timing.period", format!("{} µs", micros(timing.period)));
+    told("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
+    told(
+        "ssi_timing.cycle",
+        format!("{} µs · {} Hz", micros(timing.cycle), skin.number(1.0 / timing.cycle.as_secs_f64().max(1e-9), 1)),
+    );
+    let (least, most) = timing.monoflop;
+    let monoflop = if least == most { micros(most) } else { format!("{} … {}", micros(least), micros(most)) };
+    told("ssi_timing.monoflop", format!("{monoflop} µs"));
+    told("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
+    told("ssi_timing.most_reads", format!("{} Hz", skin.number(timing.most_reads_hz, 0)));
+    let age = timing.age.map_or_else(
+        || skin.say("ssi_timing.age_unknown"),
+        |(least, most)| {
+            if least == most {
+                format!("{} µs", micros(most))
+            } else {
+                format!("{} … {} µs", micros(least), micros(most))
+            }
+        },
+    );
+    told("ssi_timing.age", age);
+    let cable = timing
+        .cable_hz
+        .map_or_else(|| skin.say("ssi_timing.cable_unknown"), |hz| format!("{} Hz", skin.number(f64::from(hz), 0)));
+    told("ssi_timing.most_clock", cable);
+    ui.add_space(skin.space.inside);
+    if timing.warnings.is_empty() {
+        said(ui, skin, (icons::CHECK_CIRCLE, skin.palette.good), &Text::new("ssi_timing.fits"));
+    }
+    for warning in &timing.warnings {
+        said(ui, skin, (icons::WARNING, skin.palette.warn), &words::timing(warning));
+    }
+}
+
+fn said(ui: &mut Ui, skin: &Skin, (icon, colour): (&str, crate::app::Rgb), words: &Text) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(colour));
+        paragraph(ui, skin.words(words));
+    });
+}

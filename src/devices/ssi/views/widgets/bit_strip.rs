@@ -1,0 +1,234 @@
+//! An SSI frame as a row of cells, one a clock, whose boundaries and single bits can be moved.
+//!
+//! * **Size**: as wide as there is room; cells shrink to a least width, then the strip wraps into as few lines
+//!   of whole bytes as there can be.
+//! * **Keyboard**: Tab goes to the cells and from handle to handle. On the cells the left and right arrows, Home and End
+//!   select one, Space turns its bit over where that is wished. On a handle the arrows move it by one clock, Home and End
+//!   as far as it goes.
+//! * **Pointer**: a click selects a cell and turns its bit over; a click on its number only selects. A handle is dragged;
+//!   what the frame would be is shown while it is, and Escape gives it up. A handle's name and use are shown under it.
+//! * **Accessible**: the cells are a slider with the label given, whose value is the cell selected; so is each handle, with
+//!   where it stands. A field is a group with its bits.
+//! * **Painting**: a cell in the colour of its field, the clock's number above, and in it the bit, or the bit's number
+//!   while there is no frame; a bracket below each field with its name, a tab at each end that can be moved; a bit that
+//!   tells of something is filled with the colour of its verdict, which its name has too, with an icon.
+
+mod grips;
+mod names;
+mod paint;
+mod rows;
+
+use egui::accesskit::Role;
+use egui::{EventFilter, Id, Key, Modifiers, Rect, Sense, Ui, WidgetInfo};
+
+use crate::devices::ssi::protocol::{Meaning, Role as Carries};
+use crate::devices::ssi::state::strip::{self, Handle, Shown, Strip};
+use crate::ui::Skin;
+
+pub(super) use paint::ink as field_ink;
+
+use names::Tag;
+use rows::Rows;
+
+/// A frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BitStrip<'a> {
+    /// Accessible name of the cells.
+    pub(crate) label: &'a str,
+    /// The frame as it is, also while something is dragged.
+    pub(crate) strip: &'a Strip,
+    /// Bits to show in it, right-justified.
+    pub(crate) frame: Option<u64>,
+    /// Which clock's cell is selected.
+    pub(crate) selected: Option<u8>,
+    /// Bits can be turned over.
+    pub(crate) toggles: bool,
+    /// Boundaries and single bits can be moved.
+    pub(crate) movable: bool,
+    /// Error and parity bits directly behind the position go with its end.
+    pub(crate) following: bool,
+}
+
+/// What the user wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StripEvent {
+    /// While something is dragged: it would come to this clock. It comes at every drawing until the drag ends.
+    Preview(Handle, u8),
+    /// To this clock, which it can reach and where it is not yet.
+    Moved(Handle, u8),
+    /// Another cell, by its clock.
+    Selected(u8),
+    /// The bit of this clock shall be the other one.
+    Toggled(u8),
+}
+
+/// Something that is dragged, from one drawing to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Drag {
+    handle: Handle,
+    /// The clock on which it was taken hold of.
+    from: Option<u8>,
+    /// Where it would come to; `None`: it was given up.
+    to: Option<u8>,
+}
+
+/// Draws it and says what was done. One strip a `Ui`: another needs an id of its own (`push_id`).
+pub(crate) fn bit_strip(ui: &mut Ui, skin: &Skin, model: &BitStrip<'_>) -> Option<StripEvent> {
+    let base = ui.make_persistent_id("bit_strip");
+    let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
+    let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
+    // What is drawn is the frame as it would be; what is taken hold of, and where, is the frame as it is.
+    let preview = held.and_then(|drag| Some(model.strip.moved(drag.handle, drag.to?, model.following)));
+    let shown = preview.as_ref().unwrap_or(model.strip);
+    let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.shown(frame)).unwrap_or_default();
+    let room = ui.available_width();
+    let rows = Rows::new(room, model.strip.layout().clocks());
+    let told = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
+    let (tags, levels) = names::tags(ui, skin, shown, &rows, told);
+    let clocks = shown.layout().clocks();
+    let sized = rows.clone().at(egui::Pos2::ZERO, &levels);
+    let (outer, _) = ui.allocate_exact_size(sized.size(clocks), Sense::hover());
+    let rows = rows.at(outer.min, &levels);
+    let view = View { ui, skin, model, shown, cells: &cells, rows: &rows, base };
+
+    let chosen = view.choose();
+    view.fields(&tags);
+    let pressed = view.press(&tags);
+    view.paint(&tags);
+    let moved = if model.movable { grips::grips(&view, drag) } else { None };
+    moved.or(pressed).or(chosen)
+}
+
+/// What everything here needs.
+struct View<'a> {
+    ui: &'a Ui,
+    skin: &'a Skin,
+    model: &'a BitStrip<'a>,
+    /// The frame that is drawn.
+    shown: &'a Strip,
+    /// Its bits, where they are known.
+    cells: &'a [Shown],
+    rows: &'a Rows,
+    base: Id,
+}
+
+impl View<'_> {
+    /// The keyboard on the cells.
+    fn choose(&self) -> Option<StripEvent> {
+        let (ui, model) = (self.ui, self.model);
+        let clocks = model.strip.layout().clocks();
+        let id = self.base.with("cells");
+        let area = self.rows.runs(1, clocks).into_iter().reduce(Rect::union).unwrap_or(Rect::NOTHING);
+        let response = ui.interact(area, id, Sense::focusable_noninteractive());
+        let selected = model.selected.filter(|clock| (1..=clocks).contains(clock));
+        response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::Slider, ui.is_enabled(), model.label);
+            info.value = selected.map(f64::from);
+            info.current_text_value = selected.map(|clock| self.says(clock));
+            info
+        });
+        if !response.has_focus() {
+            return None;
+        }
+        keep_arrows(ui, id);
+        let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        let at = selected.unwrap_or(0);
+        let mut to = at;
+        for (key, target) in [
+            (Key::ArrowLeft, at.saturating_sub(1).max(1)),
+            (Key::ArrowRight, at.saturating_add(1).min(clocks)),
+            (Key::Home, 1),
+            (Key::End, clocks),
+        ] {
+            if pressed(key) {
+                to = target;
+            }
+        }
+        if to != at {
+            return Some(StripEvent::Selected(to));
+        }
+        let turns = pressed(Key::Space) || pressed(Key::Enter);
+        selected.filter(|_| turns && model.toggles).map(StripEvent::Toggled)
+    }
+
+    /// A cell in words, with its bit.
+    fn says(&self, clock: u8) -> String {
+        let words = self.skin.words(&strip::cell(self.shown, clock));
+        match self.shown_at(clock) {
+            Some(cell) => format!("{words} = {}", u8::from(cell.bit)),
+            None => words,
+        }
+    }
+
+    fn shown_at(&self, clock: u8) -> Option<Shown> {
+        self.cells.get(usize::from(clock.checked_sub(1)?)).copied()
+    }
+
+    /// The number of a clock's bit, 0 the lowest.
+    fn number(&self, clock: u8) -> Option<u8> {
+        let cell = self.shown.cells().get(usize::from(clock.checked_sub(1)?))?;
+        match cell.role {
+            Carries::Multiturn(bit) | Carries::Singleturn(bit) | Carries::Position(bit) => Some(bit),
+            _ => None,
+        }
+    }
+
+    /// The pointer on the cells.
+    fn press(&self, tags: &[Tag]) -> Option<StripEvent> {
+        let (ui, model) = (self.ui, self.model);
+        let mut event = None;
+        for tag in tags {
+            let Some(field) = self.shown.fields().get(tag.field) else { continue };
+            for clock in field.first..=field.last {
+                let cell = self.rows.cell(clock);
+                let rect = Rect::from_min_max(egui::pos2(cell.left(), self.rows.number(clock).y - 7.0), cell.max);
+                let response = ui.interact(rect, self.base.with("cell").with(clock), Sense::CLICK);
+                if response.clicked() {
+                    // The arrows go on from here.
+                    ui.memory_mut(|memory| memory.request_focus(self.base.with("cells")));
+                    let is_bit = response.interact_pointer_pos().is_some_and(|pos| cell.contains(pos));
+                    let turns = is_bit && model.toggles && model.frame.is_some();
+                    event = Some(if turns { StripEvent::Toggled(clock) } else { StripEvent::Selected(clock) });
+                }
+                response.on_hover_ui(|ui| {
+                    ui.label(self.says(clock));
+                });
+            }
+        }
+        event
+    }
+
+    /// What a screen reader hears of the fields.
+    fn fields(&self, tags: &[Tag]) {
+        for tag in tags {
+            let Some(field) = self.shown.fields().get(tag.field) else { continue };
+            let (run, _) = names::widest(self.rows, field);
+            let rect = tag.rect(self.rows, Rows::lane(run)).union(Rows::lane(run));
+            let response = self.ui.interact(rect, self.base.with("field").with(tag.field), Sense::hover());
+            let name = self.skin.words(&strip::field(self.shown, field));
+            let place = self.skin.words(&strip::clocks(field));
+            response.widget_info(|| {
+                let mut info = WidgetInfo::labeled(Role::Group, true, format!("{name}, {place}"));
+                let bits = (field.first..=field.last).filter_map(|clock| self.shown_at(clock));
+                let bits: String = bits.map(|cell| if cell.bit { '1' } else { '0' }).collect();
+                info.current_text_value = Some(bits).filter(|bits| !bits.is_empty());
+                info
+            });
+            response.on_hover_ui(|ui| {
+                ui.label(format!("{name}\n{place}"));
+            });
+        }
+    }
+}
+
+/// The worst that any of these clocks tells.
+fn tells(cells: &[Shown], clocks: std::ops::RangeInclusive<u8>) -> Option<Meaning> {
+    let own = clocks.filter_map(|clock| cells.get(usize::from(clock.checked_sub(1)?))?.tells);
+    own.min_by_key(|meaning| *meaning == Meaning::Warning)
+}
+
+/// The horizontal arrows are ours while this has the keyboard.
+fn keep_arrows(ui: &Ui, id: Id) {
+    let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+}

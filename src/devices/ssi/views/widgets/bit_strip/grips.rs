@@ -1,0 +1,189 @@
+//! What can be taken hold of in a bit strip, with pointer and keyboard.
+
+use egui::accesskit::Role;
+use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
+
+use super::rows::Rows;
+use super::{Drag, StripEvent, View, keep_arrows, paint};
+use crate::devices::ssi::state::strip::{self, Handle, Strip};
+
+/// How far beside its edge a handle is taken hold of that belongs to the field there, and how wide that is.
+const BESIDE: f32 = 5.0;
+const WIDTH: f32 = 9.0;
+
+/// All of them: what they look like, and what was done to one.
+pub(super) fn grips(view: &View<'_>, drag: Option<Drag>) -> Option<StripEvent> {
+    let (ui, model) = (view.ui, view.model);
+    let mut event = None;
+    for handle in model.strip.handles() {
+        let Some((rect, at)) = place(view.rows, model.strip, *handle).zip(model.strip.clock(*handle)) else { continue };
+        let id = id(view.base, *handle);
+        let turns = matches!(handle, Handle::Error(_) | Handle::Parity);
+        let response = ui.interact(rect, id, if turns { Sense::click_and_drag() } else { Sense::drag() });
+        response.widget_info(|| {
+            let label = view.skin.words(&strip::handle(model.strip, *handle));
+            let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), label);
+            info.role = Role::Slider;
+            info.current_text_value = Some(view.skin.words(&strip::value(model.strip, *handle)));
+            info
+        });
+        if response.clicked() {
+            let turns = model.toggles && model.frame.is_some();
+            event = Some(if turns { StripEvent::Toggled(at) } else { StripEvent::Selected(at) });
+        }
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        event = pulled(view, &response, *handle, at, drag).or(keys(view, &response, *handle, at)).or(event);
+        let is_held = response.dragged();
+        if is_held || response.hovered() {
+            ui.set_cursor_icon(match (handle.is_cell(), is_held) {
+                (true, true) => CursorIcon::Grabbing,
+                (true, false) => CursorIcon::Grab,
+                (false, _) => CursorIcon::ResizeHorizontal,
+            });
+        }
+        let state = paint::Grip { active: is_held || response.hovered(), focused: response.has_focus() };
+        paint::grip(view, *handle, state, drag.filter(|_| is_held));
+        if !is_held {
+            tip(view, response, *handle);
+        }
+    }
+    event
+}
+
+/// One handle, whatever it is called while zeros between turns and steps come and go.
+fn id(base: Id, handle: Handle) -> Id {
+    let handle = if handle == Handle::TurnsEnd { Handle::Split } else { handle };
+    base.with("handle").with(handle)
+}
+
+/// Whether something is dragged still.
+pub(super) fn is_dragged(ui: &Ui, base: Id, drag: Drag) -> bool {
+    ui.ctx().is_being_dragged(id(base, drag.handle))
+}
+
+/// Where something can be taken hold of.
+fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
+    let clock = strip.clock(handle)?;
+    if matches!(handle, Handle::Error(_) | Handle::Parity) {
+        let cell = rows.cell(clock);
+        return Some(cell.union(Rows::lane(cell)));
+    }
+    if handle == Handle::Position {
+        let (first, last) = strip.position()?;
+        let runs = rows.runs(first, last);
+        let widest = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))?;
+        // Its ends are for the boundaries there.
+        let lane = Rows::lane(widest);
+        return Some(lane.shrink2(Vec2::new(WIDTH.min(lane.width() / 3.0), 0.0)));
+    }
+    let edge = edge(rows, strip, handle)?;
+    let x = edge.center().x + side(handle) * if is_second(strip, handle) { WIDTH } else { BESIDE };
+    let (top, bottom) = match handle {
+        // Other boundaries may stand on the same edge.
+        Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
+        _ => (edge.top(), edge.bottom()),
+    };
+    Some(Rect::from_x_y_ranges(x - WIDTH / 2.0..=x + WIDTH / 2.0, top..=bottom))
+}
+
+/// The edge on which a boundary stands.
+pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
+    let begins = matches!(handle, Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd);
+    let clocks = strip.layout().clocks();
+    // What has been shifted out of its area stands behind the last clock.
+    let clock = strip.clock(handle)?.min(clocks);
+    Some(rows.edge(clock, begins, clocks))
+}
+
+/// Where the tab of a boundary is drawn, from its edge on.
+pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
+    side(handle) * if is_second(strip, handle) { WIDTH - 1.0 } else { BESIDE * 0.6 }
+}
+
+/// A boundary between turns and steps stands on the edge itself; where zeros may come between, is beside it.
+fn is_second(strip: &Strip, handle: Handle) -> bool {
+    handle == Handle::BetweenEnd && strip.handles().contains(&Handle::Split)
+}
+
+/// On which side of its edge a boundary belongs to a field: -1 before, 1 behind, 0 to both.
+const fn side(handle: Handle) -> f32 {
+    match handle {
+        Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd | Handle::FrameEnd => 1.0,
+        Handle::TurnsEnd | Handle::StepsEnd => -1.0,
+        _ => 0.0,
+    }
+}
+
+/// The pointer: where it would bring the handle, and where it lets it go.
+fn pulled(view: &View<'_>, response: &Response, handle: Handle, at: u8, drag: Option<Drag>) -> Option<StripEvent> {
+    let (ui, model) = (view.ui, view.model);
+    let (held, released) = (response.dragged(), response.drag_stopped());
+    if !held && !released {
+        return None;
+    }
+    let clocks = model.strip.layout().clocks();
+    let own = drag.filter(|drag| drag.handle == handle);
+    let pressed = || ui.input(|input| input.pointer.press_origin()).map(|pos| view.rows.clock(pos, clocks));
+    let from = own.map_or_else(pressed, |drag| drag.from);
+    let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || own.is_some_and(|drag| drag.to.is_none());
+    let to = response.interact_pointer_pos().filter(|_| !given_up).map(|pos| {
+        let wanted = match handle {
+            Handle::Error(_) | Handle::Parity => view.rows.clock(pos, clocks),
+            Handle::Position => {
+                let under = view.rows.clock(pos, clocks);
+                let by = i16::from(under) - i16::from(from.unwrap_or(under));
+                u8::try_from((i16::from(at) + by).max(0)).unwrap_or(u8::MAX)
+            }
+            _ => view.rows.boundary(pos, clocks),
+        };
+        model.strip.moved(handle, wanted, model.following).clock(handle).unwrap_or(at)
+    });
+    if released {
+        ui.data_mut(|data| data.remove::<Drag>(view.base));
+        return to.filter(|to| *to != at).map(|to| StripEvent::Moved(handle, to));
+    }
+    let now = Drag { handle, from, to };
+    if drag != Some(now) {
+        ui.data_mut(|data| data.insert_temp(view.base, now));
+        ui.request_repaint();
+    }
+    to.map(|to| StripEvent::Preview(handle, to))
+}
+
+/// The keyboard: by one clock, or as far as it goes.
+fn keys(view: &View<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
+    if !response.has_focus() {
+        return None;
+    }
+    let (ui, model) = (view.ui, view.model);
+    keep_arrows(ui, response.id);
+    let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let to = if pressed(Key::ArrowLeft) {
+        at.saturating_sub(1)
+    } else if pressed(Key::ArrowRight) {
+        at.saturating_add(1)
+    } else if pressed(Key::Home) {
+        0
+    } else if pressed(Key::End) {
+        u8::MAX
+    } else {
+        return None;
+    };
+    let reached = model.strip.moved(handle, to, model.following).clock(handle)?;
+    (reached != at).then_some(StripEvent::Moved(handle, reached))
+}
+
+fn tip(view: &View<'_>, response: Response, handle: Handle) {
+    response.on_hover_ui(|ui| {
+        ui.set_max_width(280.0);
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
+        let name = view.skin.words(&strip::handle(view.model.strip, handle));
+        let value = view.skin.words(&strip::value(view.model.strip, handle));
+        ui.label(format!("{name}: {value}"));
+        ui.label(view.skin.caption(view.skin.words(&strip::hint(handle))));
+        let reach = strip::reach(view.model.strip, handle, view.model.following);
+        ui.label(view.skin.caption(view.skin.words(&reach)));
+    });
+}

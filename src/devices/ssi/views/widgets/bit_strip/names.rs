@@ -1,0 +1,194 @@
+//! The names of the fields below their brackets: in the middle where there is room, else beside a line that leads down
+//! to them, as many lines of them as keep them apart.
+
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Color32, FontId, Galley, Painter, Rect, Stroke, Ui, Vec2, pos2};
+
+use super::rows::{NAME, Rows};
+use crate::analysis::quality::Verdict;
+use crate::devices::ssi::protocol::Meaning;
+use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
+use crate::ui::{Skin, controls};
+
+/// A name and where it is.
+pub(super) struct Tag {
+    /// Which of the strip's fields it is of.
+    pub(super) field: usize,
+    line: usize,
+    /// Which line of names.
+    level: usize,
+    /// From the first cell of its line.
+    left: f32,
+    /// From where a line leads down to it, counted likewise.
+    leader: Option<f32>,
+    galley: Arc<Galley>,
+}
+
+/// Between two names on a line.
+const APART: f32 = 6.0;
+/// Longer names are cut off; the field's tooltip has them whole.
+const WIDEST: f32 = 160.0;
+/// Lines of names at most, before the last: as many as a frame has error bits.
+const LEVELS: usize = 8;
+
+/// A name that is wider than its field.
+struct Narrow {
+    index: usize,
+    line: usize,
+    /// The middle of the field.
+    x: f32,
+    /// None of its neighbours is such a name.
+    alone: bool,
+    /// It begins at its line instead of ending there.
+    begins: bool,
+    /// Where the cells end.
+    room: f32,
+    galley: Arc<Galley>,
+}
+
+impl Narrow {
+    /// Where it is beside those that have their place.
+    fn placed(self, tags: &[Tag]) -> Tag {
+        let width = self.galley.size().x;
+        let middle = self.x - width / 2.0;
+        let is_in = (-APART..=self.room + APART - width).contains(&middle);
+        let (left, level) = if self.alone && is_in && self.is_free(tags, middle, 0) {
+            (middle, 0)
+        } else {
+            let left = if self.begins {
+                (self.x - APART / 2.0).min(self.room + APART - width)
+            } else {
+                self.x + APART / 2.0 - width
+            };
+            let free = (0..LEVELS).find(|level| self.is_free(tags, left, *level));
+            // Where lines cannot be kept off names, names at least are kept off each other.
+            let apart = || (0..).find(|level| self.is_apart(tags, left, *level));
+            (left, free.or_else(apart).unwrap_or(LEVELS))
+        };
+        let leader = Some(self.x).filter(|_| level > 0);
+        Tag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
+    }
+
+    /// No other name is there.
+    fn is_apart(&self, tags: &[Tag], left: f32, level: usize) -> bool {
+        let right = left + self.galley.size().x;
+        let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
+        own.map(Tag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
+    }
+
+    /// No other name is there, nor a line that leads to one further down, nor is one in the way of its own line.
+    fn is_free(&self, tags: &[Tag], left: f32, level: usize) -> bool {
+        let right = left + self.galley.size().x;
+        let mut others = tags.iter().filter(|tag| tag.line == self.line);
+        let crossed = others.any(|tag| {
+            let (from, to) = tag.span();
+            match tag.level.cmp(&level) {
+                Ordering::Equal => false,
+                Ordering::Greater => tag.leader.is_some_and(|x| left <= x && x <= right),
+                Ordering::Less => from <= self.x && self.x <= to,
+            }
+        });
+        self.is_apart(tags, left, level) && !crossed
+    }
+}
+
+impl Tag {
+    fn span(&self) -> (f32, f32) {
+        (self.left, self.left + self.galley.size().x)
+    }
+
+    /// The rectangle of its words.
+    pub(super) fn rect(&self, rows: &Rows, lane: Rect) -> Rect {
+        let top = lane.bottom() + self.level as f32 * NAME;
+        Rect::from_min_size(pos2(rows.left() + self.left, top), Vec2::new(self.galley.size().x, NAME))
+    }
+
+    /// Paints it below its bracket.
+    pub(super) fn paint(&self, painter: &Painter, skin: &Skin, (rows, lane): (&Rows, Rect), colour: Color32) {
+        let rect = self.rect(rows, lane);
+        if let Some(x) = self.leader {
+            let stroke = Stroke::new(1.0, skin.palette.line);
+            painter.vline(rows.left() + x, lane.center().y + 4.0..=rect.top() + 3.0, stroke);
+        }
+        painter.galley_with_override_text_color(rect.left_top(), self.galley.clone(), colour);
+    }
+}
+
+/// The names of all fields, and how many lines of them there are below each line of cells. `rows` are at no place yet:
+/// how high they are depends on this.
+pub(super) fn tags(
+    ui: &Ui,
+    skin: &Skin,
+    strip: &Strip,
+    rows: &Rows,
+    told: impl Fn(&Field) -> Option<Meaning>,
+) -> (Vec<Tag>, Vec<usize>) {
+    let galley = |own: &Field, words: String| {
+        let size = skin.sizes.caption;
+        let (font, words) = match told(own) {
+            Some(meaning) => (skin.strong(size), format!("{} {words}", controls::verdict(skin, verdict(meaning)).0)),
+            None => (FontId::proportional(size), words),
+        };
+        let mut job = LayoutJob::simple_singleline(words, font, skin.palette.muted.into());
+        job.wrap = TextWrapping::truncate_at_width(WIDEST);
+        ui.painter().layout_job(job)
+    };
+    let mut tags: Vec<Tag> = Vec::new();
+    let mut narrow = Vec::new();
+    for (index, own) in strip.fields().iter().enumerate() {
+        let (run, line) = widest(rows, own);
+        let words = [skin.words(&name(strip, own)), skin.words(&short(strip, own)), bare(strip, own)];
+        let fits = words.into_iter().map(|words| galley(own, words)).find(|own| own.size().x <= run.width() + 2.0);
+        match fits {
+            Some(galley) => {
+                let left = run.center().x - galley.size().x / 2.0;
+                tags.push(Tag { field: index, line, level: 0, left, leader: None, galley });
+            }
+            None => narrow.push((index, own, run, line)),
+        }
+    }
+    let room = rows.width(strip.layout().clocks());
+    let narrow = narrow.into_iter().map(|(index, own, run, line)| {
+        let galley = galley(own, bare(strip, own));
+        let begins = run.center().x + APART / 2.0 < galley.size().x;
+        Narrow { index, line, x: run.center().x, alone: true, begins, room, galley }
+    });
+    let mut narrow: Vec<Narrow> = narrow.collect();
+    // Where several stand side by side, each ends at its own line, so that the next one's passes it; at the beginning,
+    // where there is no room for that, each begins at its own, the last of them the highest.
+    for group in narrow.chunk_by_mut(|a, b| a.index + 1 == b.index && a.line == b.line) {
+        let (alone, begins) = (group.len() == 1, group.iter().any(|own| own.begins));
+        for own in group {
+            (own.alone, own.begins) = (alone, begins);
+        }
+    }
+    let (begin, end): (Vec<Narrow>, Vec<Narrow>) = narrow.into_iter().partition(|own| own.begins);
+    for narrow in end.into_iter().chain(begin.into_iter().rev()) {
+        tags.push(narrow.placed(&tags));
+    }
+    let levels = (0..rows.count(strip.layout().clocks())).map(|line| {
+        let own = tags.iter().filter(|tag| tag.line == line);
+        own.map(|tag| tag.level + 1).max().unwrap_or(1)
+    });
+    let levels = levels.collect();
+    (tags, levels)
+}
+
+/// What is told of a position, as a verdict.
+pub(super) const fn verdict(meaning: Meaning) -> Verdict {
+    match meaning {
+        Meaning::Invalid => Verdict::Fault,
+        Meaning::Warning => Verdict::Warn,
+    }
+}
+
+/// The widest of a field's runs, and its line.
+pub(super) fn widest(rows: &Rows, field: &Field) -> (Rect, usize) {
+    let runs = rows.runs(field.first, field.last);
+    let line = rows.line(field.first);
+    let widest = runs.into_iter().enumerate().rev().max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width()));
+    widest.map_or((rows.cell(field.first), line), |(number, run)| (run, line + number))
+}

@@ -1,0 +1,161 @@
+//! The painting of a bit strip.
+
+use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
+
+use super::grips::{edge, tab};
+use super::names::{Tag, verdict, widest};
+use super::rows::Rows;
+use super::{Drag, View, tells};
+use crate::devices::ssi::protocol::Meaning;
+use crate::devices::ssi::state::strip::{self, Field, Handle, Kind};
+use crate::ui::widgets::BitCell;
+use crate::ui::widgets::{focus_ring, series};
+use crate::ui::{Skin, controls};
+
+/// The colour of a field; none for zeros.
+pub(crate) fn ink(skin: &Skin, kind: Kind) -> Color32 {
+    match kind {
+        Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => skin.palette.muted.into(),
+        Kind::Turns => series(skin, 0),
+        Kind::Steps | Kind::Position => series(skin, 1),
+        Kind::Error(_) => series(skin, 5),
+        Kind::Parity => series(skin, 6),
+        Kind::Again => series(skin, 7),
+    }
+}
+
+/// The colour of what is told.
+fn colour(skin: &Skin, meaning: Meaning) -> Color32 {
+    controls::verdict(skin, verdict(meaning)).1.into()
+}
+
+impl View<'_> {
+    /// Cells, brackets and names.
+    pub(super) fn paint(&self, tags: &[Tag]) {
+        let painter = self.ui.painter();
+        for tag in tags {
+            let Some(field) = self.shown.fields().get(tag.field) else { continue };
+            for clock in field.first..=field.last {
+                self.cell(field, clock);
+            }
+            for run in self.rows.runs(field.first, field.last) {
+                self.bracket(field, Rows::lane(run));
+            }
+            let (run, _) = widest(self.rows, field);
+            let told = tells(self.cells, field.first..=field.last).filter(|_| field.is_single());
+            let colour = told.map_or(self.skin.palette.muted.into(), |meaning| colour(self.skin, meaning));
+            tag.paint(painter, self.skin, (self.rows, Rows::lane(run)), colour);
+        }
+        let is_focused = self.ui.memory(|memory| memory.has_focus(self.base.with("cells")));
+        let selected = self.model.selected.filter(|clock| *clock <= self.shown.layout().clocks());
+        if let Some(clock) = selected {
+            let cell = self.rows.cell(clock);
+            let stroke = Stroke::new(2.0, self.skin.palette.accent);
+            painter.rect_stroke(cell, CornerRadius::same(2), stroke, StrokeKind::Inside);
+        }
+        if is_focused {
+            focus_ring(painter, self.skin, self.rows.cell(selected.unwrap_or(1)), CornerRadius::same(2));
+        }
+    }
+
+    fn cell(&self, field: &Field, clock: u8) {
+        let (skin, painter) = (self.skin, self.ui.painter());
+        let cell = self.rows.cell(clock);
+        let shown = self.shown_at(clock);
+        let told = shown.and_then(|cell| cell.tells);
+        let blank = self.number(clock).map_or_else(String::new, |bit| bit.to_string());
+        let ink = told.map_or_else(|| ink(skin, field.kind), |meaning| colour(skin, meaning));
+        let bit = shown.map(|cell| cell.bit);
+        BitCell { ink, bit, blank: &blank, alarm: told.is_some() }.paint(painter, skin, cell);
+        let is_selected = self.model.selected == Some(clock);
+        let colour = if is_selected { skin.palette.text } else { skin.palette.muted };
+        let font = FontId::monospace(skin.sizes.caption);
+        painter.text(self.rows.number(clock), Align2::CENTER_CENTER, clock.to_string(), font, colour.into());
+    }
+
+    /// The line below a field's cells, with its ends; what is moved as a whole has a thick one.
+    fn bracket(&self, field: &Field, lane: Rect) {
+        let ink = ink(self.skin, field.kind);
+        let is_moved = self.model.movable
+            && (field.is_single() || matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position));
+        let stroke = Stroke::new(if is_moved { 3.0 } else { 1.0 }, ink);
+        let (left, right, y) = (lane.left() + 1.0, lane.right() - 1.0, lane.center().y);
+        let painter = self.ui.painter();
+        painter.hline(left..=right, y, stroke);
+        for x in [left + 0.5, right - 0.5] {
+            painter.vline(x, y - 4.0..=y, Stroke::new(1.0, ink));
+        }
+    }
+}
+
+/// How a handle is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grip {
+    pub(super) active: bool,
+    pub(super) focused: bool,
+}
+
+/// A handle where it is drawn, with where it would go while it is dragged.
+pub(super) fn grip(view: &View<'_>, handle: Handle, state: Grip, drag: Option<Drag>) {
+    let (skin, painter) = (view.skin, view.ui.painter());
+    let accent = Color32::from(skin.palette.accent);
+    let lit = state.active || state.focused;
+    if handle.is_cell() {
+        let runs = match (handle, view.shown.clock(handle)) {
+            (Handle::Position, _) => {
+                view.shown.position().map(|(first, last)| view.rows.runs(first, last)).unwrap_or_default()
+            }
+            (_, Some(clock)) => vec![view.rows.cell(clock)],
+            (_, None) => Vec::new(),
+        };
+        for run in runs {
+            let lane = Rows::lane(run);
+            if lit {
+                painter.hline(lane.x_range(), lane.center().y, Stroke::new(3.0, accent));
+            }
+            let around = if handle == Handle::Position { lane.shrink2(Vec2::new(0.0, 3.0)) } else { run };
+            if state.focused {
+                focus_ring(painter, skin, around, CornerRadius::same(2));
+            }
+            if drag.is_some() {
+                painter.rect_stroke(run, CornerRadius::same(2), Stroke::new(2.0, accent), StrokeKind::Inside);
+            }
+        }
+    } else if let Some(edge) = edge(view.rows, view.shown, handle) {
+        let x = edge.center().x + tab(view.shown, handle);
+        let lane = edge.bottom() - 8.0;
+        let y = if handle == Handle::AreaEnd { edge.top() - 7.0 } else { lane };
+        let size = if lit { Vec2::new(5.0, 13.0) } else { Vec2::new(4.0, 11.0) };
+        let tab = Rect::from_center_size(pos2(x, y), size);
+        if lit {
+            painter.vline(edge.center().x, edge.top()..=edge.bottom(), Stroke::new(1.5, accent));
+        }
+        painter.rect_filled(tab.expand(1.0), CornerRadius::same(2), skin.palette.raised);
+        painter.rect_filled(tab, CornerRadius::same(2), if lit { accent } else { skin.palette.text.into() });
+        if state.focused {
+            focus_ring(painter, skin, tab, CornerRadius::same(2));
+        }
+    }
+    if drag.is_some() {
+        ghost(view, handle);
+    }
+}
+
+/// Where it would go, in words beside it.
+fn ghost(view: &View<'_>, handle: Handle) {
+    let (skin, painter) = (view.skin, view.ui.painter());
+    let Some(clock) = view.shown.clock(handle) else { return };
+    let middle = match edge(view.rows, view.shown, handle).filter(|_| !handle.is_cell()) {
+        Some(edge) => pos2(edge.center().x, edge.top() - 8.0),
+        None => view.rows.number(clock),
+    };
+    let words = skin.words(&strip::value(view.shown, handle));
+    let font = FontId::proportional(skin.sizes.caption);
+    let galley = painter.layout_no_wrap(words, font, skin.palette.on_accent.into());
+    let size = galley.size() + Vec2::new(skin.space.between, 2.0);
+    let room = view.ui.clip_rect();
+    let left = (middle.x - size.x / 2.0).min(room.right() - size.x).max(room.left());
+    let label = Rect::from_min_size(pos2(left, middle.y - size.y / 2.0), size);
+    painter.rect_filled(label, skin.space.inside, skin.palette.accent);
+    painter.galley(label.center() - galley.size() / 2.0, galley, skin.palette.on_accent.into());
+}

@@ -1,0 +1,63 @@
+//! A burst in time by what a screen reader and the pointer find.
+
+use std::time::Duration;
+
+use egui_kittest::kittest::Queryable;
+
+use crate::devices::ssi::protocol::{Families, Reads, Settings};
+use crate::devices::ssi::state::timing::Diagram;
+use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
+use crate::ui::widgets::tests::{skin, window};
+
+fn diagram(clock_hz: f64, pause_us: u64) -> Diagram {
+    let families = Families::built_in();
+    let family = families.named("ahm36").unwrap();
+    let layout = Settings::default().resolve(family).unwrap().layout;
+    let reads = Reads {
+        clocks: layout.clocks(),
+        clock_hz,
+        pause: Duration::from_micros(pause_us),
+        cable_metres: None,
+        synchronous: true,
+        any_steps: false,
+    };
+    Diagram::of(&layout, &family.times, &reads)
+}
+
+#[test]
+fn its_times_are_its_value() {
+    for (clock_hz, pause_us) in [(400e3, 200), (2e6, 600_000), (1e3, 1), (80e3, 0)] {
+        for width in [300.0_f32, 880.0] {
+            let diagram = diagram(clock_hz, pause_us);
+            let harness = window(diagram.clone(), move |ui, own: &mut Diagram| {
+                ui.set_max_width(width);
+                let frame = Some(0x091_D4B6);
+                timing_diagram(ui, &skin(), &TimingDiagram { label: "Burst", diagram: own, frame });
+            });
+            let picture = harness.get_by_label("Burst");
+            let value = picture.value().unwrap();
+            let words: Vec<String> = diagram.spans().iter().map(|span| skin().words(&diagram.words(span))).collect();
+            assert_eq!(value, words.join(", "));
+            assert!(picture.rect().width() <= width, "{}", picture.rect());
+        }
+    }
+}
+
+#[test]
+fn the_pointer_tells_the_clock() {
+    let mut harness = window(diagram(400e3, 200), |ui, own: &mut Diagram| {
+        timing_diagram(ui, &skin(), &TimingDiagram { label: "Burst", diagram: own, frame: None });
+    });
+    let rect = harness.get_by_label("Burst").rect();
+    // The burst is a quarter of the axis to its first break at least: from its beginning on, one clock after the other.
+    let mut seen: Vec<u8> = Vec::new();
+    for step in 0..16 {
+        let x = rect.left() + rect.width() * (0.06 + 0.02 * step as f32);
+        harness.hover_at(egui::pos2(x, rect.center().y));
+        harness.run_steps(60);
+        let is_told = |clock: &u8| harness.query_by_label_contains(&format!("Clock {clock}: ")).is_some();
+        seen.extend((1..=27).find(is_told));
+    }
+    assert!(seen.len() >= 8 && seen.is_sorted(), "{seen:?}");
+    assert!(seen.first().is_some_and(|first| *first <= 3), "{seen:?}");
+}

@@ -1,0 +1,297 @@
+//! A burst in time: the clock line, the data line with its bits, and the times between them, to scale.
+//!
+//! * **Size**: as wide as there is room; as high as its words need.
+//! * **Keyboard**: nothing to operate; Tab passes it.
+//! * **Pointer**: the time under it, with the clock and what it carries.
+//! * **Accessible**: an image with the label given; its value are the times in words.
+//! * **Painting**: moments as lines from their words down through all; the clock as it changes; the bits in the colours of
+//!   their fields, the field's name below; each time as a line with ends in a lane. Where nothing happens the axis is
+//!   broken, and how much is left out stands there.
+
+mod axis;
+mod place;
+
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{Color32, FontId, Galley, Painter, Rangef, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};
+
+use super::bit_strip::field_ink;
+use crate::app::Text;
+use crate::devices::ssi::state::strip::{Shown, bare, short};
+use crate::devices::ssi::state::timing::{Diagram, left_out};
+use crate::ui::Skin;
+
+use axis::Axis;
+use place::{Bar, Flag, Put};
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TimingDiagram<'a> {
+    /// Accessible name.
+    pub(crate) label: &'a str,
+    /// A burst.
+    pub(crate) diagram: &'a Diagram,
+    /// Bits to show in it, right-justified.
+    pub(crate) frame: Option<u64>,
+}
+
+/// Heights of the lines' rows, and of words.
+const ROW: f32 = 24.0;
+const WORDS: f32 = 15.0;
+const LANE: f32 = 19.0;
+/// How long the lines are drawn before the first edge.
+const BEFORE: f32 = 12.0;
+/// A bit narrower than this has no digit.
+const DIGIT: f32 = 9.0;
+
+/// Where the rows are.
+struct Rows {
+    flags: f32,
+    clock: Rangef,
+    data: Rangef,
+    names: f32,
+    lanes: f32,
+    bottom: f32,
+}
+
+/// Draws it.
+pub(crate) fn timing_diagram(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
+    skin.sunken().show(ui, |ui| draw(ui, skin, model));
+}
+
+fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
+    let diagram = model.diagram;
+    let caption = |text: &Text, colour: Color32| {
+        ui.painter().layout_no_wrap(skin.words(text), FontId::proportional(skin.sizes.caption), colour)
+    };
+    let (text, muted) = (Color32::from(skin.palette.text), Color32::from(skin.palette.muted));
+    let lines = ["ssi.timing_clock", "ssi.timing_data"].map(|id| caption(&Text::new(id), muted));
+    let width = ui.available_width();
+    let gutter = lines.iter().map(|line| line.size().x).fold(0.0, f32::max) + skin.space.between;
+    let room = Rangef::new(gutter + BEFORE, (width - skin.space.inside).max(gutter + 2.0 * BEFORE));
+    let axis = Axis::new(diagram.pieces(), room);
+
+    let breaks = axis.breaks();
+    let left_out = (0..breaks.len()).map(|piece| caption(&left_out(diagram.broken(piece)), muted));
+    let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.what.words(), text)));
+    let mut flags: Vec<(f32, Arc<Galley>, bool)> = moments.map(|(x, galley)| (x, galley, true)).collect();
+    flags.extend(breaks.iter().zip(left_out).map(|(gap, galley)| (gap.center(), galley, false)));
+    flags.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let sizes: Vec<Flag> = flags.iter().map(|(x, galley, _)| Flag { x: *x, width: galley.size().x }).collect();
+    let flags_put = place::flags(&sizes, (0.0, width));
+
+    let bars = diagram.spans().iter().map(|span| caption(&diagram.words(span), text));
+    let bars: Vec<Arc<Galley>> = bars.collect();
+    let ends = diagram.spans().iter().map(|span| (axis.x(span.from), axis.x(span.to)));
+    let sizes = ends.zip(&bars).map(|(ends, galley)| Bar { ends, width: galley.size().x });
+    let bars_put = place::bars(&sizes.collect::<Vec<_>>(), (0.0, width));
+
+    let count = |put: &[Put]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
+    let heights = [count(&flags_put) * WORDS + 4.0, ROW, 8.0, ROW, WORDS + 4.0, count(&bars_put) * LANE];
+    let (outer, response) = ui.allocate_exact_size(Vec2::new(width, heights.iter().sum()), Sense::hover());
+    let told: Vec<String> = diagram.spans().iter().map(|span| skin.words(&diagram.words(span))).collect();
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Image, true, model.label);
+        info.current_text_value = Some(told.join(", "));
+        info
+    });
+    if ui.is_rect_visible(outer) {
+        let at = |rows: usize| outer.top() + heights.iter().take(rows).sum::<f32>();
+        let row = |number: usize| Rangef::new(at(number) + 4.0, at(number + 1) - 4.0);
+        let rows = Rows { flags: at(1) - 4.0, clock: row(1), data: row(3), names: at(4), lanes: at(5), bottom: at(6) };
+        let painter = ui.painter().clone();
+        let picture = Picture { painter: &painter, skin, model, axis: &axis, left: outer.left(), rows: &rows };
+        for (galley, row) in lines.into_iter().zip([rows.clock, rows.data]) {
+            painter.galley(pos2(outer.left(), row.center() - galley.size().y / 2.0), galley, muted);
+        }
+        picture.guides(&flags, &flags_put);
+        picture.clock(outer.left() + gutter);
+        picture.data(outer.left() + gutter);
+        picture.names();
+        picture.breaks(&breaks);
+        picture.bars(&bars, &bars_put);
+        if let Some(pos) = response.hover_pos().filter(|pos| axis.at(pos.x - outer.left()).is_some()) {
+            let stroke = Stroke::new(1.0, skin.palette.accent);
+            painter.vline(pos.x, rows.clock.min - 4.0..=rows.bottom, stroke);
+        }
+    }
+    let under = response.hover_pos().and_then(|pos| axis.at(pos.x - outer.left()));
+    if let Some(at) = under {
+        response.on_hover_ui_at_pointer(|ui| {
+            for (number, text) in diagram.told(at).iter().enumerate() {
+                let words = skin.words(text);
+                if number == 0 {
+                    ui.label(skin.caption(words))
+                } else {
+                    ui.label(words)
+                };
+            }
+        });
+    }
+}
+
+/// What is painted, and where.
+struct Picture<'a> {
+    painter: &'a Painter,
+    skin: &'a Skin,
+    model: &'a TimingDiagram<'a>,
+    axis: &'a Axis,
+    left: f32,
+    rows: &'a Rows,
+}
+
+impl Picture<'_> {
+    fn x(&self, at: f64) -> f32 {
+        self.left + self.axis.x(at)
+    }
+
+    fn line(&self) -> Color32 {
+        self.skin.palette.muted.into()
+    }
+
+    /// Words of moments and of what is left out, each moment with its line through all.
+    fn guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[Put]) {
+        for ((x, galley, is_moment), put) in flags.iter().zip(put) {
+            let top = self.rows.flags - (put.level + 1) as f32 * WORDS;
+            let at = pos2(self.left + put.left, top);
+            if *is_moment {
+                let (x, faint) = (self.left + x, Stroke::new(1.0, self.skin.palette.line));
+                let below = (at.x..=at.x + galley.size().x).contains(&x);
+                let ends = [pos2(x, if below { top + WORDS } else { top + 2.0 }), pos2(x, self.rows.clock.max)];
+                self.painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, self.line()), 3.0, 3.0));
+                self.painter.vline(x, self.rows.clock.max..=self.rows.bottom, faint);
+            }
+            self.painter.galley(at, galley.clone(), self.skin.palette.text.into());
+        }
+    }
+
+    /// The clock rests high.
+    fn clock(&self, from: f32) {
+        let row = self.rows.clock;
+        let mut points = vec![pos2(from, row.min)];
+        let mut high = true;
+        for edge in self.model.diagram.edges() {
+            let x = self.x(edge);
+            points.push(pos2(x, if high { row.min } else { row.max }));
+            high = !high;
+            points.push(pos2(x, if high { row.min } else { row.max }));
+        }
+        points.push(pos2(self.x(self.model.diagram.end()), if high { row.min } else { row.max }));
+        self.painter.add(Shape::line(points, Stroke::new(1.5, self.skin.palette.text)));
+    }
+
+    /// High, the bits, low for tm, high again, and the first bits of the next burst.
+    fn data(&self, from: f32) {
+        let diagram = self.model.diagram;
+        let (row, stroke) = (self.rows.data, Stroke::new(1.5, self.skin.palette.text));
+        let bits = diagram.bits();
+        if let Some(first) = bits.first() {
+            self.painter.hline(from..=self.x(first.from), row.min, stroke);
+        }
+        let shown: Vec<Shown> = self.model.frame.map(|frame| diagram.strip().shown(frame)).unwrap_or_default();
+        for (number, bit) in bits.iter().enumerate() {
+            let cell = diagram.strip().cells().get(number);
+            let field = cell.and_then(|cell| diagram.strip().fields().get(cell.field));
+            let ink = field.map_or_else(|| self.line(), |field| field_ink(self.skin, field.kind));
+            self.bit((self.x(bit.from), self.x(bit.to)), ink, shown.get(number).map(|cell| cell.bit));
+        }
+        let (low, least, most) = diagram.low();
+        let next = self.x(diagram.next());
+        let (low, least, most) = (self.x(low), self.x(least), self.x(most));
+        self.painter.add(Shape::line(
+            vec![pos2(low, row.max), pos2(least, row.max), pos2(most, row.min), pos2(next.max(most), row.min)],
+            stroke,
+        ));
+        let end = self.x(diagram.end());
+        if next < end {
+            self.bit((next, end), self.line(), None);
+        }
+    }
+
+    /// A bit as it is drawn on a bus: its ends slant.
+    fn bit(&self, (from, to): (f32, f32), ink: Color32, bit: Option<bool>) {
+        let row = self.rows.data;
+        let strength = if bit == Some(true) { 0.45 } else { 0.16 };
+        if to - from < 3.0 {
+            self.painter.rect_filled(Rect::from_x_y_ranges(from..=to, row), 0.0, ink.gamma_multiply(strength + 0.2));
+            return;
+        }
+        let slant = ((to - from) / 4.0).min(2.5);
+        let middle = row.center();
+        let points = vec![
+            pos2(from, middle),
+            pos2(from + slant, row.min),
+            pos2(to - slant, row.min),
+            pos2(to, middle),
+            pos2(to - slant, row.max),
+            pos2(from + slant, row.max),
+        ];
+        self.painter.add(Shape::convex_polygon(points, ink.gamma_multiply(strength), Stroke::new(1.0, ink)));
+        if let Some(bit) = bit.filter(|_| to - from >= DIGIT) {
+            let font = FontId::monospace(self.skin.sizes.caption);
+            let at = pos2(f32::midpoint(from, to), middle);
+            let digit = if bit { "1" } else { "0" };
+            self.painter.text(at, egui::Align2::CENTER_CENTER, digit, font, self.skin.palette.text.into());
+        }
+    }
+
+    /// The short names of the fields, where there is room.
+    fn names(&self) {
+        let diagram = self.model.diagram;
+        for field in diagram.strip().fields() {
+            let (from, to) = diagram.field(field);
+            let (from, to) = (self.x(from), self.x(to));
+            let words = [self.skin.words(&short(diagram.strip(), field)), bare(diagram.strip(), field)];
+            let font = FontId::proportional(self.skin.sizes.caption);
+            let ink = self.skin.palette.muted;
+            let galley = |words: String| self.painter.layout_no_wrap(words, font.clone(), ink.into());
+            if let Some(galley) = words.into_iter().map(galley).find(|own| own.size().x <= to - from) {
+                let at = pos2(f32::midpoint(from, to) - galley.size().x / 2.0, self.rows.names);
+                self.painter.galley(at, galley, ink.into());
+            }
+            let y = self.rows.names - 1.0;
+            self.painter.hline(from + 0.5..=to - 0.5, y, Stroke::new(2.0, field_ink(self.skin, field.kind)));
+        }
+    }
+
+    /// Both lines end and begin again.
+    fn breaks(&self, breaks: &[Rangef]) {
+        for gap in breaks {
+            let middle = self.left + gap.center();
+            let (top, bottom) = (self.rows.clock.min - 4.0, self.rows.data.max + 4.0);
+            let slant = 3.0;
+            let points = vec![
+                pos2(middle - 4.0 + slant, top),
+                pos2(middle + 4.0 + slant, top),
+                pos2(middle + 4.0 - slant, bottom),
+                pos2(middle - 4.0 - slant, bottom),
+            ];
+            self.painter.add(Shape::convex_polygon(points, Color32::from(self.skin.palette.sunken), Stroke::NONE));
+            for side in [-4.0, 4.0] {
+                let ends = [pos2(middle + side + slant, top), pos2(middle + side - slant, bottom)];
+                self.painter.line_segment(ends, Stroke::new(1.0, self.line()));
+            }
+        }
+    }
+
+    /// Each time as a line with ends; from where it may end already, a thinner one.
+    fn bars(&self, words: &[Arc<Galley>], put: &[Put]) {
+        let palette = self.skin.palette;
+        for ((span, galley), put) in self.model.diagram.spans().iter().zip(words).zip(put) {
+            let y = self.rows.lanes + (put.level as f32 + 0.5) * LANE;
+            let (from, least, to) = (self.x(span.from), self.x(span.least), self.x(span.to));
+            let stroke = Stroke::new(1.5, self.line());
+            self.painter.hline(from..=least, y, stroke);
+            self.painter.extend(Shape::dashed_line(&[pos2(least, y), pos2(to, y)], stroke, 3.0, 2.0));
+            for x in [from, least, to] {
+                self.painter.vline(x, y - 4.0..=y + 4.0, stroke);
+            }
+            let size = galley.size();
+            let at = pos2(self.left + put.left, y - size.y / 2.0);
+            let behind = Rect::from_min_size(at, size).expand2(Vec2::new(4.0, 0.0));
+            self.painter.rect_filled(behind, 0.0, palette.sunken);
+            self.painter.galley(at, galley.clone(), palette.text.into());
+        }
+    }
+}

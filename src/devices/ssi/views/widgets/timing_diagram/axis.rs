@@ -1,0 +1,88 @@
+//! From times to places: to scale within each piece of the axis, with a gap where it is broken.
+
+use egui::Rangef;
+
+use crate::devices::ssi::state::timing::Piece;
+
+/// Width of a break.
+pub(super) const BREAK: f32 = 24.0;
+
+/// The axis of time on the screen.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    pieces: Vec<Piece>,
+    left: f32,
+    /// Points a second.
+    scale: f64,
+}
+
+impl Axis {
+    /// The pieces in so much room.
+    pub(super) fn new(pieces: &[Piece], room: Rangef) -> Self {
+        let breaks = pieces.len().saturating_sub(1) as f32 * BREAK;
+        let drawn: f64 = pieces.iter().map(|piece| piece.to - piece.from).sum();
+        let scale = f64::from((room.span() - breaks).max(1.0)) / drawn.max(1e-12);
+        Axis { pieces: pieces.to_vec(), left: room.min, scale }
+    }
+
+    /// Where a time is; in the middle of a break where it is left out, and at the ends what is beyond them.
+    pub(super) fn x(&self, at: f64) -> f32 {
+        let mut left = self.left;
+        for (number, piece) in self.pieces.iter().enumerate() {
+            if number > 0 {
+                if at < piece.from {
+                    return left - BREAK / 2.0;
+                }
+            } else if at < piece.from {
+                return left;
+            }
+            if at <= piece.to {
+                return left + ((at - piece.from) * self.scale) as f32;
+            }
+            left += ((piece.to - piece.from) * self.scale) as f32 + BREAK;
+        }
+        left - BREAK
+    }
+
+    /// The time of a place; `None` in a break and beyond the ends.
+    pub(super) fn at(&self, x: f32) -> Option<f64> {
+        let mut left = self.left;
+        for piece in &self.pieces {
+            let right = left + ((piece.to - piece.from) * self.scale) as f32;
+            if (left..=right).contains(&x) {
+                return Some(piece.from + f64::from(x - left) / self.scale);
+            }
+            left = right + BREAK;
+        }
+        None
+    }
+
+    /// The gaps, from the first to the last.
+    pub(super) fn breaks(&self) -> Vec<Rangef> {
+        let ends = self.pieces.iter().map(|piece| self.x(piece.to));
+        let ends: Vec<f32> = ends.collect();
+        let (_, inner) = ends.split_last().unwrap_or((&0.0, &[]));
+        inner.iter().map(|end| Rangef::new(*end, end + BREAK)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_places_and_places_times() {
+        let pieces = [Piece { from: 0.0, to: 60.0 }, Piece { from: 1000.0, to: 1040.0 }];
+        // 224 points less a break of 24 are two a second.
+        let axis = Axis::new(&pieces, Rangef::new(10.0, 234.0));
+        for (at, x) in [(0.0, 10.0), (60.0, 130.0), (1000.0, 154.0), (1040.0, 234.0), (500.0, 142.0), (9999.0, 234.0)] {
+            assert!((axis.x(at) - x).abs() < 1e-3, "{at}: {}", axis.x(at));
+        }
+        assert_eq!(axis.breaks(), [Rangef::new(130.0, 154.0)]);
+        for (x, at) in [(10.0, Some(0.0)), (130.0, Some(60.0)), (142.0, None), (164.0, Some(1005.0)), (240.0, None)] {
+            assert_eq!(axis.at(x), at, "{x}");
+        }
+        let nothing = Axis::new(&[Piece { from: 0.0, to: 0.0 }], Rangef::new(0.0, 100.0));
+        assert!(nothing.x(0.0).is_finite() && nothing.at(0.0).is_some());
+    }
+}

@@ -1,0 +1,95 @@
+//! The wiring card: the wires of SSI, its supply and cable, and what else the family's encoders give.
+
+use egui::Ui;
+
+use crate::app::Text;
+use crate::devices::ssi::protocol::{Family, Signal};
+use crate::devices::ssi::state::explain as words;
+use crate::ui::Skin;
+use crate::ui::controls::{card, paragraph, row};
+use crate::ui::wires::wires_ui;
+
+/// Width of the column of wires.
+const WIRE: f32 = 84.0;
+
+/// The wires and what is on them (SICK SSI description 2.1, 2.2).
+const WIRES: [(&str, &str); 6] = [
+    ("CLOCK+", "ssi_wiring.clock_plus"),
+    ("CLOCK−", "ssi_wiring.clock_minus"),
+    ("DATA+", "ssi_wiring.data_plus"),
+    ("DATA−", "ssi_wiring.data_minus"),
+    ("US", "ssi_wiring.supply"),
+    ("GND", "ssi_wiring.ground"),
+];
+
+const NOTES: [&str; 3] = ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.adapter"];
+
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
+    card(ui, skin, "wiring.title", |ui| {
+        wires_ui(ui, skin, WIRE, &WIRES);
+        ui.add_space(skin.space.inside);
+        for note in NOTES {
+            paragraph(ui, skin.caption(skin.say(note)));
+        }
+        let Some(family) = family else { return };
+        if !family.signals.is_empty() {
+            ui.add_space(skin.space.between);
+            ui.label(skin.heading(skin.say("ssi_wiring.signals")));
+            for signal in &family.signals {
+                row(ui, skin, &signal.name, limits(skin, signal));
+            }
+        }
+        if !family.notes.is_empty() {
+            ui.add_space(skin.space.between);
+            ui.label(skin.heading(&family.name));
+            for note in &family.notes {
+                paragraph(ui, skin.caption(skin.words(&words::note(note))));
+            }
+            paragraph(ui, skin.caption(skin.words(&words::note(&family.source))));
+        }
+    });
+}
+
+/// What a signal may be.
+fn limits(skin: &Skin, signal: &Signal) -> String {
+    let volts = |(least, most): (f64, f64)| {
+        if (most - least).abs() < 1e-9 {
+            skin.number(most, 2)
+        } else {
+            format!("{} … {}", skin.number(least, 2), skin.number(most, 2))
+        }
+    };
+    let parts = [
+        signal.amplitude_volts.map(|own| skin.words(&Text::new("ssi_wiring.volts_pp").with("volts", volts(own)))),
+        signal.offset_volts.map(|own| format!("{} {} V", skin.say("ssi_wiring.offset"), volts(own))),
+        signal.supply_volts.map(|own| format!("{} {} V", skin.say("ssi_wiring.at"), volts(own))),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    if parts.is_empty() { "–".to_owned() } else { parts.join(" · ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NOTES, WIRES};
+    use crate::ui::wires::{check_notes, check_wires};
+
+    /// Issue 22.23: SICK SSI description 2.1 (four lines, RS-422 or RS-485, pairs twisted and shielded), figure 2 and
+    /// reference section 1 (clock and data idle high: the plus wires; the minus wires rest low), 2.7 (lengths and rates).
+    #[test]
+    fn the_card_says_what_the_manual_says() {
+        check_wires(
+            &WIRES,
+            &[
+                ("CLOCK+", &["from the host", "RS-422", "at rest high"]),
+                ("CLOCK−", &["from the host", "RS-422", "at rest low"]),
+                ("DATA+", &["to the host", "RS-422", "at rest high"]),
+                ("DATA−", &["to the host", "RS-422", "at rest low"]),
+                ("US", &["type label"]),
+                ("GND", &["0 V"]),
+            ],
+        );
+        let lengths = ["50 m at most 400 kHz", "100 m 300 kHz", "200 m 200 kHz", "400 m 100 kHz"];
+        check_notes(&NOTES, &["twist", "shield"]);
+        check_notes(&NOTES, &lengths);
+    }
+}
