@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use encoder_studio::protocol::interbus::{Cam, Compiled, Program, Value};
+use encoder_studio::devices::interbus::protocol::{Cam, Compiled, Program, Value};
 
 const POSITIONS: usize = 1 << 20;
 const ROUNDS: usize = 9;

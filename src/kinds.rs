@@ -2,9 +2,9 @@
 
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::hiperface::profile::HiperfaceProfile;
+use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::profile::hiperdrive::HiperdriveProfile;
-use crate::profile::interbus::InterbusProfile;
 use crate::profile::{Formats, Profile};
 
 /// The formats of their profiles.

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use super::connect;
 use super::diverged::{Diverged, Resolve};
 use super::hiperdrive;
-use super::interbus;
 use super::keep::{SettingsRead, SettingsWritten};
 use super::recorder::{self, Exported};
 use super::review::Permit;
@@ -20,6 +19,8 @@ use crate::devices::biss::state as biss;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::state as hiperface;
+use crate::devices::interbus::jobs::Interbus;
+use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::protocol::Families;
 use crate::devices::ssi::state as ssi;
@@ -28,7 +29,6 @@ use crate::profile::{Document, PlanId, ProfileError};
 use crate::signals::state as signals;
 use crate::store::{DeviceKey, FileError, StoreError};
 use crate::worker::hiperdrive::Hiperdrive;
-use crate::worker::interbus::Interbus;
 use crate::worker::{OpenError, Worker};
 
 /// Something to be done.

@@ -13,7 +13,6 @@ pub use wish::Wish;
 use super::action::{Known, ReadError, ReviewAction};
 use super::closing::MUCH;
 use super::hiperdrive;
-use super::interbus;
 use super::line::Progressing;
 use super::recorder::Recorder;
 use super::review::Sheet;
@@ -26,6 +25,7 @@ use super::tab::Tab;
 use super::trace::TraceLog;
 use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state as hiperface;
+use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;
 use crate::link::LinkUrl;
 use crate::profile::Document;
@@ -103,7 +103,7 @@ impl AnyDevice {
             crate::devices::ssi::protocol::KIND => {
                 AnyDevice::Ssi(Box::new(ssi::Encoder::in_file(id, file, document, services)))
             }
-            crate::protocol::interbus::KIND => {
+            crate::devices::interbus::protocol::KIND => {
                 AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
             }
             crate::protocol::hiperdrive::KIND => {

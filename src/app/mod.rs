@@ -15,7 +15,6 @@ mod files;
 pub mod hiperdrive;
 pub(crate) mod history;
 mod hold;
-pub mod interbus;
 mod keep;
 pub(crate) mod leaving;
 pub(crate) mod line;

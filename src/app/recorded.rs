@@ -6,9 +6,9 @@ use super::session::Kind;
 use super::{Settings, Tab};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::hiperface::jobs::Hiperface;
+use crate::devices::interbus::jobs::Interbus;
 use crate::devices::ssi::jobs::Ssi;
 use crate::worker::hiperdrive::Hiperdrive;
-use crate::worker::interbus::Interbus;
 
 /// Every entry, tab, measure and mark.
 pub(crate) const SETTINGS: &str = include_str!("../../tests/fixtures/settings/settings.ron");

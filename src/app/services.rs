@@ -16,13 +16,13 @@ use crate::device::hiperdrive::{Error as DriveError, Found};
 use crate::devices::biss::jobs::{self as biss, Biss};
 use crate::devices::hiperface::jobs::{self as hiperface, Hiperface};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes};
+use crate::devices::interbus::jobs::{self as interbus, Interbus};
 use crate::devices::ssi::jobs::{self as ssi, Ssi};
 use crate::devices::ssi::protocol::Families;
 use crate::link::{LinkError, LinkUrl, PortInfo};
 use crate::profile::Formats;
 use crate::store::{Folders, Store, StoreError};
 use crate::worker::hiperdrive::{self, Hiperdrive};
-use crate::worker::interbus::{self, Interbus};
 use crate::worker::{JobId, OpenError, Session};
 
 /// Opens links to a kind of device.

@@ -7,7 +7,6 @@ pub(crate) mod check;
 pub(crate) mod consent;
 pub(crate) mod decode;
 mod hiperdrive;
-mod interbus;
 pub(crate) mod kind;
 pub(crate) mod number;
 pub(crate) mod output;

@@ -2,7 +2,6 @@
 
 pub mod check;
 pub mod hiperdrive;
-pub mod interbus;
 pub(crate) mod line;
 mod replies;
 pub(crate) mod written;

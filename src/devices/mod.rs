@@ -2,4 +2,5 @@
 
 pub mod biss;
 pub mod hiperface;
+pub mod interbus;
 pub mod ssi;

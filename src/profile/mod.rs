@@ -7,7 +7,6 @@ pub(crate) mod difference;
 mod document;
 mod error;
 pub mod hiperdrive;
-pub mod interbus;
 mod misspelt;
 pub(crate) mod mounting;
 mod place;

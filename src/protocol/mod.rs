@@ -1,4 +1,3 @@
 //! Bytes ↔ meaning. Pure functions and tables: no socket, port, clock, thread, channel or file.
 
 pub mod hiperdrive;
-pub mod interbus;

@@ -7,7 +7,6 @@
 mod at_adapter;
 mod fault;
 pub mod hiperdrive;
-pub mod interbus;
 pub(crate) mod line;
 mod motor;
 pub(crate) mod setting;

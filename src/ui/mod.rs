@@ -11,7 +11,6 @@ pub(crate) mod foot;
 mod header;
 mod hiperdrive;
 pub mod icons;
-mod interbus;
 mod keys;
 pub(crate) mod motor;
 mod navigation;
@@ -29,6 +28,7 @@ mod workspace;
 
 use crate::devices::biss::views as biss;
 use crate::devices::hiperface::views as hiperface;
+use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;
 use crate::signals::views as signals;
 pub use run::run;

@@ -4,10 +4,11 @@ use egui::Ui;
 
 use super::controls::{icon_button, name};
 use super::docks::Docks;
-use super::{Skin, Views, hiperdrive, icons, interbus};
+use super::{Skin, Views, hiperdrive, icons};
 use crate::app::{Action, Studio, Tab};
 use crate::devices::biss::views as biss;
 use crate::devices::hiperface::views as hiperface;
+use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;
 use crate::signals::views as signals;
 

@@ -11,11 +11,12 @@ use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Skin, header, hiperdrive, interbus, review, stopping};
+use super::{Skin, header, hiperdrive, review, stopping};
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 use crate::devices::biss::views as biss;
 use crate::devices::hiperface::state::Encoder;
 use crate::devices::hiperface::views as hiperface;
+use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;
 use crate::signals::views as signals;
 
@@ -73,7 +74,7 @@ impl Views {
     }
 
     /// The INTERBUS tab of a session.
-    pub(super) fn interbus(&mut self, encoder: &crate::app::interbus::Encoder) -> &mut interbus::View {
+    pub(super) fn interbus(&mut self, encoder: &crate::devices::interbus::state::Encoder) -> &mut interbus::View {
         let view = self.interbus.entry(encoder.session.id).or_default();
         view.follow(encoder);
         view

@@ -5,12 +5,13 @@ use egui::{Align, Layout, RichText, Ui};
 use super::controls::{button, empty, paragraph, spinner};
 use super::page::apart;
 use super::panels::plot_ui;
-use super::{Skin, Views, hiperdrive, icons, interbus};
+use super::{Skin, Views, hiperdrive, icons};
 use crate::app::connect;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Studio, Tab, Wish};
 use crate::devices::biss::views as biss;
 use crate::devices::hiperface::views as hiperface;
+use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;
 use crate::signals::views as signals;
 

@@ -10,7 +10,6 @@
 mod agenda;
 pub(crate) mod commit;
 pub mod hiperdrive;
-pub mod interbus;
 mod interruption;
 #[cfg(test)]
 mod invented;

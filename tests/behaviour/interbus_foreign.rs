@@ -1,15 +1,15 @@
 //! The host's side of the handshake against a gateway and a K3 encoder that are not our program, with every trouble that
 //! these can make. What the encoder stored is told by its own log.
 
-use encoder_studio::device::interbus::Error;
-use encoder_studio::profile::Consent;
-use encoder_studio::profile::interbus::{Image, Item, ItemValue};
-use encoder_studio::protocol::interbus::{Cam, CamNumber, ProgramNumber, StartupMode, Value};
-use encoder_studio::store::Store;
-use encoder_studio::worker::Session;
-use encoder_studio::worker::interbus::{
+use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, open,
 };
+use encoder_studio::devices::interbus::procedures::Error;
+use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue};
+use encoder_studio::devices::interbus::protocol::{Cam, CamNumber, ProgramNumber, StartupMode, Value};
+use encoder_studio::profile::Consent;
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
 
 use super::support::{Bench, Foreign};
 

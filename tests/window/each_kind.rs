@@ -5,7 +5,6 @@ use std::path::Path;
 
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as Set};
-use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
@@ -13,12 +12,13 @@ use encoder_studio::devices::biss::profile::BissProfile;
 use encoder_studio::devices::biss::state::Action as Biss;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::interbus::profile::InterbusProfile;
+use encoder_studio::devices::interbus::protocol::ProgramNumber;
+use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::profile::hiperdrive::HiperdriveProfile;
-use encoder_studio::profile::interbus::InterbusProfile;
 use encoder_studio::profile::{self, Body, Comparison, Document, PlanId, Profile};
 use encoder_studio::protocol::hiperdrive::ParameterNumber;
-use encoder_studio::protocol::interbus::ProgramNumber;
 
 use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, PORT};
 use crate::wire::Wire;
@@ -188,7 +188,7 @@ fn compared(one: Body, other: Body) -> Comparison {
     if let Some((one, other)) = pair::<BissProfile>(&one, &other) {
         encoder_studio::devices::biss::profile::compare(&one, &other)
     } else if let Some((one, other)) = pair::<InterbusProfile>(&one, &other) {
-        encoder_studio::profile::interbus::compare(&one, &other)
+        encoder_studio::devices::interbus::profile::compare(&one, &other)
     } else if let Some((one, other)) = pair::<HiperdriveProfile>(&one, &other) {
         encoder_studio::profile::hiperdrive::compare(&one, &other)
     } else {

@@ -3,12 +3,12 @@
 
 use std::time::Duration;
 
-use encoder_studio::app::interbus::{Action as Interbus, Edit, Encoder};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, ReviewAction, Severity, Tab, Wish};
-use encoder_studio::profile::interbus::Scale;
-use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber, ReadOut, StartupMode};
+use encoder_studio::devices::interbus::profile::Scale;
+use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, ReadOut, StartupMode};
+use encoder_studio::devices::interbus::state::{Action as Interbus, Edit, Encoder};
 
 use crate::support::{Desk, GATE};
 

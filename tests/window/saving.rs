@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use encoder_studio::app::diverged::{Resolve, Side};
 use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as HiperdriveEdit};
-use encoder_studio::app::interbus::{Action as Interbus, Edit};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, SessionId, Severity, Studio};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::interbus::protocol::ProgramNumber;
+use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
 use encoder_studio::devices::ssi::protocol::{Code, Range};
 use encoder_studio::devices::ssi::state::{Action as Ssi, Edit as SsiEdit};
 use encoder_studio::profile::Changed;
-use encoder_studio::protocol::interbus::ProgramNumber;
 
 use crate::support::Desk;
 

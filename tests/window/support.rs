@@ -16,10 +16,11 @@ use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder, Review, ReviewState};
+use encoder_studio::devices::interbus::jobs as interbus;
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::store::{Folders, Store};
-use encoder_studio::worker::{Session, hiperdrive, interbus};
+use encoder_studio::worker::{Session, hiperdrive};
 
 use crate::texts;
 use crate::wire::{TestLink, Wire};
@@ -107,7 +108,7 @@ impl Outside {
             }),
             open_interbus: Arc::new(move |url, store| {
                 let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };
-                let station = encoder_studio::device::interbus::Station::from_query(&url.query, MARGIN)?;
+                let station = encoder_studio::devices::interbus::procedures::Station::from_query(&url.query, MARGIN)?;
                 Ok(Session::to_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
             }),
             open_hiperdrive: Arc::new(move |url, store| {

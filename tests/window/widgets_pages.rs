@@ -3,10 +3,10 @@
 use egui::{Key, Rect, Role, Vec2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::interbus::Action as Interbus;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, Studio, Tab, Theme};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::interbus::state::Action as Interbus;
 use encoder_studio::devices::ssi::state::{Action as Ssi, Edit, Field, Input};
 
 use crate::screen::Screen;

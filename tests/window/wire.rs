@@ -7,10 +7,11 @@ use encoder_studio::devices::biss::sim as biss;
 use encoder_studio::devices::biss::sim::Port;
 use encoder_studio::devices::hiperface::sim as hiperface;
 use encoder_studio::devices::hiperface::sim::Bus;
+use encoder_studio::devices::interbus::sim as interbus;
+use encoder_studio::devices::interbus::sim::Gateway;
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
 use encoder_studio::sim::hiperdrive::Target;
-use encoder_studio::sim::interbus::Gateway;
-use encoder_studio::sim::{AT_ADAPTER, ByteDevice, hiperdrive, interbus};
+use encoder_studio::sim::{AT_ADAPTER, ByteDevice, hiperdrive};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;

@@ -12,7 +12,6 @@ pub use target::is_missing;
 use std::path::PathBuf;
 
 use super::hiperdrive::{Discovery, HiperdriveForm};
-use super::interbus::InterbusForm;
 use super::services::Services;
 use super::tab::Tab;
 use super::{Text, explain};
@@ -20,6 +19,7 @@ use crate::app::action::Done;
 use crate::devices::biss::state::BissForm;
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::state::{LinkForm, Search};
+use crate::devices::interbus::state::InterbusForm;
 use crate::devices::ssi::state::SsiForm;
 use crate::link::LinkUrl;
 

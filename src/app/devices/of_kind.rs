@@ -1,9 +1,10 @@
 //! A device on the desk as what it is, for those who know one kind, and what only some kinds can do.
 
 use super::AnyDevice;
-use crate::app::{SineCosineSource, hiperdrive, interbus};
+use crate::app::{SineCosineSource, hiperdrive};
 use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state as hiperface;
+use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;
 
 impl AnyDevice {
@@ -12,7 +13,7 @@ impl AnyDevice {
         crate::devices::hiperface::protocol::KIND,
         crate::devices::biss::protocol::KIND,
         crate::devices::ssi::protocol::KIND,
-        crate::protocol::interbus::KIND,
+        crate::devices::interbus::protocol::KIND,
         crate::protocol::hiperdrive::KIND,
     ];
 

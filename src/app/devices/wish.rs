@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use super::AnyDevice;
 use crate::app::action::Action;
+use crate::app::hiperdrive;
 use crate::app::studio::SessionId;
-use crate::app::{hiperdrive, interbus};
 use crate::devices::biss::state as biss;
 use crate::devices::hiperface::state as hiperface;
+use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;
 
 /// What can be wished of every device.

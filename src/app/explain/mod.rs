@@ -3,7 +3,6 @@
 
 mod detail;
 pub mod hiperdrive;
-pub mod interbus;
 pub mod signal;
 
 use std::path::Path;

@@ -4,8 +4,9 @@ use clap::{Args, ValueEnum};
 
 use super::DeviceKind;
 use crate::cli::hiperdrive::Order;
-use crate::cli::interbus::WordMode;
-use crate::protocol::{hiperdrive, interbus};
+use crate::devices::interbus::commands::WordMode;
+use crate::devices::interbus::protocol as interbus;
+use crate::protocol::hiperdrive;
 
 #[derive(Args)]
 pub(crate) struct Decode {

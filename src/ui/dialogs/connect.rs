@@ -10,12 +10,13 @@ use crate::app::{Action, Studio, Tab, Text};
 use crate::devices::biss::views as biss;
 use crate::devices::hiperface::state::Search;
 use crate::devices::hiperface::views as hiperface;
+use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;
 use crate::link::LinkUrl;
 use crate::ui::controls::{
     at_the_right, button, entry, icon_button, modal, mono_entry, name, paragraph, primary, problem,
 };
-use crate::ui::{Skin, hiperdrive, icons, interbus};
+use crate::ui::{Skin, hiperdrive, icons};
 
 /// What the dialog remembers.
 #[derive(Default)]

@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use encoder_studio::device::interbus::Error;
-use encoder_studio::device::interbus::write::Left;
+use encoder_studio::devices::interbus::jobs::{Change, Commit, InterbusJob, InterbusOutput, JobError};
+use encoder_studio::devices::interbus::procedures::Error;
+use encoder_studio::devices::interbus::procedures::write::Left;
+use encoder_studio::devices::interbus::profile::{Item, ItemValue};
+use encoder_studio::devices::interbus::protocol::StartupMode;
 use encoder_studio::profile::Consent;
-use encoder_studio::profile::interbus::{Item, ItemValue};
-use encoder_studio::protocol::interbus::StartupMode;
-use encoder_studio::worker::interbus::{Change, Commit, InterbusJob, InterbusOutput, JobError};
 
 use super::support::{Stand, program};
 use crate::support::Tap;
@@ -41,7 +41,7 @@ fn write(stand: &mut Stand) -> InterbusJob {
         InterbusOutput::Surveyed(survey) => *survey,
         other => panic!("{other:?}"),
     };
-    let mut wanted = encoder_studio::profile::interbus::Image::of(survey.parameters);
+    let mut wanted = encoder_studio::devices::interbus::profile::Image::of(survey.parameters);
     let (_, own) = stand.programs(&[6]).remove(0);
     *wanted.program_mut(program(6)).unwrap() = Some(own);
     (wanted.parameters.preset, wanted.parameters.zero_shift) = (17, 3);

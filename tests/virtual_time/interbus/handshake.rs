@@ -3,13 +3,13 @@
 
 use std::time::Duration;
 
-use encoder_studio::device::interbus::Master;
-use encoder_studio::device::interbus::write::{Left, Written};
-use encoder_studio::device::interbus::{
+use encoder_studio::devices::interbus::procedures::Master;
+use encoder_studio::devices::interbus::procedures::write::{Left, Written};
+use encoder_studio::devices::interbus::procedures::{
     Asked, Awaited, Error, Exception, Says, Station, identify, read_programs, select,
 };
-use encoder_studio::profile::interbus::Op;
-use encoder_studio::protocol::interbus::{Parameter, StartupMode, WindowShift};
+use encoder_studio::devices::interbus::profile::Op;
+use encoder_studio::devices::interbus::protocol::{Parameter, StartupMode, WindowShift};
 
 use super::scripted::{POSITION, Script, cams, carry_out, parameters};
 use super::support::{program, station};

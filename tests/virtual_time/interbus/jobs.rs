@@ -1,13 +1,13 @@
 //! What is read: with which words, and how the encoder is afterwards.
 
-use encoder_studio::device::interbus::check::{Finding, Line, Step, Verdict};
-use encoder_studio::device::interbus::{Error, Says};
+use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobError, open};
+use encoder_studio::devices::interbus::procedures::check::{Finding, Line, Step, Verdict};
+use encoder_studio::devices::interbus::procedures::{Error, Says};
+use encoder_studio::devices::interbus::profile::{Direction, Item, ItemValue};
+use encoder_studio::devices::interbus::protocol::{Mode, ReadOut, StartupMode};
 use encoder_studio::link::{write_entry, write_header};
-use encoder_studio::profile::interbus::{Direction, Item, ItemValue};
-use encoder_studio::protocol::interbus::{Mode, ReadOut, StartupMode};
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
-use encoder_studio::worker::interbus::{InterbusJob, InterbusOutput, JobError, open};
 
 use super::support::{Stand, cam, gateway, program, station};
 
@@ -143,7 +143,8 @@ fn a_mode_that_is_selected_stays() {
             _ => assert!(reading.position().is_some()),
         }
     }
-    let error = stand.run(InterbusJob::Select(StartupMode::parse(encoder_studio::protocol::interbus::Value::MAX)));
+    let error =
+        stand.run(InterbusJob::Select(StartupMode::parse(encoder_studio::devices::interbus::protocol::Value::MAX)));
     assert!(matches!(error, Err(JobError::Device(Error::NotSelectable { .. }))), "{error:?}");
 }
 

@@ -4,12 +4,14 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use encoder_studio::device::interbus::{Asked, Error, Exception, Handshake, Identity, Master, ProcessData, write};
-use encoder_studio::profile::Consent;
-use encoder_studio::profile::interbus::{
+use encoder_studio::devices::interbus::procedures::{
+    Asked, Error, Exception, Handshake, Identity, Master, ProcessData, write,
+};
+use encoder_studio::devices::interbus::profile::{
     Base, CamChange, Direction, Edge, InterbusPlan, Op, ParameterChange, ProgramChange,
 };
-use encoder_studio::protocol::interbus::{CamNumber, Flags, Parameter, StartupMode, Value};
+use encoder_studio::devices::interbus::protocol::{CamNumber, Flags, Parameter, StartupMode, Value};
+use encoder_studio::profile::Consent;
 use encoder_studio::units::Moment;
 
 use super::support::{program, station};

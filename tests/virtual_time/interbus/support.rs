@@ -3,15 +3,15 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use encoder_studio::device::interbus::{Carried, Handshake, Station, carried};
-use encoder_studio::link::{Direction, TraceEntry, VirtualClock};
-use encoder_studio::profile::Consent;
-use encoder_studio::protocol::interbus::{Cam, Program, ProgramNumber, StartupMode, Value, WordOrder};
-use encoder_studio::sim::interbus::{Config, Gateway};
-use encoder_studio::store::{DeviceKey, Logbook, Store};
-use encoder_studio::worker::interbus::{
+use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Committed, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, Remark,
 };
+use encoder_studio::devices::interbus::procedures::{Carried, Handshake, Station, carried};
+use encoder_studio::devices::interbus::protocol::{Cam, Program, ProgramNumber, StartupMode, Value, WordOrder};
+use encoder_studio::devices::interbus::sim::{Config, Gateway};
+use encoder_studio::link::{Direction, TraceEntry, VirtualClock};
+use encoder_studio::profile::Consent;
+use encoder_studio::store::{DeviceKey, Logbook, Store};
 use encoder_studio::worker::{Event, JobId, Session};
 
 use crate::support::{MARGIN, Tap, TestLink, folder};

@@ -4,11 +4,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use encoder_studio::device::interbus::{
+use encoder_studio::devices::interbus::procedures::{
     Asked, Carried, Damage, Error, Exception, Master, Reading, Station, carried, identify,
 };
+use encoder_studio::devices::interbus::protocol::WordOrder;
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
-use encoder_studio::protocol::interbus::WordOrder;
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::station;

@@ -3,18 +3,18 @@
 use std::path::Path;
 use std::time::Duration;
 
-use encoder_studio::device::interbus::Error;
-use encoder_studio::device::interbus::write::Left;
-use encoder_studio::kinds::FORMATS;
-use encoder_studio::link::{Cancel, Clock};
-use encoder_studio::profile::interbus::InterbusProfile;
-use encoder_studio::profile::interbus::{Image, Item, ItemValue, Op, RestoreOptions};
-use encoder_studio::profile::{Consent, Document};
-use encoder_studio::protocol::interbus::{CamNumber, ProgramNumber, StartupMode};
-use encoder_studio::store::{DeviceKey, Logbook, Store, read_text};
-use encoder_studio::worker::interbus::{
+use encoder_studio::devices::interbus::jobs::{
     Change, ChangeKind, Commit, Doing, InterbusJob, InterbusOutput, JobError, WEAR_LIMIT, Wear,
 };
+use encoder_studio::devices::interbus::procedures::Error;
+use encoder_studio::devices::interbus::procedures::write::Left;
+use encoder_studio::devices::interbus::profile::InterbusProfile;
+use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue, Op, RestoreOptions};
+use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, StartupMode};
+use encoder_studio::kinds::FORMATS;
+use encoder_studio::link::{Cancel, Clock};
+use encoder_studio::profile::{Consent, Document};
+use encoder_studio::store::{DeviceKey, Logbook, Store, read_text};
 use encoder_studio::worker::{Event, JobId, NotBegun, Progress};
 
 use super::support::{Stand, cam, program};
@@ -234,7 +234,7 @@ fn a_worn_eeprom_is_written_only_by_force() {
         prepared.cycles_seen = seen;
         assert_eq!(matches!(prepared.wear(), Some(Wear::Worn(_) | Wear::Unknown)), refused);
         let prepared = stand.prepare(Change::Default);
-        let prepared = encoder_studio::worker::interbus::Prepared { cycles_seen: seen, ..prepared };
+        let prepared = encoder_studio::devices::interbus::jobs::Prepared { cycles_seen: seen, ..prepared };
         let consent = Consent::to(prepared.plan.id());
         let job =
             |force_wear| InterbusJob::Commit(Box::new(Commit { prepared: prepared.clone(), consent, force_wear }));

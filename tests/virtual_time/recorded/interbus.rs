@@ -1,9 +1,9 @@
 //! Writes to an INTERBUS encoder behind a gateway.
 
-use encoder_studio::device::interbus::Error;
-use encoder_studio::device::interbus::write::Left;
-use encoder_studio::profile::interbus::{Image, Item, ItemValue, RestoreOptions};
-use encoder_studio::worker::interbus::{Change, InterbusJob, InterbusOutput, JobError};
+use encoder_studio::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput, JobError};
+use encoder_studio::devices::interbus::procedures::Error;
+use encoder_studio::devices::interbus::procedures::write::Left;
+use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue, RestoreOptions};
 
 use super::{Ready, compare, listen};
 use crate::interbus::support::{Stand, cam, program};

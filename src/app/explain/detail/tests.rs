@@ -10,10 +10,10 @@ use crate::devices::hiperface::procedures::Station;
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::sim::Config;
+use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::ssi::procedures as ssi;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::link::{LinkUrl, Query, read_trace};
-use crate::profile::interbus::InterbusProfile;
 use crate::profile::{Document, Profile};
 
 /// English is what the lower floor says, and German is not.

@@ -1,0 +1,96 @@
+//! `do`: the preset, the default, the device check, and the way back to where an encoder was.
+
+use serde_json::json;
+
+use super::Disturbs;
+use super::inspect::mode;
+use super::plan::{commit, operations, prepare};
+use super::run::Runner;
+use super::value::value;
+use crate::app::Text;
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::check;
+use crate::cli::consent::require_consent;
+use crate::cli::output::Output;
+use crate::cli::profiles::show_done;
+use crate::cli::runner::unexpected;
+use crate::cli::{Done, Failure, Result};
+use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
+use crate::devices::interbus::profile::{Item, ItemValue};
+use crate::devices::interbus::protocol::{KIND, Reply};
+use crate::devices::interbus::state::explain as words;
+
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+    let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    let foreign = [(act.exact, "--exact"), (act.kit, "--kit"), (act.timeout.is_some(), "--timeout")];
+    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
+        return Err(no_option(option, KIND));
+    }
+    let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
+    match (act.action, words.as_slice()) {
+        (Action::Check, []) => check_device(common, output),
+        (Action::LeadBack, []) => lead_back(common, output),
+        (Action::Default, []) => {
+            output.remark(&Text::new("ib_disturbs.default").terminal());
+            change(common, output, act, |_| Ok(Change::Default))
+        }
+        (Action::Preset, []) => change(common, output, act, |runner| Ok(Change::Preset { value: preset(runner)? })),
+        (Action::Preset, [number]) => match value(Item::Preset, number)? {
+            ItemValue::Number(value) => change(common, output, act, |_| Ok(Change::Preset { value })),
+            _ => Err(takes("a position")),
+        },
+        (Action::Preset, _) => Err(takes("nothing or a position")),
+        (Action::Check | Action::LeadBack | Action::Default, _) => Err(takes("no argument")),
+        (other, _) => Err(no_action(other, KIND, "check, preset, default and lead-back")),
+    }
+}
+
+/// The preset that the encoder has.
+fn preset(runner: &mut Runner) -> Result<u32> {
+    match runner.run(InterbusJob::Read(Item::Preset))? {
+        InterbusOutput::Item(ItemValue::Number(preset)) => Ok(preset),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn check_device(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    Disturbs::Reading.say(output);
+    match runner.run(InterbusJob::Check)? {
+        InterbusOutput::Check(lines) => check::show(output, &words::check(&lines)),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn lead_back(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    Disturbs::LeadingBack.say(output);
+    let now = match runner.run(InterbusJob::LeadBack)? {
+        InterbusOutput::LedBack(now) => now,
+        other => return Err(unexpected(&other)),
+    };
+    let reading = match runner.run(InterbusJob::Position)? {
+        InterbusOutput::Position(reading) => reading,
+        other => return Err(unexpected(&other)),
+    };
+    let (is, word) = (words::startup(now).terminal(), format!("0x{:08X}", reading.word));
+    let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
+    let Reply::Error(error) = reading.reply() else {
+        output.show(&json, &format!("the encoder runs, in mode {is}\n"))?;
+        return Ok(Done::Well);
+    };
+    output.show(&json, &format!("the encoder is in mode {is}\n"))?;
+    let why = words::refusal(error).terminal();
+    Err(Failure::Failed(vec![format!("The encoder was led back and sends {word}: {why}")]))
+}
+
+fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
+    require_consent(&act.consent)?;
+    let mut runner = Runner::open(common)?;
+    Disturbs::Reading.say(output);
+    let change = change(&mut runner)?;
+    let prepared = prepare(&mut runner, output, change)?;
+    let operations = operations(&prepared.plan);
+    let spent = commit(&mut runner, output, prepared, &act.consent)?;
+    show_done(output, &action_name(act.action), &operations, &spent, &[], "")
+}

@@ -1,0 +1,89 @@
+//! `decode interbus`: words of the process data, with all that they may mean or what the options say they are.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::meaning::{self, Known, Said};
+use crate::cli::args::{Decode, Direction};
+use crate::cli::decode::{Explained, show};
+use crate::cli::number::parse_number;
+use crate::cli::output::Output;
+use crate::cli::{Failure, Result};
+use crate::devices::interbus::protocol::{KIND, READ_OUTS, ReadOut, Single, WindowShift};
+
+pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
+    let options = &arguments.words;
+    let known = Known {
+        mode: options.mode.map(Into::into),
+        read_out: options.read_out.as_deref().map(read_out).transpose()?,
+        shift: options.shift.and_then(WindowShift::new),
+    };
+    let words: Vec<Captured> = arguments.hex.iter().map(|word| captured(word)).collect::<Result<_>>()?;
+    if let (Some(Captured::K1(word)), Some(Direction::Out)) =
+        (words.iter().find(|word| matches!(word, Captured::K1(_))), options.direction)
+    {
+        return Err(Failure::Usage(format!("{word:04X} has 4 digits: K1 encoders take no words, only K3 ones do")));
+    }
+    let explained: Vec<Explained> = words.iter().map(|word| explain(*word, options.direction, &known)).collect();
+    show(output, &explained)
+}
+
+/// A word of the process data.
+#[derive(Clone, Copy)]
+enum Captured {
+    /// 4 digits.
+    K1(u16),
+    /// 8 digits.
+    Long(u32),
+}
+
+fn captured(text: &str) -> Result<Captured> {
+    let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
+    // A sign is no digit, though numbers may have one.
+    let number = digits.chars().all(|c| c.is_ascii_hexdigit()).then_some(digits);
+    let word = match (number, digits.len()) {
+        (Some(digits), 4) => u16::from_str_radix(digits, 16).ok().map(Captured::K1),
+        (Some(digits), 8) => u32::from_str_radix(digits, 16).ok().map(Captured::Long),
+        _ => None,
+    };
+    word.ok_or_else(|| {
+        Failure::Usage(format!(
+            "{text:?} is not a word of an INTERBUS encoder: 8 hex digits, as 020000FF, or 4 of a K1"
+        ))
+    })
+}
+
+/// A read-out by its name, with hyphens, or its number.
+fn read_out(text: &str) -> Result<ReadOut> {
+    let named = READ_OUTS.iter().find(|row| row.name.replace(' ', "-") == text).map(|row| row.read_out);
+    let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOut::new);
+    named.or_else(numbered).ok_or_else(|| {
+        let names: Vec<String> = READ_OUTS.iter().map(|row| row.name.replace(' ', "-")).collect();
+        Failure::Usage(format!("{text:?} is no read-out; these are {}, or a number up to 0xFFFF", names.join(", ")))
+    })
+}
+
+fn explain(word: Captured, direction: Option<Direction>, known: &Known) -> Explained {
+    let (shown, said) = match word {
+        Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::of_k1(Single::parse_k1(word))])),
+        Captured::Long(word) => (format!("{word:08X}"), long(word, direction, known)),
+    };
+    let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
+    if let Ok(said) = &said {
+        more.insert("readings".to_owned(), said.iter().map(Said::json).collect::<Json>());
+    }
+    let meaning = said.map(|said| said.iter().map(Said::line).collect());
+    Explained { compact: shown.clone(), shown, meaning, more }
+}
+
+fn long(word: u32, direction: Option<Direction>, known: &Known) -> std::result::Result<Vec<Said>, String> {
+    match direction {
+        Some(Direction::In) => Ok(meaning::of_in(word, known)),
+        Some(Direction::Out) => meaning::of_out(word, known),
+        // Every word can have come from the encoder; one that means nothing to it in any mode is then only that.
+        None => Ok(meaning::of_out(word, known)
+            .unwrap_or_else(|_| meaning::refused(word, known))
+            .into_iter()
+            .chain(meaning::of_in(word, known))
+            .collect()),
+    }
+}

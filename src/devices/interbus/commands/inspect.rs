@@ -1,0 +1,151 @@
+//! Commands that only look: `identify`, `status`, `read`.
+
+use serde_json::{Value as Json, json};
+
+use super::Disturbs;
+use super::run::{Runner, identity};
+use crate::cli::args::Common;
+use crate::cli::output::{Lines, Output};
+use crate::cli::runner::unexpected;
+use crate::cli::{Done, Result};
+use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
+use crate::devices::interbus::procedures::{Identity, Status};
+use crate::devices::interbus::profile::ItemValue;
+use crate::devices::interbus::protocol::{KIND, Reply, StartupMode, Value};
+use crate::devices::interbus::state::explain as words;
+
+pub(super) fn identify(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    Disturbs::Reading.say(output);
+    let identity = identity(&mut runner)?;
+    let json = json!({
+        "device": KIND,
+        "profile": "K3",
+        "serial_number": identity.serial_number,
+        "steps": identity.steps,
+        "revolutions": identity.revolutions,
+        "direction": identity.direction.word(),
+        "software_version": identity.software_version.to_string(),
+        "mode": mode(identity.mode),
+        "multiturn": identity.flags.multiturn(),
+        "steps_minus_one": identity.flags.steps_minus_one(),
+    });
+    output.show(&json, &identity_text(&identity))?;
+    Ok(Done::Well)
+}
+
+fn identity_text(identity: &Identity) -> String {
+    let kind = if identity.flags.multiturn() { "multiturn" } else { "single turn" };
+    let less = if identity.flags.steps_minus_one() { ", steps given less one" } else { "" };
+    let direction = words::direction(identity.direction).terminal();
+    let mut lines = Lines::default();
+    lines
+        .add("encoder", format!("INTERBUS K3, {kind}{less}"))
+        .add("serial number", &identity.serial_number)
+        .add("software version", identity.software_version)
+        .add("steps", format!("{} over {}", identity.steps, turns(identity.revolutions)))
+        .add("direction", format!("{} ({direction})", identity.direction))
+        .add("mode", words::startup(identity.mode).terminal());
+    lines.text()
+}
+
+fn turns(turns: u32) -> String {
+    if turns == 1 { "1 revolution".to_owned() } else { format!("{turns} revolutions") }
+}
+
+/// A mode for scripts: K2, K3, velocity, or `cam 3`.
+pub(super) fn mode(mode: StartupMode) -> String {
+    match mode {
+        StartupMode::K2 => "K2".to_owned(),
+        StartupMode::K3 => "K3".to_owned(),
+        StartupMode::Velocity => "velocity".to_owned(),
+        StartupMode::Cams(program) => format!("cam {}", program.get()),
+        StartupMode::Unknown(value) => value.get().to_string(),
+    }
+}
+
+pub(super) fn status(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    Disturbs::Reading.say(output);
+    let status = match runner.run(InterbusJob::Status)? {
+        InterbusOutput::Status(status) => *status,
+        other => return Err(unexpected(&other)),
+    };
+    let errors: Vec<Json> = status
+        .error
+        .iter()
+        .map(|error| {
+            let word = format!("0x{:08X}", Reply::Error(*error).emit());
+            json!({"code": error.code.get(), "text": words::refusal(*error).terminal(), "word": word})
+        })
+        .collect();
+    let warnings: Vec<Json> =
+        stray(&status).map(|(code, text)| json!({"code": code, "text": text})).into_iter().collect();
+    let json = json!({
+        "ok": errors.is_empty(),
+        "errors": errors,
+        "warnings": warnings,
+        "raw": status.reading.word,
+        "mode": mode(status.mode),
+        "temperature_c": celsius(status.temperature_tenths),
+        "operating_minutes": status.operating_minutes,
+    });
+    output.show(&json, &status_text(&status))?;
+    Ok(Done::Well)
+}
+
+/// Bits of a position's word that should be 0.
+fn stray(status: &Status) -> Option<(u32, String)> {
+    let bits = u32::from(status.reading.stray()) << Value::BITS;
+    (bits != 0).then(|| (bits, format!("the bits 0x{bits:08X} of IN should be 0")))
+}
+
+fn celsius(tenths: i32) -> f64 {
+    f64::from(tenths) / 10.0
+}
+
+fn status_text(status: &Status) -> String {
+    let error =
+        status.error.map(|error| format!("0x{:08X}: {}", Reply::Error(error).emit(), words::refusal(error).terminal()));
+    let mut lines = Lines::default();
+    lines
+        .add("errors", error.unwrap_or_else(|| "none".to_owned()))
+        .add("warnings", stray(status).map_or_else(|| "none".to_owned(), |(_, text)| text))
+        .add("IN word", format!("0x{:08X}", status.reading.word))
+        .add("mode", words::startup(status.mode).terminal())
+        .add("temperature", format!("{:.1} °C", celsius(status.temperature_tenths)))
+        .add("operating time", format!("{} min", status.operating_minutes));
+    lines.text()
+}
+
+pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
+    let item = super::item(item)?;
+    let mut runner = Runner::open(common)?;
+    let disturbs =
+        if item.parameter().is_some() || !item.is_writable() { Disturbs::Reading } else { Disturbs::Programs };
+    disturbs.begin(common, output, None)?;
+    let value = match runner.run(InterbusJob::Read(item))? {
+        InterbusOutput::Item(value) => value,
+        other => return Err(unexpected(&other)),
+    };
+    let own = match value {
+        ItemValue::Number(number) | ItemValue::Minutes(number) => json!(number),
+        ItemValue::Mask(mask) => json!(mask),
+        ItemValue::TenthsOfDegree(tenths) => json!(celsius(tenths)),
+        ItemValue::Direction(_) | ItemValue::Cam(_) => json!(value.to_string()),
+    };
+    let mut json = json!({"item": item.to_string(), "value": own});
+    let unit = item.unit();
+    if let Some(keys) = json.as_object_mut() {
+        if !unit.is_empty() {
+            keys.insert("unit".to_owned(), json!(unit));
+        }
+        if let ItemValue::Cam(cam) = value {
+            keys.insert("start".to_owned(), json!(cam.start.get()));
+            keys.insert("stop".to_owned(), json!(cam.stop.get()));
+        }
+    }
+    let text = if unit.is_empty() { format!("{value}\n") } else { format!("{value} {unit}\n") };
+    output.show(&json, &text)?;
+    Ok(Done::Well)
+}

@@ -1,0 +1,275 @@
+//! What a word of an INTERBUS encoder says, in words.
+
+use serde_json::{Value as Json, json};
+
+use crate::devices::interbus::protocol::{
+    CamOutput, Command, Mode, Parameter, ReadOut, ReadOutValue, Reply, Single, StartupMode, Value, WindowShift,
+};
+
+/// What is known of a word beside its digits.
+pub(super) struct Known {
+    pub(super) mode: Option<Mode>,
+    pub(super) read_out: Option<ReadOut>,
+    pub(super) shift: Option<WindowShift>,
+}
+
+/// One of the things that a word may say.
+pub(super) struct Said {
+    direction: &'static str,
+    /// In which it says that; none where it does in any.
+    modes: Vec<Mode>,
+    words: String,
+    /// The number in it.
+    value: Option<u32>,
+    /// It may be sent in these modes, or may come in them.
+    legal: bool,
+}
+
+impl Said {
+    pub(super) fn line(&self) -> String {
+        let modes: Vec<&str> = self.modes.iter().map(|mode| mode.name()).collect();
+        match modes.split_last() {
+            None => format!("{}: {}", self.direction, self.words),
+            Some((one, [])) => format!("{} in {one} mode: {}", self.direction, self.words),
+            Some((last, first)) => format!("{} in {} or {last} mode: {}", self.direction, first.join(", "), self.words),
+        }
+    }
+
+    pub(super) fn json(&self) -> Json {
+        let modes: Vec<&str> = self.modes.iter().map(|mode| mode.name()).collect();
+        let direction = self.direction.to_lowercase();
+        json!({"direction": direction, "modes": modes, "meaning": self.words, "value": self.value, "legal": self.legal})
+    }
+}
+
+pub(super) fn of_k1(word: Single) -> Said {
+    let position = word.position().get();
+    let words = format!("position {position} of a K1 encoder{}", stray(word.stray(), "above bit 11"));
+    Said { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
+}
+
+/// What an OUT word asks for, or why it must not be sent.
+pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<Said>, String> {
+    let readings = Command::readings(word);
+    if let [Command::Unknown(_)] = readings.as_slice() {
+        return Err("nothing that an encoder is asked in any mode".to_owned());
+    }
+    let said = |command: Command, modes: Vec<Mode>| {
+        let (words, value) = asked(command);
+        Said { direction: "OUT", modes, words, value, legal: true }
+    };
+    let legal = |command: Command| Mode::ALL.into_iter().filter(move |mode| command.is_legal_in(*mode));
+    match known.mode {
+        None => Ok(readings
+            .into_iter()
+            .map(|command| {
+                let modes: Vec<Mode> = legal(command).collect();
+                let everywhere = modes.len() == Mode::ALL.len();
+                said(command, if everywhere { Vec::new() } else { modes })
+            })
+            .collect()),
+        Some(mode) => match Command::in_mode(word, mode) {
+            Ok(command) => Ok(vec![said(command, vec![mode])]),
+            Err(refused) => Err(format!("not legal in {mode}: {}", elsewhere(refused.command))),
+        },
+    }
+}
+
+/// An OUT word that an encoder in the known mode must not get, where it means something in another.
+pub(super) fn refused(word: u32, known: &Known) -> Vec<Said> {
+    let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
+    refused
+        .filter(|refused| !matches!(refused.command, Command::Unknown(_)))
+        .map(|refused| Said {
+            direction: "OUT",
+            modes: vec![refused.mode],
+            words: format!("not legal, {}", elsewhere(refused.command)),
+            value: asked(refused.command).1,
+            legal: false,
+        })
+        .into_iter()
+        .collect()
+}
+
+/// Where a command is legal.
+fn elsewhere(command: Command) -> String {
+    let modes: Vec<&str> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(Mode::name).collect();
+    format!("\"{}\" is for {} mode", asked(command).0, modes.join(" or "))
+}
+
+/// What an IN word says, in the mode that is known or in each in which it may come.
+pub(super) fn of_in(word: u32, known: &Known) -> Vec<Said> {
+    let reply = Reply::parse(word);
+    let said = |modes: &[Mode], words: String, value: Option<u32>| Said {
+        direction: "IN",
+        modes: modes.iter().copied().filter(|mode| known.mode.is_none_or(|known| known == *mode)).collect(),
+        words,
+        value,
+        legal: true,
+    };
+    use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
+    let mut all = match reply {
+        Reply::Run { value, stray: bits } => {
+            let stray = stray(bits.into(), "in bits 30 to 25");
+            let number = value.get();
+            vec![
+                said(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
+                said(&[Velocity], format!("speed {} rpm{stray}", value.signed()), Some(number)),
+                said(&[Cam], outputs(word, known.shift), None),
+            ]
+        }
+        Reply::Busy { .. } | Reply::Echo { .. } => vec![
+            said(&[Position, Parameterisation, ReadOut, Velocity], echo(reply, Parameterisation), None),
+            said(&[Cam], echo(reply, Cam), None),
+        ],
+        Reply::ReadOut(value) => vec![said(&Mode::ALL, read_out(value, known.read_out), Some(value.get()))],
+        Reply::UnknownReadOut(_) => vec![said(&Mode::ALL, "unknown parameter in a read-out".to_owned(), None)],
+        Reply::Unknown { code, data } => {
+            let words = format!("a read-out word with code {}, which the manual does not have", code.get());
+            vec![said(&Mode::ALL, words, Some(data.get()))]
+        }
+        Reply::Error(error) => {
+            let words = format!(
+                "error, {} (code {}, data 0x{:X}): {}",
+                error.meaning(),
+                error.code.get(),
+                error.data.get(),
+                error.remedy()
+            );
+            vec![said(&Mode::ALL, words, Some(error.data.get()))]
+        }
+    };
+    all.retain(|said| !said.modes.is_empty());
+    for said in &mut all {
+        if said.modes.len() == Mode::ALL.len() {
+            said.modes.clear();
+        }
+    }
+    all
+}
+
+fn stray(bits: u32, place: &str) -> String {
+    if bits == 0 { String::new() } else { format!("; warning: 0x{bits:X} {place} should be 0") }
+}
+
+/// A command, and the number in it.
+fn asked(command: Command) -> (String, Option<u32>) {
+    let with = |words: String, value: u32| (words, Some(value));
+    match command {
+        Command::Set(Parameter::Default, _) => {
+            ("set the encoder to default (only in the appendix of the manual)".to_owned(), None)
+        }
+        Command::Set(parameter, value) => with(set(parameter, value), value.get()),
+        Command::ReadOut(read_out) => with(format!("read out {}", name(read_out)), read_out.number().into()),
+        Command::Cams(Some(program)) => with(format!("cam mode with program {}", program.get()), program.get().into()),
+        Command::Activate(mask) => with(format!("activation mask 0x{mask:04X}: {}", cams(mask)), mask.into()),
+        Command::Shift(shift) => with(format!("shift of the window {}", shift.get()), shift.get().into()),
+        Command::CamStart(cam, at) => with(format!("cam {} starts at {}", cam.get(), at.get()), at.get()),
+        Command::CamStop(cam, at) => with(format!("cam {} stops at {}", cam.get(), at.get()), at.get()),
+        Command::ReadCamStart(cam) => with(format!("read the start of cam {}", cam.get()), cam.get().into()),
+        Command::ReadCamStop(cam) => with(format!("read the stop of cam {}", cam.get()), cam.get().into()),
+        other => (other.name().to_owned(), None),
+    }
+}
+
+fn set(parameter: Parameter, value: Value) -> String {
+    let row = parameter.row();
+    let number = value.get();
+    let range = parameter.widest_range();
+    let meaning = match (parameter, number) {
+        (Parameter::Direction, 3) => ", clockwise",
+        (Parameter::Direction, 4) => ", counterclockwise",
+        _ => "",
+    };
+    let beyond = if range.contains(&number) {
+        String::new()
+    } else {
+        format!("; warning: beyond {} to {}", range.start(), range.end())
+    };
+    format!("set {} to {number}{meaning}{beyond}", row.name)
+}
+
+fn name(read_out: ReadOut) -> String {
+    match (read_out.row(), read_out.register()) {
+        (Some(row), _) => row.name.to_owned(),
+        (None, Some(register)) => format!("register {register} of the chip"),
+        (None, None) => format!("0x{:X}, which the manual does not have", read_out.number()),
+    }
+}
+
+/// The cams of a mask.
+fn cams(mask: u16) -> String {
+    let numbers: Vec<String> = (0..16).filter(|bit| mask >> bit & 1 != 0).map(|bit| bit.to_string()).collect();
+    match numbers.as_slice() {
+        [] => "no cam".to_owned(),
+        [one] => format!("cam {one}"),
+        several => format!("cams {}", several.join(", ")),
+    }
+}
+
+fn outputs(word: u32, shift: Option<WindowShift>) -> String {
+    let Ok(output) = CamOutput::parse(word) else {
+        return "cam outputs not valid".to_owned();
+    };
+    let window = match shift {
+        Some(shift) if shift.mask() == 0 => "no bit of the position".to_owned(),
+        Some(shift) => {
+            format!("position 0x{:07X} in the bits 0x{:07X}", output.position_bits(shift), shift.mask())
+        }
+        None => format!("window 0x{:05X} (--shift says of which bits)", output.window),
+    };
+    format!("{} on; {window}{}", cams(output.outputs.into()), stray(output.stray.into(), "in bits 30 to 25"))
+}
+
+fn echo(reply: Reply, mode: Mode) -> String {
+    let (code, manufacturer, data) = match reply {
+        Reply::Busy { manufacturer, data } => (0, manufacturer, data),
+        Reply::Echo { manufacturer, code, data } => (code.get(), manufacturer, data),
+        _ => return String::new(),
+    };
+    let with = if manufacturer { ", manufacturer bit" } else { "" };
+    match (reply.echoed(mode), code) {
+        (Some(command), 0) if !matches!(command, Command::CamStart(..) | Command::CamStop(..)) => {
+            format!("echo of \"{}\"", asked(command).0)
+        }
+        (Some(command), 0) => format!("busy{with}, or echo of \"{}\"", asked(command).0),
+        (Some(command), _) => format!("echo of \"{}\"", asked(command).0),
+        (None, 0) if data == Value::default() => format!("busy{with}"),
+        (None, 0) => format!("busy{with}, data {}", data.get()),
+        (None, code) => format!("echo of code {code}{with}, data {}", data.get()),
+    }
+}
+
+fn read_out(value: Value, read_out: Option<ReadOut>) -> String {
+    let number = value.get();
+    match read_out {
+        Some(read_out) => format!("{} {}", name(read_out), scaled(value, read_out)),
+        None => format!(
+            "read-out value {number} (0x{number:X}); as temperature {}, as operating time {} (--read-out says what it is)",
+            scaled(value, ReadOut::TEMPERATURE),
+            scaled(value, ReadOut::OPERATING_TIME),
+        ),
+    }
+}
+
+fn scaled(value: Value, read_out: ReadOut) -> String {
+    match read_out.value(value) {
+        ReadOutValue::Plain(number) => format!("{number} (0x{number:X})"),
+        ReadOutValue::Minutes(minutes) => format!("{minutes} min"),
+        ReadOutValue::TenthsOfDegree(tenths) => format!("{:.1} °C", f64::from(tenths) / 10.0),
+        ReadOutValue::StartupMode(mode) => match mode {
+            StartupMode::K2 => "K2 (0)".to_owned(),
+            StartupMode::K3 => "K3 (1)".to_owned(),
+            StartupMode::Velocity => "velocity (2)".to_owned(),
+            StartupMode::Cams(program) => format!("cam program {} ({})", program.get(), mode.emit()),
+            StartupMode::Unknown(value) => format!("{}, which the manual does not have", value.get()),
+        },
+        ReadOutValue::Flags(flags) => format!(
+            "0x{:X}: {}, {}{}",
+            flags.value().get(),
+            if flags.steps_minus_one() { "steps−1 mode" } else { "steps as they are" },
+            if flags.multiturn() { "multiturn" } else { "single turn" },
+            stray(flags.unknown(), "is unknown and"),
+        ),
+    }
+}

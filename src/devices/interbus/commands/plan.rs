@@ -1,0 +1,99 @@
+//! A plan for an INTERBUS encoder: shown, agreed to, carried out.
+
+use serde_json::Value as Json;
+
+use super::run::Runner;
+use crate::app::Text;
+use crate::cli::Result;
+use crate::cli::args::Consenting;
+use crate::cli::consent::{agree, check_wear};
+use crate::cli::output::Output;
+use crate::cli::plan::{self, Shown, Spent, Step};
+use crate::cli::runner::unexpected;
+use crate::devices::interbus::jobs::{
+    Change, Commit, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear, wear_limit,
+};
+use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
+use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
+use crate::devices::interbus::state::explain as words;
+use crate::profile::{Consent, Operation as _};
+
+/// Makes a plan for a change; nothing is written.
+pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
+    let reads_all = match &change {
+        Change::Restore { profile, .. } => programs_needed(profile).len() == ProgramNumber::COUNT,
+        Change::Write(wanted) => wanted.known().count() == ProgramNumber::COUNT,
+        Change::Item(..) => false,
+        Change::Preset { .. } | Change::Default => true,
+    };
+    let prepared = match runner.run(InterbusJob::Prepare(change))? {
+        InterbusOutput::Prepared(prepared) => *prepared,
+        other => return Err(unexpected(&other)),
+    };
+    if !reads_all && prepared.plan.ops.iter().any(is_shorter) {
+        output.remark(&Text::new("ib_disturbs.shorter").terminal());
+    }
+    Ok(prepared)
+}
+
+/// The measuring range ends earlier.
+fn is_shorter(op: &Op) -> bool {
+    let Op::Parameterise(changes) = op else { return false };
+    changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
+}
+
+/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+    if prepared.plan.is_empty() {
+        return Ok(Spent::default());
+    }
+    let (wear, cost) = (prepared.wear(), prepared.plan.write_cycles());
+    check_wear::<Interbus>(consent, prepared.cycles_seen, cost, wear_limit(cost))?;
+    let said = words::wear(&prepared).map(|text| text.terminal());
+    if let Some(said) = &said {
+        output.remark(said);
+    }
+    let stop = Text::new("ib_disturbs.writing").terminal();
+    agree(output, consent, &format!("{}{stop}", shown(&prepared).text))?;
+    if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(said)) = (wear, &said) {
+        // More than the maker names: once more.
+        agree(output, consent, said)?;
+    }
+    let granted = Consent::to(prepared.plan.id());
+    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
+    let committed = match runner.run(InterbusJob::Commit(Box::new(commit)))? {
+        InterbusOutput::Committed(committed) => *committed,
+        other => return Err(unexpected(&other)),
+    };
+    Ok(Spent::of(output, committed))
+}
+
+/// The plan for a person and for a script: each item old → new, and what it costs.
+pub(super) fn shown(prepared: &Prepared) -> Shown {
+    let plan = &prepared.plan;
+    let lines = plan::lines(plan.ops.iter().flat_map(steps));
+    let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
+    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+}
+
+/// The operations as JSON; what is stored together costs nothing by itself.
+pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
+    plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
+}
+
+fn steps(op: &Op) -> Vec<Step> {
+    let cost = op.write_cycles();
+    let last = |item: &str, new: String| Step { item: item.to_owned(), old: None, new: Some(new), write_cycles: cost };
+    let mut steps: Vec<Step> = op
+        .steps()
+        .into_iter()
+        .map(|step| Step { item: step.name, old: Some(step.from), new: Some(step.to), write_cycles: 0 })
+        .collect();
+    steps.push(match op {
+        Op::Parameterise(_) => last("parameters", "stored".to_owned()),
+        Op::Program(change) => last(&format!("cam program {}", change.program.get()), "stored".to_owned()),
+        Op::FirePreset { value } => last("position", format!("becomes {value}")),
+        Op::Default => last("all parameters", "as delivered (experimental)".to_owned()),
+    });
+    steps
+}

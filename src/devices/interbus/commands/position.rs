@@ -1,0 +1,114 @@
+//! `position`: IN words, with what the encoder's gear makes of them.
+
+use serde_json::json;
+
+use super::Disturbs;
+use super::inspect::mode;
+use super::run::{Runner, identity, programs};
+use crate::cli::Result;
+use crate::cli::args::{Common, Position};
+use crate::cli::output::Output;
+use crate::cli::positions::readings;
+use crate::cli::runner::{Ended, unexpected};
+use crate::devices::interbus::jobs::{Interbus, InterbusJob, InterbusOutput};
+use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::protocol::{CamNumber, StartupMode};
+
+/// Who is there is asked once, since a position is nothing without its gear; from then on the IN word alone is read.
+pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+    let mut runner = Runner::open(common)?;
+    Disturbs::Reading.say(output);
+    let identity = identity(&mut runner)?;
+    if let StartupMode::Cams(_) = identity.mode {
+        // Where the window has what of the position; no other program is selected for that.
+        programs(&mut runner, Vec::new())?;
+    }
+    if position.csv {
+        output.print("t_s,raw,turns,steps,degrees,valid\n")?;
+    }
+    readings(
+        &mut runner,
+        position,
+        || InterbusJob::Position,
+        |_, came| {
+            let reading = match came.map_err(|error| Ended::<Interbus>::Job(error).into_failure())? {
+                InterbusOutput::Position(reading) => reading,
+                other => return Err(unexpected(&other)),
+            };
+            if position.csv {
+                output.print(&row(&reading))?;
+            } else {
+                show(output, &reading)?;
+            }
+            Ok(true)
+        },
+    )
+}
+
+fn show(output: &Output, reading: &Reading) -> Result<()> {
+    let t = reading.at.since_start().as_secs_f64();
+    let place = reading.place();
+    let cams = reading.cams().map(|own| on(own.outputs));
+    let mut json = json!({
+        "t_s": t,
+        "raw": reading.word,
+        "turns": place.map(|place| place.turns),
+        "steps": place.map(|place| place.steps),
+        "degrees": place.map(|place| place.degrees),
+        "valid": reading.is_valid(),
+        "position": reading.position(),
+        "mode": reading.mode.map(mode),
+    });
+    if let Some(keys) = json.as_object_mut() {
+        if let Some(cams) = &cams {
+            keys.insert("cams".to_owned(), json!(cams));
+        }
+        if let Some(rpm) = reading.rpm() {
+            keys.insert("rpm".to_owned(), json!(rpm));
+        }
+    }
+    output.show(&json, &format!("{t:10.3} s  0x{:08X}  {}\n", reading.word, words(reading, cams.as_deref())))
+}
+
+/// The cams that are on.
+fn on(outputs: u8) -> Vec<u8> {
+    CamNumber::all().map(CamNumber::get).filter(|cam| outputs >> cam & 1 != 0).collect()
+}
+
+fn words(reading: &Reading, cams: Option<&[u8]>) -> String {
+    if !reading.is_valid() {
+        return "not valid".to_owned();
+    }
+    if let Some(rpm) = reading.rpm() {
+        return format!("{rpm} 1/min");
+    }
+    let position = match (reading.position(), reading.place()) {
+        (Some(position), Some(place)) => {
+            format!("position {position}: turn {}, step {}, {:.3}°", place.turns, place.steps, place.degrees)
+        }
+        (Some(position), None) => format!("position {position}, beyond the measuring range"),
+        (None, _) => "no whole position under the window".to_owned(),
+    };
+    match cams {
+        None => position,
+        Some([]) => format!("{position}; no cam on"),
+        Some(cams) => {
+            let cams = cams.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            format!("{position}; cams on: {cams}")
+        }
+    }
+}
+
+fn row(reading: &Reading) -> String {
+    let place = reading.place();
+    let column = |number: Option<String>| number.unwrap_or_default();
+    format!(
+        "{:.6},{},{},{},{},{}\n",
+        reading.at.since_start().as_secs_f64(),
+        reading.word,
+        column(place.map(|place| place.turns.to_string())),
+        column(place.map(|place| place.steps.to_string())),
+        column(place.map(|place| place.degrees.to_string())),
+        reading.is_valid(),
+    )
+}

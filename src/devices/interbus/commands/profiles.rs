@@ -1,0 +1,115 @@
+//! What the commands about profiles do with an INTERBUS encoder: `save`, `restore`, and reading it for a comparison.
+
+use serde_json::json;
+
+use super::Disturbs;
+use super::plan::{commit, prepare, shown};
+use super::run::{Runner, programs, survey};
+use crate::app::explain;
+use crate::cli::args::{Common, Restore, Save};
+use crate::cli::consent::require_consent;
+use crate::cli::output::{Output, count};
+use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Done, Result};
+use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
+use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, programs_needed};
+use crate::devices::interbus::state::explain as words;
+use crate::profile::{Body, Comparison, ProfileError};
+
+pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+    let profile = saved(common, output)?;
+    let programs = profile.image.known().count();
+    keep(&save.file, Body::new(profile))?;
+    let json = json!({"file": save.file, "programs": programs});
+    output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
+    Ok(Done::Well)
+}
+
+/// The encoder as it is, for a comparison: all of it, or as much as a profile says something about. Each program that is
+/// read switches the encoder's outputs.
+pub(super) fn present(common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+    let profile = match profile.and_then(Body::get::<InterbusProfile>) {
+        None => saved(common, output)?,
+        Some(profile) => as_far_as(common, output, profile)?,
+    };
+    Ok(Body::new(profile))
+}
+
+fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
+    let mut runner = Runner::open(common)?;
+    Disturbs::Programs.begin(common, output, None)?;
+    match runner.run(InterbusJob::Save { programs: true })? {
+        InterbusOutput::Saved(profile) => Ok(*profile),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
+    let needed = programs_needed(profile);
+    let mut runner = Runner::open(common)?;
+    let disturbs = if needed.is_empty() { Disturbs::Reading } else { Disturbs::Programs };
+    disturbs.begin(common, output, None)?;
+    let survey = survey(&mut runner)?;
+    let mut image = Image::of(survey.parameters);
+    if !needed.is_empty() {
+        let (read, shift) = programs(&mut runner, needed)?;
+        image.shift = Some(shift);
+        for (number, program) in read {
+            if let Some(place) = image.program_mut(number) {
+                *place = Some(program);
+            }
+        }
+    }
+    Ok(InterbusProfile::of(survey.identity.profile(), image, Recorded::default()))
+}
+
+/// What differs between two profiles.
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
+}
+
+/// That two profiles are not of the same encoder. One without a serial number is of none.
+pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
+    let error =
+        profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity).err()?;
+    Some(match error {
+        PlanError::OtherType(types) => words::other_type(types).terminal(),
+        PlanError::OtherDevice { profile, device } => {
+            format!("The profile is of serial number {profile}, the encoder has {device}.")
+        }
+        other => format!("{other}."),
+    })
+}
+
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    let profile =
+        profile.into_profile::<InterbusProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let options = restore_options(restore)?;
+    if !restore.dry_run {
+        require_consent(&restore.consent)?;
+    }
+    let mut runner = Runner::open(common)?;
+    let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
+    disturbs.begin(common, output, Some(&restore.consent))?;
+    let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+    if let Some(types) = prepared.other_type {
+        output.remark(&words::other_type(types).terminal());
+    }
+    for item in &prepared.missing {
+        output.remark(&format!("{item} is left alone: the encoder does not have it"));
+    }
+    for item in &prepared.mounting_left {
+        output.remark(&format!(
+            "{item} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
+        ));
+    }
+    let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    left.warn(output);
+    if restore.dry_run {
+        return show_dry_run(output, &shown(&prepared), &left);
+    }
+    let spent = commit(&mut runner, output, prepared, &restore.consent)?;
+    show_restored(output, &spent, &left)
+}

@@ -1,0 +1,70 @@
+//! Running jobs on an INTERBUS encoder.
+
+use crate::app::Text;
+use crate::cli::Result;
+use crate::cli::args::Code;
+use crate::cli::runner::{self, Runs, failed, unexpected};
+use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark, open};
+use crate::devices::interbus::procedures::{Identity, Survey};
+use crate::devices::interbus::protocol::{Program, ProgramNumber, WindowShift};
+use crate::devices::interbus::state::explain as words;
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::worker::{OpenError, Session};
+
+/// A session with an INTERBUS encoder on its thread.
+pub(super) type Runner = runner::Runner<Interbus>;
+
+impl Runs for Interbus {
+    type Kept = ();
+    const HAS_CODES: bool = false;
+
+    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
+        open(url, store)
+    }
+
+    /// Access codes of the environment are for other devices.
+    fn begin(_session: &mut Session<Self>, _codes: Vec<Code>) {}
+
+    /// Steps of the handshake are for the window; a recording has their bytes.
+    fn say(_remark: &Remark) {}
+
+    fn doing(doing: &Doing) -> String {
+        doing.to_string()
+    }
+
+    fn failure(error: &JobError) -> Vec<Text> {
+        words::job(error)
+    }
+}
+
+/// Who is there; one who cannot be is refused.
+pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
+    let identity = match runner.run(InterbusJob::Identify)? {
+        InterbusOutput::Identity(identity) => identity,
+        other => return Err(unexpected(&other)),
+    };
+    identity.gear().map_err(|why| failed(&words::implausible(why)))?;
+    Ok(identity)
+}
+
+/// All that can be read without selecting a cam program.
+pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
+    let survey = match runner.run(InterbusJob::Survey)? {
+        InterbusOutput::Surveyed(survey) => survey,
+        other => return Err(unexpected(&other)),
+    };
+    survey.identity.gear().map_err(|why| failed(&words::implausible(why)))?;
+    Ok(survey)
+}
+
+/// These programs, and the shift of the window.
+pub(super) fn programs(
+    runner: &mut Runner,
+    wanted: Vec<ProgramNumber>,
+) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift)> {
+    match runner.run(InterbusJob::Programs(wanted))? {
+        InterbusOutput::Programs(programs, shift) => Ok((programs, shift)),
+        other => Err(unexpected(&other)),
+    }
+}

@@ -1,0 +1,36 @@
+//! `simulate interbus`: the virtual gateway with its encoders, as a Modbus/TCP server.
+
+use std::net::Ipv4Addr;
+
+use crate::cli::args::Simulate;
+use crate::cli::output::Output;
+use crate::cli::simulate::{Simulated, settings};
+use crate::cli::{Failure, Result};
+use crate::devices::interbus::sim::{Config, Gateway};
+use crate::units::{CharacterFormat, Moment};
+
+pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    if arguments.pty.is_some() {
+        let what =
+            "an INTERBUS encoder is reached through a Modbus/TCP gateway: use --listen HOST:PORT instead of --pty";
+        return Err(Failure::Usage(what.to_owned()));
+    }
+    if arguments.bridge {
+        let what = "--bridge is for biss: interbus is reached through a Modbus/TCP gateway";
+        return Err(Failure::Usage(what.to_owned()));
+    }
+    let config = Config::from_pairs(&settings(arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
+    Ok(Box::new(Gateway::new(&config)))
+}
+
+impl Simulated for Gateway {
+    /// There is no serial line.
+    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+        None
+    }
+
+    /// A gateway has several masters at once.
+    fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+        Some(Box::new(self.connection()))
+    }
+}

@@ -1,0 +1,25 @@
+//! `write`: one item.
+
+use super::plan::{commit, operations, prepare};
+use super::run::Runner;
+use super::value::value;
+use super::{Disturbs, item};
+use crate::cli::Result;
+use crate::cli::args::{Common, Write};
+use crate::cli::consent::require_consent;
+use crate::cli::output::Output;
+use crate::cli::profiles::show_changed;
+use crate::devices::interbus::jobs::Change;
+
+pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+    let item = item(&write.item)?;
+    let value = value(item, &write.value)?;
+    require_consent(&write.consent)?;
+    let mut runner = Runner::open(common)?;
+    let disturbs = if item.parameter().is_some() { Disturbs::Reading } else { Disturbs::Programs };
+    disturbs.begin(common, output, Some(&write.consent))?;
+    let prepared = prepare(&mut runner, output, Change::Item(item, value))?;
+    let operations = operations(&prepared.plan);
+    let spent = commit(&mut runner, output, prepared, &write.consent)?;
+    show_changed(output, &item.to_string(), &operations, &spent)
+}

@@ -1,0 +1,318 @@
+//! What can be asked of an INTERBUS encoder, and what comes of it.
+
+use std::fmt;
+
+use crate::devices::interbus::procedures::check::Line;
+use crate::devices::interbus::procedures::write::{Interrupted, Written};
+use crate::devices::interbus::procedures::{Error, Handshake, Identity, Reading, Status, Survey};
+use crate::devices::interbus::profile::{
+    Image, InterbusPlan, InterbusProfile, Item, ItemValue, OtherType, Parameters, PlanError, RestoreOptions,
+};
+use crate::devices::interbus::protocol::{KIND, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift};
+use crate::profile::Consent;
+use crate::store::DeviceKey;
+
+/// Stores from which a person should know that they are numbered (reference 3: some 200, at most 500).
+pub const WEAR_WARNING: u64 = 150;
+/// Stores beyond which somebody has to say once more that a write is wanted.
+pub const WEAR_ASK: u64 = 200;
+/// Stores that the maker guarantees at the very most.
+pub const WEAR_LAST: u64 = 500;
+/// Stores at which the EEPROM counts as worn.
+pub const WEAR_LIMIT: u64 = 450;
+
+/// The stores after a plan from which on it is refused, unless it is forced: at the limit the EEPROM is worn, not only beyond
+/// it, and what stores nothing wears nothing.
+pub const fn wear_limit(cost: u64) -> u64 {
+    if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
+}
+
+/// What a session with an INTERBUS encoder does. All but the first and [`Position`](Self::Position) replaces the position
+/// for a moment and makes cam outputs invalid; what is read of a cam program selects it. The encoder does afterwards what it
+/// did before, unless it is sent into another mode.
+#[derive(Debug)]
+pub enum InterbusJob {
+    /// The IN word, and nothing is sent to the encoder: for a window, after connecting.
+    Hello,
+    /// Everything that can be read without selecting a cam program.
+    Survey,
+    /// These cam programs, and the shift of the window.
+    Programs(Vec<ProgramNumber>),
+    /// Who is there.
+    Identify,
+    /// What it does, its error, its temperature.
+    Status,
+    /// What gateway and encoder say, with a verdict a line.
+    Check,
+    /// The IN word, once; nothing is sent to the encoder.
+    Position,
+    /// An item.
+    Read(Item),
+    /// Anything that can be read out, a register of the chip as well.
+    ReadOut(ReadOut),
+    /// Into another mode: position, speed, or a cam program; it stays there.
+    Select(StartupMode),
+    /// Everything that can be restored.
+    Save {
+        /// With the cam programs.
+        programs: bool,
+    },
+    /// Makes a plan; writes nothing.
+    Prepare(Change),
+    /// Carries a plan out.
+    Commit(Box<Commit>),
+    /// Ends a parameterisation, an error or a read-out that somebody has left. What was set and not stored is stored by
+    /// that, and counted.
+    LeadBack,
+}
+
+/// A change that a user wants.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Make the encoder as the profile says.
+    Restore {
+        /// The profile.
+        profile: Box<InterbusProfile>,
+        /// What the restore may do.
+        options: RestoreOptions,
+    },
+    /// Make it like this; what the image says nothing about stays as it is, and is not read.
+    Write(Box<Image>),
+    /// Give one item this value; the rest stays as it is.
+    Item(Item, ItemValue),
+    /// Store this preset, and make it the shaft's position; at standstill.
+    Preset {
+        /// The position.
+        value: u32,
+    },
+    /// Back to what was delivered: experimental (reference 6.10).
+    Default,
+}
+
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edits are written: those that are not yet stay edited.
+    Edits,
+    /// A preset is stored and fired.
+    Preset,
+    /// Everything is set back.
+    Default,
+}
+
+impl Change {
+    /// Its kind.
+    pub const fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Write(_) | Change::Item(..) => ChangeKind::Edits,
+            Change::Preset { .. } => ChangeKind::Preset,
+            Change::Default => ChangeKind::Default,
+        }
+    }
+}
+
+/// A plan, ready to be looked at.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
+    /// What would be written.
+    pub plan: InterbusPlan,
+    /// The encoder it is for.
+    pub identity: Identity,
+    /// How it makes its position, as it was read for the plan.
+    pub parameters: Parameters,
+    /// Stores that this computer has seen the encoder take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Items that are as they should be already.
+    pub unchanged: u64,
+    /// Items of a profile that the encoder does not have.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<Item>,
+    /// The profile is of another type of encoder.
+    pub other_type: Option<OtherType>,
+    /// Values of the mounting of another device that are written: they have to be set up anew.
+    pub mounting_written: Vec<Item>,
+}
+
+/// How much of an EEPROM's life is gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wear {
+    /// So many stores after this: a person should know that they are numbered.
+    Known(u64),
+    /// So many stores after this: more than the maker names.
+    Ask(u64),
+    /// So many stores after this: refused, unless it is forced.
+    Worn(u64),
+    /// How many there were is not known: refused, unless it is forced.
+    Unknown,
+}
+
+impl Prepared {
+    /// How much of the EEPROM's life the plan leaves; `None` where nobody needs to know.
+    pub fn wear(&self) -> Option<Wear> {
+        let cost = self.plan.write_cycles();
+        let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };
+        let after = seen.saturating_add(cost);
+        match after {
+            _ if cost == 0 => None,
+            WEAR_LIMIT.. => Some(Wear::Worn(after)),
+            _ if after > WEAR_ASK => Some(Wear::Ask(after)),
+            _ if after >= WEAR_WARNING => Some(Wear::Known(after)),
+            _ => None,
+        }
+    }
+}
+
+/// A plan that a person consented to.
+#[derive(Clone, Debug)]
+pub struct Commit {
+    /// The plan as it was shown.
+    pub prepared: Prepared,
+    /// The consent to it.
+    pub consent: Consent,
+    /// Write although the EEPROM counts as worn.
+    pub force_wear: bool,
+}
+
+/// What a commit did.
+pub type Committed = crate::worker::Committed<Written>;
+
+/// What is said on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// A step of the handshake.
+    Handshake(Handshake),
+}
+
+/// The step that a job is at. Its text is the command line's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Doing {
+    /// Something is read out.
+    ReadOut(ReadOut),
+    /// A cam program is read.
+    Program(ProgramNumber),
+    /// An operation of a plan is carried out: what it changes.
+    Operation(String),
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Doing::ReadOut(read_out) => match read_out.row() {
+                Some(row) => f.write_str(row.name),
+                None => write!(f, "read-out 0x{:X}", read_out.number()),
+            },
+            Doing::Program(program) => write!(f, "cam program {}", program.get()),
+            Doing::Operation(item) => f.write_str(item),
+        }
+    }
+}
+
+/// What a job gives.
+#[derive(Debug)]
+#[expect(missing_docs, reason = "each is the result of the job of that name")]
+pub enum InterbusOutput {
+    Hello(Reading),
+    Surveyed(Box<Survey>),
+    Programs(Vec<(ProgramNumber, Program)>, WindowShift),
+    Identity(Box<Identity>),
+    Status(Box<Status>),
+    Check(Vec<Line>),
+    Position(Reading),
+    Item(ItemValue),
+    ReadOut(ReadOut, Value),
+    /// With the mode that it says to be in.
+    Selected(StartupMode),
+    Saved(Box<InterbusProfile>),
+    Prepared(Box<Prepared>),
+    Committed(Box<Committed>),
+    /// With the mode in which it is.
+    LedBack(StartupMode),
+}
+
+/// Why a job ended early.
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
+}
+
+/// How backups and the logbook know an encoder: there is one maker, and one type.
+pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
+    key_of(&identity.serial_number, is_virtual)
+}
+
+/// The same by the serial number alone.
+pub(super) fn key_of(serial_number: &str, is_virtual: bool) -> DeviceKey {
+    let serial_number = serial_number.to_owned();
+    DeviceKey { kind: KIND.to_owned(), device_type: "K3".to_owned(), serial_number, is_virtual }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::interbus::profile::{Base, Op};
+    use crate::devices::interbus::protocol::Flags;
+
+    #[test]
+    fn wear_is_told_asked_and_refused_at_its_limits() {
+        let identity = Identity {
+            serial_number: "1".to_owned(),
+            steps: 4096,
+            revolutions: 1,
+            direction: crate::devices::interbus::profile::Direction::Clockwise,
+            software_version: 1,
+            mode: StartupMode::K3,
+            flags: Flags::new(Value::default()),
+        };
+        let wear = |seen: Option<u64>, stores: usize| {
+            let ops = std::iter::repeat_n(Op::Default, stores).collect();
+            let plan = InterbusPlan { base: Base::default(), ops };
+            let (kind, identity) = (ChangeKind::Default, identity.clone());
+            let parameters =
+                Parameters { steps: 4096, revolutions: 1, direction: identity.direction, preset: 0, zero_shift: 0 };
+            let prepared = Prepared {
+                kind,
+                plan,
+                identity,
+                parameters,
+                cycles_seen: seen,
+                unchanged: 0,
+                missing: Vec::new(),
+                mounting_left: Vec::new(),
+                other_type: None,
+                mounting_written: Vec::new(),
+            };
+            prepared.wear()
+        };
+        let cases = [
+            (Some(0), 1, None),
+            // Issue 22.4.
+            (None, 1, Some(Wear::Unknown)),
+            (None, 0, None),
+            (Some(148), 1, None),
+            (Some(149), 1, Some(Wear::Known(150))),
+            (Some(199), 1, Some(Wear::Known(200))),
+            (Some(200), 1, Some(Wear::Ask(201))),
+            (Some(448), 1, Some(Wear::Ask(449))),
+            (Some(441), 9, Some(Wear::Worn(450))),
+            (Some(900), 0, None),
+        ];
+        for (seen, stores, told) in cases {
+            assert_eq!(wear(seen, stores), told, "{seen:?} + {stores}");
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What outlasts a job with an INTERBUS encoder: a note of the mode in which it was found, and stores that reading may have
+//! cost, in the logbook.
+
+use std::collections::BTreeMap;
+
+use jiff::Timestamp;
+
+use crate::devices::interbus::procedures::{Excursion, Journal};
+use crate::devices::interbus::protocol::{KIND, StartupMode, Value};
+use crate::store::{DeviceKey, Drafts, EntryId, Logbook, LogbookError, Outcome, Store};
+
+use super::job::key_of;
+
+/// As the logbook tells it.
+const WHAT: &str = "cam programs read, each of which may be stored when it is left";
+
+/// The notes of one job.
+pub(super) struct Notes {
+    store: Store,
+    is_virtual: bool,
+    /// Reading that has begun, by serial number.
+    begun: BTreeMap<String, (Logbook, EntryId)>,
+}
+
+impl Notes {
+    pub(super) fn of(store: Store, is_virtual: bool) -> Self {
+        Notes { store, is_virtual, begun: BTreeMap::new() }
+    }
+
+    fn excursions(&self) -> Drafts {
+        self.store.excursions()
+    }
+
+    /// A virtual encoder may have the serial number of a real one.
+    fn name(&self, serial_number: &str) -> String {
+        format!("{serial_number}{}", if self.is_virtual { " (virtual)" } else { "" })
+    }
+
+    fn key(&self, serial_number: &str) -> DeviceKey {
+        key_of(serial_number, self.is_virtual)
+    }
+
+    fn intend(&self, serial_number: &str, stores: u64) -> Result<(Logbook, EntryId), LogbookError> {
+        let mut logbook = Logbook::open(&self.store.logbook_path())?;
+        let entry = logbook.intend(Timestamp::now(), &self.key(serial_number), WHAT, stores, None)?;
+        Ok((logbook, entry))
+    }
+}
+
+/// Tells what could not be noted: nothing is stopped by it.
+fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
+    ended.inspect_err(|why| tracing::warn!("{why}")).ok()
+}
+
+impl Journal for Notes {
+    fn has_excursions(&self) -> bool {
+        self.excursions().has_any(KIND)
+    }
+
+    fn excursion(&self, serial_number: &str) -> Option<Excursion> {
+        let text = warn(self.excursions().load(KIND, &self.name(serial_number)))??;
+        parse(&text)
+    }
+
+    fn leaves(&mut self, serial_number: &str, excursion: &Excursion) {
+        warn(self.excursions().keep(KIND, &self.name(serial_number), &emit(excursion)));
+    }
+
+    fn is_back(&mut self, serial_number: &str) {
+        warn(self.excursions().remove(KIND, &self.name(serial_number)));
+    }
+
+    fn intends(&mut self, serial_number: &str, stores: u64) {
+        if !self.begun.contains_key(serial_number)
+            && let Some(entry) = warn(self.intend(serial_number, stores))
+        {
+            self.begun.insert(serial_number.to_owned(), entry);
+        }
+    }
+
+    fn may_have_stored(&mut self, serial_number: &str, stores: u64) {
+        let begun = match self.begun.remove(serial_number) {
+            None if stores > 0 => warn(self.intend(serial_number, stores)),
+            begun => begun,
+        };
+        if let Some((mut logbook, entry)) = begun {
+            warn(logbook.conclude(entry, Timestamp::now(), Outcome::Done, stores));
+        }
+    }
+}
+
+/// The mode in which it was found, then those it was sent into, as read-out 9 numbers them.
+fn emit(excursion: &Excursion) -> String {
+    let modes: Vec<u32> =
+        std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();
+    format!("{modes:?}\n")
+}
+
+fn parse(text: &str) -> Option<Excursion> {
+    let modes: Vec<u32> = warn(ron::from_str(text))?;
+    let mut modes = modes.into_iter().map(|mode| StartupMode::parse(Value::of_word(mode)));
+    Some(Excursion { found: modes.next()?, sent: modes.collect() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Read-out 9: 1 is position mode, 6 cam program 4.
+    #[test]
+    fn an_excursion_is_kept_as_numbers_of_modes() {
+        let mode = |number| StartupMode::parse(Value::of_word(number));
+        let excursion = Excursion { found: mode(1), sent: vec![mode(3), mode(6)] };
+        assert_eq!(emit(&excursion), "[1, 3, 6]\n");
+        assert_eq!(parse("[1, 3, 6]\n"), Some(excursion));
+        assert_eq!((parse("[]"), parse("cam 4")), (None, None));
+    }
+}

@@ -1,0 +1,174 @@
+//! An INTERBUS encoder behind its gateway, at the end of a session, and its jobs.
+
+mod commit;
+mod job;
+mod journal;
+mod open;
+mod prepare;
+
+use std::convert::Infallible;
+use std::fmt;
+use std::sync::Arc;
+
+pub use job::{
+    Change, ChangeKind, Commit, Committed, Doing, InterbusJob, InterbusOutput, JobError, Prepared, Remark, WEAR_ASK,
+    WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key, wear_limit,
+};
+pub use open::{check, open};
+
+use journal::Notes;
+
+use crate::devices::interbus::procedures::check::{Wear as Limits, check as check_device};
+use crate::devices::interbus::procedures::{
+    Error, Handshake, Identity, Kept, Master, Reading, Station, identify, read_item, read_one, read_programs,
+    read_status, save, select, survey,
+};
+use crate::link::{ByteLink, Clock, LinkError};
+use crate::sim::Motor;
+use crate::store::Store;
+use crate::worker::commit::cycles_seen;
+use crate::worker::{Desk, Device, Progress, Session, Tell, Watched};
+
+/// An INTERBUS encoder behind its gateway.
+pub struct Interbus {
+    wire: Box<dyn ByteLink>,
+    station: Station,
+    /// What turns a virtual encoder.
+    motor: Option<Motor>,
+}
+
+impl fmt::Debug for Interbus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Interbus({})", self.station)
+    }
+}
+
+/// What a job tells on its way.
+type Told<'t> = &'t mut dyn FnMut(Tell<Remark, Doing>);
+
+impl Interbus {
+    /// The host's side of the process data; each step of the handshake is told.
+    fn master<'a>(&'a mut self, desk: &'a mut Desk, told: impl FnMut(Handshake) + 'a) -> Master<'a> {
+        let notes = Notes::of(desk.store.clone(), desk.is_virtual);
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station).telling(told).noting(notes)
+    }
+}
+
+impl Session<Interbus> {
+    /// A session on an open wire. With a motor the encoder lives in this process, and its wear counts apart.
+    pub fn to_gateway(
+        wire: Box<dyn ByteLink>,
+        clock: Arc<dyn Clock>,
+        station: Station,
+        store: Store,
+        motor: Option<Motor>,
+    ) -> Self {
+        let is_virtual = motor.is_some();
+        Session::with(Interbus { wire, station, motor }, clock, store, is_virtual)
+    }
+
+    /// What is known about the gateway.
+    pub fn station(&self) -> &Station {
+        &self.device.station
+    }
+
+    /// What turns the shaft, where the encoder lives in this process.
+    pub fn motor(&self) -> Option<Motor> {
+        self.device.motor.clone()
+    }
+}
+
+impl Device for Interbus {
+    type Job = InterbusJob;
+    type Output = InterbusOutput;
+    type Error = JobError;
+    type Remark = Remark;
+    type Sample = Reading;
+    /// Whatever else there is replaces the position.
+    type Watch = Infallible;
+    type Doing = Doing;
+
+    fn run(&mut self, desk: &mut Desk, job: InterbusJob, tell: Told<'_>) -> Result<InterbusOutput, JobError> {
+        use InterbusOutput as Out;
+        match job {
+            InterbusJob::Prepare(change) => Ok(Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?))),
+            InterbusJob::Commit(commit) => Ok(Out::Committed(Box::new(commit::commit(self, desk, &commit, tell)?))),
+            InterbusJob::Hello => self.ask(desk, tell, |master, _| Ok(Out::Hello(master.reading()?))),
+            InterbusJob::Position => self.ask(desk, tell, |master, _| Ok(Out::Position(master.reading()?))),
+            InterbusJob::Survey => self.ask(desk, tell, |master, steps| {
+                let told = &mut |done, total, what| steps(done, total, Doing::ReadOut(what));
+                Ok(Out::Surveyed(Box::new(survey(master, told)?)))
+            }),
+            InterbusJob::Programs(wanted) => self.ask(desk, tell, |master, steps| {
+                let told = &mut |done, total, what| steps(done, total, Doing::Program(what));
+                let (programs, shift) = read_programs(master, &wanted, told)?;
+                Ok(Out::Programs(programs, shift))
+            }),
+            InterbusJob::Identify => self.ask(desk, tell, |master, _| Ok(Out::Identity(Box::new(identify(master)?)))),
+            InterbusJob::Status => self.ask(desk, tell, |master, _| Ok(Out::Status(Box::new(read_status(master)?)))),
+            InterbusJob::Check => {
+                let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+                let wear = |identity: &Identity| Limits {
+                    seen: cycles_seen(&store, &device_key(identity, is_virtual)),
+                    warning: WEAR_WARNING,
+                    limit: WEAR_LIMIT,
+                };
+                self.ask(desk, tell, |master, steps| {
+                    let told = &mut |done, total, what| steps(done, total, Doing::ReadOut(what));
+                    Ok(Out::Check(check_device(master, wear, told)?))
+                })
+            }
+            InterbusJob::Read(item) => self.ask(desk, tell, |master, _| Ok(Out::Item(read_item(master, item)?))),
+            InterbusJob::ReadOut(what) => {
+                self.ask(desk, tell, |master, _| Ok(Out::ReadOut(what, read_one(master, what)?)))
+            }
+            InterbusJob::Select(mode) => self.ask(desk, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
+            InterbusJob::Save { programs } => self.ask(desk, tell, |master, steps| {
+                let told = &mut |done, total, what| match what {
+                    Kept::ReadOut(what) => steps(done, total, Doing::ReadOut(what)),
+                    Kept::Program(what) => steps(done, total, Doing::Program(what)),
+                };
+                Ok(Out::Saved(Box::new(save(master, programs, told)?)))
+            }),
+            InterbusJob::LeadBack => self.ask(desk, tell, |master, _| Ok(Out::LedBack(master.end_what_was_left()?))),
+        }
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Reading, JobError> {
+        Ok(self.master(desk, |_| {}).reading()?)
+    }
+
+    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Reading>, JobError> {
+        match *what {}
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        error.device().is_some_and(Error::is_cancelled)
+    }
+
+    fn take_remark(&mut self) -> Option<Remark> {
+        None
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+}
+
+/// What is at the moment, of so much.
+type Steps<'s> = &'s mut dyn FnMut(u64, u64, Doing);
+
+impl Interbus {
+    /// What only asks, or leads back. All of it replaces the position for a moment, but for the IN word alone.
+    fn ask(
+        &mut self,
+        desk: &mut Desk,
+        tell: Told<'_>,
+        ask: impl FnOnce(&mut Master<'_>, Steps<'_>) -> Result<InterbusOutput, Error>,
+    ) -> Result<InterbusOutput, JobError> {
+        let tell = std::cell::RefCell::new(tell);
+        let mut master = self.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
+        let mut steps = |done, total, what| (tell.borrow_mut())(Tell::Progress(Progress { done, total, what }));
+        Ok(ask(&mut master, &mut steps)?)
+    }
+}

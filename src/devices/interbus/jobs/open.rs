@@ -1,0 +1,104 @@
+//! From a link URL to a session with an INTERBUS encoder.
+
+use std::sync::Arc;
+
+use super::Interbus;
+use crate::bits::MaskedBytes;
+use crate::buses::ubicom::protocol::FORMAT;
+use crate::devices::interbus::procedures::{PARAMETERS, Station};
+use crate::devices::interbus::sim::{Config, Gateway};
+use crate::link::{Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, TraceEntry, Wire};
+use crate::store::Store;
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes, read_recording};
+use crate::worker::{OpenError, Session};
+
+/// Link parameters that describe the host's patience and nothing of the virtual gateway. Where the encoder is behind it
+/// describes both.
+const LINE_ONLY: [&str; 3] = ["handshake", "cycle", "timeout"];
+
+/// Everything about a link to an INTERBUS encoder that can be told without opening it.
+///
+/// # Errors
+/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    read(url).map(|_| ())
+}
+
+/// Opens a link to an INTERBUS encoder: `modbus:` leads to its gateway, `sim:` to a virtual one, `replay:` to a recording
+/// of one.
+///
+/// # Errors
+/// See [`OpenError`]; nothing has been sent.
+pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError> {
+    let (station, config) = read(url)?;
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    if let Wire::File(path) = url.wire() {
+        let entries = read_recording(path)?.into_iter().map(without_number).collect();
+        let wire = Box::new(ReplayLink::new(path, entries, clock.clone()));
+        return Ok(Session::to_gateway(wire, clock, station, store, None));
+    }
+    let mut motor = None;
+    // Nothing between us and a gateway has a speed of characters.
+    let wire = open_bytes(url, FORMAT, &clock, || {
+        let gateway = Gateway::new(&config);
+        motor = Some(gateway.shaft());
+        Ok(inside(gateway, &clock))
+    })?;
+    Ok(Session::to_gateway(wire, clock, station, store, motor))
+}
+
+/// The gateway as the link says, and the virtual one, which counts for a link to it alone.
+fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
+    let config = match url.scheme {
+        Scheme::Sim => Config::from_pairs(&url.query.without(&LINE_ONLY))?,
+        Scheme::Modbus | Scheme::Replay => {
+            check_parameters(&url.query, url.scheme, &PARAMETERS)?;
+            Config::default()
+        }
+        Scheme::Serial | Scheme::Tcp | Scheme::Bridge | Scheme::Enip => {
+            return Err(leads_elsewhere(url.scheme, "sim:, modbus:, replay:"));
+        }
+    };
+    let mut station = Station::from_query(&url.query, margin(url.scheme))?;
+    station.recorded = url.scheme == Scheme::Replay;
+    Ok((station, config))
+}
+
+/// Requests are numbered in the order of the day: a recording answers whatever their number is.
+fn without_number(entry: TraceEntry) -> TraceEntry {
+    let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
+    TraceEntry { bytes: MaskedBytes::masked(&bytes, &[0, 1]), ..entry }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_to_a_gateway_or_say_why_not() {
+        for text in [
+            "sim:",
+            "sim:?steps=360&rpm=60&order=low-first&unit=3&input=16&output=32&cycle=1",
+            "modbus:192.168.0.7",
+            "modbus:plc:1502?unit=0&input=0&output=2048&order=high-first&handshake=500",
+            "replay:words.trace?unit=1",
+        ] {
+            assert!(check(&text.parse().unwrap()).is_ok(), "{text}");
+        }
+        for (text, why) in [
+            (
+                "serial:/dev/ttyUSB0",
+                "serial: links do not lead to this device; those that do are sim:, modbus:, replay:",
+            ),
+            ("tcp:host:502", "tcp: links do not lead to this device; those that do are sim:, modbus:, replay:"),
+            ("bridge:/dev/x", "bridge: links do not lead to this device; those that do are sim:, modbus:, replay:"),
+            ("modbus:plc?rpm=1", "rpm is not a parameter of modbus: links; known are unit, input, output, order"),
+            ("modbus:plc?unit=300", "unit=300: a unit from 0 to 255"),
+            ("sim:?order=first", "`order=first`"),
+            ("sim:?what=1", "a virtual"),
+        ] {
+            let error = check(&text.parse().unwrap()).unwrap_err().to_string();
+            assert!(error.starts_with(why), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! From a change that a user wants to a plan. Reads; writes nothing, and leaves the encoder in the mode in which it was.
+
+use super::{Change, Doing, Interbus, JobError, Prepared, Remark, Told, device_key};
+use crate::devices::interbus::procedures::{identify, read_state};
+use crate::devices::interbus::profile::{
+    Image, InterbusPlan, Item, Restore, check_allowed, other_type, plan_default, plan_edits, plan_preset, plan_restore,
+    programs_needed,
+};
+use crate::devices::interbus::protocol::ProgramNumber;
+use crate::worker::commit::cycles_seen;
+use crate::worker::{Desk, Progress, Tell};
+
+pub(super) fn prepare(
+    encoder: &mut Interbus,
+    desk: &mut Desk,
+    change: &Change,
+    tell: Told<'_>,
+) -> Result<Prepared, JobError> {
+    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let tell = std::cell::RefCell::new(tell);
+    let mut master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
+    let told = &mut |done, total, program| {
+        (tell.borrow_mut())(Tell::Progress(Progress { done, total, what: Doing::Program(program) }));
+    };
+    let identity = identify(&mut master)?;
+    let mut state = |programs: &[ProgramNumber]| read_state(&mut master, &identity, programs, told);
+    let device;
+    let plan = match change {
+        Change::Restore { profile, options } => {
+            // Known before programs are read.
+            check_allowed(profile, &identity.profile(), *options)?;
+            device = state(&programs_needed(profile))?;
+            plan_restore(profile, &device, *options)?
+        }
+        Change::Write(wanted) => {
+            device = state(&programs_touched(wanted))?;
+            only(plan_edits(&device.image, wanted)?)
+        }
+        Change::Item(item, value) => {
+            let needed = match item {
+                Item::Shift => ProgramNumber::all().take(1).collect(),
+                item => item.program().into_iter().collect::<Vec<_>>(),
+            };
+            device = state(&needed)?;
+            let mut wanted = Image { shift: None, ..device.image.clone() };
+            wanted.put(*item, *value);
+            only(plan_edits(&device.image, &wanted)?)
+        }
+        Change::Preset { value } => {
+            device = state(&[])?;
+            only(plan_preset(&device.image.parameters, *value)?)
+        }
+        Change::Default => {
+            device = state(&[])?;
+            only(plan_default(&device.image.parameters))
+        }
+    };
+    let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
+    let other_type = match change {
+        Change::Restore { profile, .. } => other_type(&profile.identity, &identity.profile()),
+        _ => None,
+    };
+    let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
+    let parameters = device.image.parameters;
+    Ok(Prepared {
+        kind: change.kind(),
+        plan,
+        identity,
+        parameters,
+        cycles_seen,
+        unchanged,
+        missing,
+        mounting_left,
+        other_type,
+        mounting_written,
+    })
+}
+
+/// The programs that an image speaks of; the shift of the window is read with any.
+fn programs_touched(wanted: &Image) -> Vec<ProgramNumber> {
+    let known: Vec<ProgramNumber> = wanted.known().map(|(number, _)| number).collect();
+    match wanted.shift {
+        Some(_) if known.is_empty() => ProgramNumber::all().take(1).collect(),
+        _ => known,
+    }
+}
+
+fn only(plan: InterbusPlan) -> Restore {
+    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
+}

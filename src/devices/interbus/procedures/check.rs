@@ -1,0 +1,201 @@
+//! The device check: what the gateway, the IN word and the encoder say, with a verdict a line. It sets nothing: an echo
+//! would cost a store, so that the handshake is tried with read-outs alone.
+
+use std::time::Duration;
+
+use super::error::Implausible;
+use super::identify::read_survey;
+use super::{Error, Identity, Master, Survey};
+use crate::device::check;
+use crate::devices::interbus::protocol::{ErrorWord, ReadOut, Reply, StartupMode};
+
+pub use crate::device::check::{Verdict, Wear};
+
+/// One line of the check.
+pub type Line = check::Line<Step, Finding>;
+
+/// A step of the check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The gateway answers.
+    Gateway,
+    /// The order of the two halves of a word.
+    WordOrder,
+    /// What the IN word says before anything is asked: a position, cam outputs, or an error.
+    InputWord,
+    /// Who is there, and whether its steps and turns can be.
+    Identity,
+    /// Read-outs: OUT gets to the encoder, and IN comes back.
+    Handshake,
+    /// How warm it is.
+    Temperature,
+    /// Stores in the EEPROM.
+    Wear,
+}
+
+/// One fact that the check found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// The IN word was read so often, within so long a reply each.
+    Replies {
+        /// How often.
+        asked: u32,
+        /// The longest, in milliseconds.
+        slowest_ms: u64,
+    },
+    /// Words make sense as they are.
+    OrderFits,
+    /// Words make sense with their halves exchanged only.
+    OrderSwapped {
+        /// As it was read.
+        input: u32,
+        /// With its halves exchanged.
+        swapped: u32,
+    },
+    /// A position, a speed or cam outputs.
+    Runs(u32),
+    /// Bits that should be 0 are not.
+    Stray(u32),
+    /// An error word.
+    Error(ErrorWord),
+    /// The encoder is being parameterised, or somebody reads it out.
+    Occupied(u32),
+    /// Its serial number.
+    SerialNumber(String),
+    /// Its software.
+    SoftwareVersion(u32),
+    /// Steps and turns.
+    Gear {
+        /// Steps over all turns.
+        steps: u32,
+        /// Turns.
+        turns: u32,
+    },
+    /// What cannot be.
+    Implausible(Implausible),
+    /// The preset lies beyond the measuring range.
+    PresetBeyond {
+        /// The preset.
+        preset: u32,
+        /// The last position.
+        last: u32,
+    },
+    /// It counts its steps less one.
+    StepsMinusOne,
+    /// What it does.
+    Mode(StartupMode),
+    /// So many values were read out.
+    ReadOuts {
+        /// How many.
+        asked: u64,
+        /// How long one took, in milliseconds.
+        each_ms: u64,
+    },
+    /// What ended the read-outs.
+    Failed(Error),
+    /// Tenths of a degree Celsius.
+    Temperature(i32),
+    /// Stores that were seen, and what the EEPROM stands.
+    Wear {
+        /// As many at least.
+        seen: u64,
+        /// As many it stands.
+        limit: u64,
+    },
+}
+
+/// So often the IN word is read, to see how the gateway answers.
+const LOOKS: u32 = 20;
+/// Tenths of a degree that electronics in a housing stand (`U`: the manual gives no limits).
+const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
+
+/// Carries out the check. It ends early only when the gateway fails. `wear` is asked when it is known who is there.
+///
+/// # Errors
+/// The way to the encoder.
+pub fn check(
+    master: &mut Master<'_>,
+    wear: impl FnOnce(&Identity) -> Wear,
+    told: &mut dyn FnMut(u64, u64, ReadOut),
+) -> Result<Vec<Line>, Error> {
+    let (mut lines, is_free) = look(master)?;
+    if !is_free {
+        // Whatever is asked now disturbs somebody, or goes into the wrong half of a word.
+        return Ok(lines);
+    }
+    let begun = master.now();
+    match master.guarded(|master| read_survey(master, told)) {
+        Ok(survey) => {
+            let asked = survey.read_outs().count() as u64;
+            let each_ms = master.now().since(begun).as_millis() as u64 / asked.max(1);
+            lines.push(Line::of(Step::Handshake, vec![(Verdict::Good, Finding::ReadOuts { asked, each_ms })]));
+            lines.push(identity(&survey));
+            lines.push(temperature(survey.temperature_tenths));
+            lines.extend(worn(wear(&survey.identity)));
+        }
+        Err(error) if error.is_lost() || error.is_cancelled() => return Err(error),
+        Err(error) => lines.push(Line::of(Step::Handshake, vec![(Verdict::Bad, Finding::Failed(error))])),
+    }
+    Ok(lines)
+}
+
+/// The IN word alone, again and again; whether more can be asked.
+fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
+    let (mut slowest, mut word) = (Duration::ZERO, 0);
+    for _ in 0..LOOKS {
+        let begun = master.now();
+        word = master.reading()?.word;
+        slowest = slowest.max(master.now().since(begun));
+    }
+    let slowest_ms = slowest.as_millis() as u64;
+    let answers = Line::of(Step::Gateway, vec![(Verdict::Good, Finding::Replies { asked: LOOKS, slowest_ms })]);
+    let (order, fits) = match master.suspected_order(word)? {
+        Some(swapped) => ((Verdict::Bad, Finding::OrderSwapped { input: word, swapped }), false),
+        None => ((Verdict::Good, Finding::OrderFits), true),
+    };
+    let (input, free) = match Reply::parse(word) {
+        Reply::Run { stray: 0, .. } => ((Verdict::Good, Finding::Runs(word)), true),
+        Reply::Run { .. } => ((Verdict::Attention, Finding::Stray(word)), true),
+        Reply::Error(error) => ((Verdict::Bad, Finding::Error(error)), true),
+        Reply::ReadOut(_) | Reply::UnknownReadOut(_) => ((Verdict::Attention, Finding::Occupied(word)), false),
+        Reply::Echo { .. } | Reply::Busy { .. } | Reply::Unknown { .. } => {
+            ((Verdict::Bad, Finding::Occupied(word)), false)
+        }
+    };
+    let lines = vec![answers, Line::of(Step::WordOrder, vec![order]), Line::of(Step::InputWord, vec![input])];
+    Ok((lines, fits && free))
+}
+
+/// A line with the worst verdict of its findings.
+fn identity(survey: &Survey) -> Line {
+    let identity = &survey.identity;
+    let mut findings = vec![
+        (Verdict::Good, Finding::SerialNumber(identity.serial_number.clone())),
+        (Verdict::Good, Finding::SoftwareVersion(identity.software_version)),
+        (Verdict::Good, Finding::Mode(identity.mode)),
+    ];
+    match identity.gear() {
+        Ok(gear) => {
+            findings.push((Verdict::Good, Finding::Gear { steps: gear.steps(), turns: gear.turns() }));
+            let (preset, last) = (survey.parameters.preset, gear.steps() - 1);
+            if preset > last {
+                findings.push((Verdict::Attention, Finding::PresetBeyond { preset, last }));
+            }
+        }
+        Err(why) => findings.push((Verdict::Bad, Finding::Implausible(why))),
+    }
+    if identity.flags.steps_minus_one() {
+        findings.push((Verdict::Attention, Finding::StepsMinusOne));
+    }
+    Line::of(Step::Identity, findings)
+}
+
+fn temperature(tenths: i32) -> Line {
+    let verdict = if TEMPERATURES.contains(&tenths) { Verdict::Good } else { Verdict::Attention };
+    Line::of(Step::Temperature, vec![(verdict, Finding::Temperature(tenths))])
+}
+
+fn worn(wear: Wear) -> Option<Line> {
+    let (verdict, seen) = wear.judged()?;
+    Some(Line::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
+}

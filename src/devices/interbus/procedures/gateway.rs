@@ -1,0 +1,345 @@
+//! Process data behind a Modbus/TCP gateway: the IN word is two input registers, the OUT word two holding registers.
+//!
+//! Each request has a number of its own, so that a reply which comes late is never taken for the next one. Writing an OUT
+//! word twice is the same as once, so that everything here may be asked again.
+
+use std::time::Duration;
+
+use rmodbus::client::ModbusRequest;
+use rmodbus::{ModbusProto, guess_response_frame_len};
+
+use super::data::ProcessData;
+use super::error::{Asked, Damage, Exception};
+use super::station::Station;
+use super::{Error, Known};
+use crate::bits::MaskedBytes;
+use crate::device::line::{Line, LineState};
+use crate::devices::interbus::protocol::WordOrder;
+use crate::link::Ctx;
+use crate::units::Moment;
+
+/// Tries before a gateway counts as gone, where it does not answer; each may take its whole time.
+const SILENCES: u32 = 3;
+/// Tries where it answers, and not as it should.
+const TRIES: u32 = 5;
+/// Before a gateway that is busy is asked again.
+const BUSY_PAUSE: Duration = Duration::from_millis(200);
+/// Behind bytes that are no frame: silence for so long, and what comes next is one again.
+const QUIET: Duration = Duration::from_millis(50);
+/// A wish to end is heard at least so often.
+const SLICE: Duration = Duration::from_millis(50);
+/// Bytes of a frame until its function: number, protocol, length, unit.
+const HEADER: usize = 7;
+/// The shortest frame: a refusal.
+const SHORTEST: usize = HEADER + 2;
+/// Set in the function of a refusal.
+const REFUSED: u8 = 0x80;
+
+/// A gateway and the encoder at its registers, for one job.
+pub struct Gateway<'a> {
+    line: Line<'a>,
+    place: Place,
+    state: State<'a>,
+    /// The OUT word that this job has written last.
+    written: Option<u32>,
+}
+
+/// Where the words are, and how long a gateway is waited for.
+struct Place {
+    unit: u8,
+    input: u16,
+    output: u16,
+    order: WordOrder,
+    cycle: Duration,
+    timeout: Duration,
+    recorded: bool,
+}
+
+/// What stays from one job to the next.
+struct State<'a> {
+    line: &'a mut LineState,
+    next: &'a mut u16,
+    waiting: &'a mut Vec<u8>,
+    silent: &'a mut bool,
+}
+
+/// An exchange that gave nothing.
+enum Trouble {
+    Silence,
+    Damage(Damage),
+    Exception(Exception),
+}
+
+/// A whole frame, or bytes that are none.
+type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
+
+impl<'a> Gateway<'a> {
+    /// The gateway of a station, and what is known of the encoder behind it.
+    pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut Known) {
+        let Station { unit, input, output, order, cycle, timeout, recorded, .. } = *station;
+        let place = Place { unit, input, output, order, cycle, timeout, recorded };
+        let Station { line, next, waiting, silent, known, .. } = station;
+        line.begin_job();
+        *silent = false;
+        let gateway =
+            Gateway { line: Line::new(ctx), place, state: State { line, next, waiting, silent }, written: None };
+        (gateway, known)
+    }
+
+    /// Asks, and again where that may help.
+    fn ask(&mut self, asked: Asked) -> Result<Vec<u16>, Error> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            let trouble = match self.ask_once(asked)? {
+                Ok(registers) => {
+                    *self.state.silent = false;
+                    return Ok(registers);
+                }
+                Err(trouble) => trouble,
+            };
+            self.state.line.damaged += 1;
+            match trouble {
+                Trouble::Silence => self.state.line.quality.silent += 1,
+                Trouble::Damage(_) => self.state.line.quality.damaged += 1,
+                Trouble::Exception(_) => {}
+            }
+            match trouble {
+                Trouble::Silence => {
+                    if *self.state.silent || tries >= SILENCES {
+                        *self.state.silent = true;
+                        return Err(Error::NoReply { asked, tries });
+                    }
+                }
+                Trouble::Damage(cause) => {
+                    if tries >= TRIES {
+                        return Err(Error::Damaged { asked, tries, cause });
+                    }
+                }
+                Trouble::Exception(exception) => {
+                    if !exception.passes() || tries >= TRIES {
+                        return Err(Error::Exception { asked, exception });
+                    }
+                    self.line.wait(BUSY_PAUSE)?;
+                }
+            }
+        }
+    }
+
+    fn ask_once(&mut self, asked: Asked) -> Result<Result<Vec<u16>, Trouble>, Error> {
+        self.line.start()?;
+        let number = *self.state.next;
+        // Not 0: what answers without looking at the number has it.
+        *self.state.next = number.checked_add(1).unwrap_or(1);
+        let Some((request, bytes)) = self.request(asked, number) else {
+            return Ok(Err(Trouble::Damage(Damage::Registers)));
+        };
+        let sent_at = self.line.now();
+        self.state.line.sent(sent_at);
+        self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
+        let deadline = sent_at + self.place.timeout + self.state.line.margin;
+        loop {
+            loop {
+                match self.next_frame() {
+                    Some(Ok(frame)) => {
+                        let now = self.line.now();
+                        self.line.show(now, MaskedBytes::clear(&frame));
+                        if self.place.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
+                            let judged = judge(&request, asked, frame);
+                            if !matches!(judged, Err(Trouble::Damage(_))) {
+                                self.state.line.answered();
+                                self.state.line.answer_began(now);
+                            }
+                            return Ok(judged);
+                        }
+                    }
+                    Some(Err((damage, bytes))) => {
+                        let now = self.line.now();
+                        self.line.show(now, MaskedBytes::clear(&bytes));
+                        self.line.wait_for_silence(self.state.line, QUIET)?;
+                        return Ok(Err(Trouble::Damage(damage)));
+                    }
+                    None => break,
+                }
+            }
+            let now = self.line.now();
+            if now >= deadline {
+                return Ok(Err(Trouble::Silence));
+            }
+            self.line.check_cancel()?;
+            self.line.receive((now + SLICE).min(deadline), self.state.waiting)?;
+        }
+    }
+
+    fn request(&self, asked: Asked, number: u16) -> Option<(ModbusRequest, Vec<u8>)> {
+        request(asked, self.place.unit, number, self.place.order)
+    }
+
+    /// The next whole frame of what has come; an error where it is none, and all that has come is let go.
+    fn next_frame(&mut self) -> Option<Whole> {
+        let waiting = &mut *self.state.waiting;
+        if waiting.len() < HEADER {
+            return None;
+        }
+        let length = guess_response_frame_len(waiting, ModbusProto::TcpUdp).map(usize::from);
+        match length {
+            Ok(length) if length >= SHORTEST => {
+                (waiting.len() >= length).then(|| Ok(waiting.drain(..length).collect()))
+            }
+            _ => {
+                let bytes = std::mem::take(waiting);
+                Some(Err((Damage::NoFrame { bytes: bytes.len() }, bytes)))
+            }
+        }
+    }
+
+    fn read(&mut self, asked: Asked) -> Result<u32, Error> {
+        match *self.ask(asked)?.as_slice() {
+            [first, second] => Ok(self.place.order.word([first, second])),
+            _ => Err(Error::Damaged { asked, tries: 1, cause: Damage::Registers }),
+        }
+    }
+}
+
+/// The frame of a request.
+fn request(asked: Asked, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
+    let mut request = ModbusRequest::new_tcp_udp(unit, number);
+    let mut bytes = Vec::new();
+    let made = match asked {
+        Asked::Input { register } => request.generate_get_inputs(register, 2, &mut bytes),
+        Asked::Output { register } => request.generate_get_holdings(register, 2, &mut bytes),
+        Asked::Write { register, word } => {
+            request.generate_set_holdings_bulk(register, &order.registers(word), &mut bytes)
+        }
+    };
+    made.ok().map(|()| (request, bytes))
+}
+
+/// What is wrong with a frame that was received.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// It is no reply to what was asked.
+    Broken(Damage),
+    /// The gateway refuses.
+    Refused(Exception),
+}
+
+/// What is wrong with a frame of the trace that was received behind this request; `None` where it answers it, also under the
+/// number of an earlier one.
+pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
+    let broken = |damage| Some(Fault::Broken(damage));
+    let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
+    if received.len() < SHORTEST || length != Ok(received.len()) {
+        return broken(Damage::NoFrame { bytes: received.len() });
+    }
+    let (number, unit, asked) = asked(sent, order)?;
+    let (request, _) = request(asked, unit, number, order)?;
+    match judge(&request, asked, received.to_vec()) {
+        Err(Trouble::Damage(damage)) => broken(damage),
+        Err(Trouble::Exception(exception)) => Some(Fault::Refused(exception)),
+        Ok(_) | Err(Trouble::Silence) => None,
+    }
+}
+
+/// What a frame of the trace asked, with its number and its unit.
+fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Asked)> {
+    let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
+    let register = u16::from_be_bytes([high, low]);
+    let asked = match (function, carried(true, sent, order)) {
+        (4, _) => Asked::Input { register },
+        (3, _) => Asked::Output { register },
+        (_, Some(Carried::Out(word))) => Asked::Write { register, word },
+        _ => return None,
+    };
+    Some((u16::from_be_bytes([number_high, number_low]), unit, asked))
+}
+
+/// What a reply with the right number says.
+fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Vec<u16>, Trouble> {
+    let [_, _, ..] = frame.as_slice() else { return Err(Trouble::Damage(Damage::Registers)) };
+    // A recording has the number of its own request.
+    frame.splice(..2, request.tr_id.to_be_bytes());
+    let (unit, function) = (frame.get(HEADER - 1).copied(), frame.get(HEADER).copied());
+    let (Some(unit), Some(function)) = (unit, function) else { return Err(Trouble::Damage(Damage::Registers)) };
+    if unit != request.unit_id {
+        return Err(Trouble::Damage(Damage::Unit { asked: request.unit_id, got: unit }));
+    }
+    // The crate takes the codes 0Ah and 0Bh for others, and any other function for a refusal.
+    if function == asked.function() | REFUSED {
+        return Err(Trouble::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
+    }
+    if function != asked.function() {
+        return Err(Trouble::Damage(Damage::Function { asked: asked.function(), got: function }));
+    }
+    let body = frame.get(HEADER + 1..).unwrap_or_default();
+    let mut registers: Vec<u16> = Vec::new();
+    let fits = match asked {
+        Asked::Input { .. } | Asked::Output { .. } => {
+            matches!(body, [4, _, _, _, _]) && request.parse_u16(&frame, &mut registers).is_ok()
+        }
+        Asked::Write { register, .. } => {
+            let [high, low] = register.to_be_bytes();
+            body == [high, low, 0, 2] && request.parse_ok(&frame).is_ok()
+        }
+    };
+    if fits { Ok(registers) } else { Err(Trouble::Damage(Damage::Registers)) }
+}
+
+impl ProcessData for Gateway<'_> {
+    fn cycle(&mut self, out: u32) -> Result<u32, Error> {
+        if self.written != Some(out) {
+            // It may have been written when its reply is lost.
+            self.written = None;
+            self.ask(Asked::Write { register: self.place.output, word: out })?;
+            self.written = Some(out);
+        }
+        self.line.wait(self.place.cycle)?;
+        self.input()
+    }
+
+    fn input(&mut self) -> Result<u32, Error> {
+        self.read(Asked::Input { register: self.place.input })
+    }
+
+    fn output(&mut self) -> Result<Option<u32>, Error> {
+        match self.read(Asked::Output { register: self.place.output }) {
+            Ok(word) => Ok(Some(word)),
+            Err(Error::Exception { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn now(&self) -> Moment {
+        self.line.now()
+    }
+
+    fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        Ok(self.line.wait(duration)?)
+    }
+
+    fn shield(&mut self, shielded: bool) -> bool {
+        self.line.shield(shielded)
+    }
+}
+
+/// The word that a frame carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carried {
+    /// An OUT word that is written.
+    Out(u32),
+    /// An IN word that was read.
+    In(u32),
+}
+
+/// The word that a frame of the trace carries, sent or received; `None` where it has none.
+pub fn carried(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
+    match (sent, frame.get(HEADER..)?) {
+        (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(Carried::Out(word(order, [*a, *b, *c, *d]))),
+        (false, [4, 4, a, b, c, d]) => Some(Carried::In(word(order, [*a, *b, *c, *d]))),
+        _ => None,
+    }
+}
+
+fn word(order: WordOrder, [a, b, c, d]: [u8; 4]) -> u32 {
+    order.word([u16::from_be_bytes([a, b]), u16::from_be_bytes([c, d])])
+}

@@ -1,0 +1,93 @@
+//! One step of the handshake as it is told, and in which state an encoder may be left.
+
+use std::fmt;
+
+use crate::devices::interbus::protocol::{Command, ErrorWord, Reply, StartupMode, Value};
+use crate::units::Moment;
+
+/// A step of the handshake: the OUT word that stands, the IN word that came, and what that says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Handshake {
+    /// When IN was read.
+    pub at: Moment,
+    /// OUT.
+    pub out: u32,
+    /// What OUT means in the encoder's mode.
+    pub command: Command,
+    /// IN.
+    pub input: u32,
+    /// What IN says to that.
+    pub says: Says,
+}
+
+/// What an IN word says to an OUT word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Says {
+    /// It runs: a position, a speed or cam outputs.
+    Runs,
+    /// It is at work.
+    Busy,
+    /// The exact echo.
+    Echoed,
+    /// The echo of another word: an old one, as long as it does not stay.
+    OldEcho,
+    /// A value.
+    Value(Value),
+    /// An error word.
+    Error(ErrorWord),
+    /// A word that the manual does not have.
+    Unknown,
+}
+
+/// The exact echo; that of a parameter may have the manufacturer's bit (reference 2). In one of cams that bit tells the edge.
+pub(super) fn is_echo(command: Command, input: u32) -> bool {
+    const MANUFACTURER: u32 = 1 << 29;
+    let echo = Reply::echo_of(command).emit();
+    input == echo || matches!(command, Command::Set(..)) && input == echo | MANUFACTURER
+}
+
+impl Says {
+    /// What `input` says to `command`.
+    pub fn of(command: Command, input: u32) -> Self {
+        if is_echo(command, input) && !matches!(command, Command::Normal | Command::Run) {
+            return Says::Echoed;
+        }
+        match Reply::parse(input) {
+            Reply::Run { .. } => Says::Runs,
+            Reply::Busy { .. } => Says::Busy,
+            Reply::Echo { .. } => Says::OldEcho,
+            Reply::ReadOut(value) => Says::Value(value),
+            Reply::Error(error) => Says::Error(error),
+            Reply::UnknownReadOut(_) | Reply::Unknown { .. } => Says::Unknown,
+        }
+    }
+}
+
+/// In which state an encoder may be that could not be led back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Standing {
+    /// The OUT word that was sent last; it stays until another one is written.
+    pub out: u32,
+    /// Parameters or cams were being set: the encoder sends no position until it gets `80000000`.
+    pub parameterising: bool,
+    /// What the encoder did when it was found; `None` where it never said so.
+    pub found: Option<StartupMode>,
+    /// What it does now, as far as that is known.
+    pub is: Option<StartupMode>,
+}
+
+impl fmt::Display for Standing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "OUT may still be {:08X}", self.out)?;
+        if self.parameterising {
+            f.write_str(", and it may be in parameterisation")?;
+        }
+        match (self.found, self.is) {
+            (Some(found), Some(is)) if found != is => {
+                write!(f, "; it was found in mode {} and is in mode {}", found.emit(), is.emit())
+            }
+            (Some(found), _) => write!(f, "; it was found in mode {}", found.emit()),
+            _ => Ok(()),
+        }
+    }
+}

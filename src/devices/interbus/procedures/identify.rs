@@ -1,0 +1,347 @@
+//! Who is there and how it is set, and everything that can be read out of it (reference 3 and 5).
+
+use super::error::Implausible;
+use super::{Error, Master, Reading};
+use crate::devices::interbus::profile::{Direction, Image, Parameters};
+use crate::devices::interbus::protocol::{
+    Cam, CamNumber, Command, ErrorWord, Flags, Gear, Program, ProgramNumber, READ_OUTS, ReadOut, ReadOutValue, Reply,
+    StartupMode, Value, WindowShift,
+};
+
+/// An encoder as it says who it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Its serial number, decimal.
+    pub serial_number: String,
+    /// Steps over all programmed turns, as they are read out.
+    pub steps: u32,
+    /// Turns until the position begins anew.
+    pub revolutions: u32,
+    /// Which way it counts.
+    pub direction: Direction,
+    /// Version of its software.
+    pub software_version: u32,
+    /// What it does, and starts with.
+    pub mode: StartupMode,
+    /// What it is.
+    pub flags: Flags,
+}
+
+impl Identity {
+    /// Steps and turns as the gear that they are together. In steps−1 mode steps are given less one, as older encoders
+    /// have it (`U`: the manual says no more of it).
+    ///
+    /// # Errors
+    /// [`Implausible::Gear`].
+    pub fn gear(&self) -> Result<Gear, Implausible> {
+        gear(self.steps, self.revolutions, self.flags)
+    }
+}
+
+/// An encoder as it was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Survey {
+    /// Who is there.
+    pub identity: Identity,
+    /// How it makes its position.
+    pub parameters: Parameters,
+    /// The preset's flag, as it is read out.
+    pub preset_flag: u32,
+    /// How long it has been on.
+    pub operating_minutes: u32,
+    /// How warm it is, in tenths of a degree Celsius.
+    pub temperature_tenths: i32,
+    values: Vec<(ReadOut, Value)>,
+}
+
+impl Survey {
+    /// All that was read out, as it came.
+    pub fn read_outs(&self) -> impl Iterator<Item = (ReadOut, Value)> {
+        self.values.iter().copied()
+    }
+}
+
+/// How an encoder is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// What it sends.
+    pub reading: Reading,
+    /// The error that it sends instead of a position.
+    pub error: Option<ErrorWord>,
+    /// What it does, and starts with.
+    pub mode: StartupMode,
+    /// What it is.
+    pub flags: Flags,
+    /// How long it has been on.
+    pub operating_minutes: u32,
+    /// How warm it is, in tenths of a degree Celsius.
+    pub temperature_tenths: i32,
+}
+
+/// Asks who is there.
+///
+/// # Errors
+/// [`Error::Implausible`] where it gives a direction that is none; the handshake and the way. A gear that is none is
+/// told by [`Identity::gear`].
+pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
+    master.guarded(|master| read_identity(master, &mut Vec::new()))
+}
+
+/// Reads all that can be read out without selecting a cam program.
+///
+/// # Errors
+/// As [`identify`].
+pub fn survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, ReadOut)) -> Result<Survey, Error> {
+    master.guarded(|master| read_survey(master, told))
+}
+
+/// Reads how it is.
+///
+/// # Errors
+/// As [`identify`].
+pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
+    // Before anything else is asked: the word as a machine sees it.
+    let mut reading = master.reading()?;
+    let error = match reading.reply() {
+        Reply::Error(error) => Some(error),
+        _ => None,
+    };
+    master.guarded(|master| {
+        let identity = read_identity(master, &mut Vec::new())?;
+        let Measured { minutes, tenths } = read_measured(master)?;
+        (reading.mode, reading.gear) = (Some(identity.mode), identity.gear().ok());
+        let Identity { mode, flags, .. } = identity;
+        Ok(Status { reading, error, mode, flags, operating_minutes: minutes, temperature_tenths: tenths })
+    })
+}
+
+/// Reads one thing out: of those of the table, or a register of the chip.
+///
+/// # Errors
+/// [`Error::UnknownReadOut`]; as [`identify`].
+pub fn read_one(master: &mut Master<'_>, read_out: ReadOut) -> Result<Value, Error> {
+    master.guarded(|master| master.read_out(read_out))
+}
+
+/// Reads cam programs and the shift of the window. Each is selected for that, so that the encoder's outputs are others
+/// for so long.
+///
+/// # Errors
+/// [`Error::NoMode`]; the handshake and the way.
+pub fn read_programs(
+    master: &mut Master<'_>,
+    wanted: &[ProgramNumber],
+    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift), Error> {
+    master.guarded(|master| programs(master, wanted, told))
+}
+
+/// Sends the encoder into a mode, in which it stays.
+///
+/// # Errors
+/// [`Error::NoMode`], [`Error::NotSelectable`]; the handshake and the way.
+pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
+    master.guarded(|master| {
+        master.go(mode)?;
+        master.stay();
+        Ok(master.mode().unwrap_or(mode))
+    })
+}
+
+pub(super) fn read_identity(master: &mut Master<'_>, values: &mut Vec<(ReadOut, Value)>) -> Result<Identity, Error> {
+    let mut read = |number: u16| {
+        let read_out = ReadOut::new(number);
+        let value = master.read_out(read_out)?;
+        values.push((read_out, value));
+        Ok::<u32, Error>(value.get())
+    };
+    let [serial, steps, revolutions, direction] = [read(0)?, read(1)?, read(2)?, read(3)?];
+    let [software_version, flags] = [read(7)?, read(0xA)?];
+    let mode = read_mode(master)?;
+    values.push((ReadOut::STARTUP_MODE, Value::of_word(mode.emit())));
+    let identity = Identity {
+        serial_number: serial.to_string(),
+        steps,
+        revolutions,
+        direction: direction_of(direction)?,
+        software_version,
+        mode,
+        flags: Flags::new(Value::of_word(flags)),
+    };
+    master.learn_gear(identity.gear().ok());
+    Ok(identity)
+}
+
+pub(super) fn read_survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, ReadOut)) -> Result<Survey, Error> {
+    let total = READ_OUTS.len() as u64;
+    let mut values = Vec::new();
+    told(0, total, ReadOut::SERIAL_NUMBER);
+    let identity = read_identity(master, &mut values)?;
+    for row in &READ_OUTS {
+        if values.iter().all(|(read_out, _)| *read_out != row.read_out) {
+            told(values.len() as u64, total, row.read_out);
+            values.push((row.read_out, master.read_out(row.read_out)?));
+        }
+    }
+    let value = |number: u16| {
+        let found = values.iter().find(|(read_out, _)| read_out.number() == number);
+        found.map_or(Value::default(), |(_, value)| *value)
+    };
+    let parameters = Parameters {
+        steps: identity.steps,
+        revolutions: identity.revolutions,
+        direction: identity.direction,
+        preset: value(4).get(),
+        zero_shift: value(5).get(),
+    };
+    Ok(Survey {
+        parameters,
+        preset_flag: value(6).get(),
+        operating_minutes: minutes(value(8)),
+        temperature_tenths: tenths(value(0xC)),
+        identity,
+        values,
+    })
+}
+
+/// What it does, as it said in this job.
+fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
+    match master.said_mode() {
+        Some(mode) => Ok(mode),
+        None => Ok(StartupMode::parse(master.read_out(ReadOut::STARTUP_MODE)?)),
+    }
+}
+
+/// Steps and turns may have changed.
+pub(super) fn refresh_gear(master: &mut Master<'_>) -> Result<(), Error> {
+    let mut read = |number: u16| master.read_out(ReadOut::new(number));
+    let [steps, revolutions, flags] = [read(1)?, read(2)?, read(0xA)?];
+    master.learn_gear(gear(steps.get(), revolutions.get(), Flags::new(flags)).ok());
+    Ok(())
+}
+
+fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, Implausible> {
+    Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
+}
+
+/// Reads what an identity leaves open of how the encoder makes its position; both are of one job.
+pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
+    let Identity { steps, revolutions, direction, .. } = *identity;
+    let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
+    let [preset, zero_shift] = [read(4)?, read(5)?];
+    Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
+}
+
+/// Reads how the encoder makes its position.
+pub(super) fn read_parameters(master: &mut Master<'_>) -> Result<Parameters, Error> {
+    let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
+    let [steps, revolutions, direction] = [read(1)?, read(2)?, read(3)?];
+    let [preset, zero_shift] = [read(4)?, read(5)?];
+    Ok(Parameters { steps, revolutions, direction: direction_of(direction)?, preset, zero_shift })
+}
+
+/// Reads all that can be restored, with these programs.
+pub(super) fn read_image(
+    master: &mut Master<'_>,
+    parameters: Parameters,
+    wanted: &[ProgramNumber],
+    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+) -> Result<Image, Error> {
+    let mut image = Image::of(parameters);
+    if wanted.is_empty() {
+        return Ok(image);
+    }
+    let (read, shift) = programs(master, wanted, told)?;
+    image.shift = Some(shift);
+    for (number, program) in read {
+        if let Some(place) = image.program_mut(number) {
+            *place = Some(program);
+        }
+    }
+    Ok(image)
+}
+
+pub(super) fn programs(
+    master: &mut Master<'_>,
+    wanted: &[ProgramNumber],
+    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift), Error> {
+    let selects_first = wanted.is_empty() && !matches!(master.mode(), Some(StartupMode::Cams(_)));
+    master.will_read(wanted.len() + usize::from(selects_first))?;
+    let total = wanted.len() as u64;
+    let mut read = Vec::new();
+    for (done, number) in (0..).zip(wanted) {
+        told(done, total, *number);
+        master.go(StartupMode::Cams(*number))?;
+        read.push((*number, read_program(master)?));
+    }
+    if selects_first {
+        // Every program gives it.
+        if let Some(first) = ProgramNumber::new(1) {
+            master.go(StartupMode::Cams(first))?;
+        }
+    }
+    Ok((read, read_shift(master)?))
+}
+
+/// Reads the program that is selected.
+pub(super) fn read_program(master: &mut Master<'_>) -> Result<Program, Error> {
+    // There are eight; the upper byte is 0 (reference 6.9).
+    let mask = master.ask(Command::ReadActivation)?.get() as u8;
+    let mut program = Program { mask, ..Program::default() };
+    for (cam, place) in CamNumber::all().zip(&mut program.cams) {
+        *place = Some(read_cam(master, cam)?);
+    }
+    Ok(program)
+}
+
+/// Reads a cam of the program that is selected.
+pub(super) fn read_cam(master: &mut Master<'_>, cam: CamNumber) -> Result<Cam, Error> {
+    let start = master.ask(Command::ReadCamStart(cam))?;
+    Ok(Cam { start, stop: master.ask(Command::ReadCamStop(cam))? })
+}
+
+/// Reads the shift of the window; a program is selected.
+pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> {
+    let value = master.ask(Command::ReadShift)?.get();
+    let read = Command::ReadShift.emit();
+    let shift = u8::try_from(value).ok().and_then(WindowShift::new).ok_or(Implausible::Value { read, value })?;
+    master.learn_shift(shift);
+    Ok(shift)
+}
+
+/// What is measured.
+pub(super) struct Measured {
+    pub(super) minutes: u32,
+    pub(super) tenths: i32,
+}
+
+pub(super) fn read_measured(master: &mut Master<'_>) -> Result<Measured, Error> {
+    let minutes = minutes(master.read_out(ReadOut::OPERATING_TIME)?);
+    Ok(Measured { minutes, tenths: tenths(master.read_out(ReadOut::TEMPERATURE)?) })
+}
+
+fn minutes(value: Value) -> u32 {
+    match ReadOut::OPERATING_TIME.value(value) {
+        ReadOutValue::Minutes(minutes) => minutes,
+        _ => value.get(),
+    }
+}
+
+fn tenths(value: Value) -> i32 {
+    match ReadOut::TEMPERATURE.value(value) {
+        ReadOutValue::TenthsOfDegree(tenths) => tenths,
+        // 25 bits.
+        _ => value.get() as i32,
+    }
+}
+
+/// The parameter's numbers, or the complement as a flag (`U`: the manual calls the read-out so).
+pub(super) fn direction_of(code: u32) -> Result<Direction, Implausible> {
+    let flag = match code {
+        0 => Some(Direction::Clockwise),
+        1 => Some(Direction::Counterclockwise),
+        code => Direction::of_code(code),
+    };
+    flag.ok_or(Implausible::Direction(code))
+}

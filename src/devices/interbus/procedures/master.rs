@@ -1,0 +1,343 @@
+//! The host's side of the handshake (reference 4): words are sent, and each is waited for until it has had its effect.
+//! What may be sent is what the encoder takes for what it is in its mode; anything else is refused here.
+
+mod acknowledge;
+mod held;
+mod modes;
+mod notes;
+
+use std::time::Duration;
+
+use held::{Held, LEAST_PATIENCE, Look};
+use notes::Notes;
+
+use super::data::ProcessData;
+use super::error::{Asked, Awaited};
+use super::handshake::{Handshake, Says, Standing, is_echo};
+use super::reading::{swapped, swapped_unexplained};
+use super::{Error, Gateway, Known, Reading, Station};
+use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
+use crate::link::Ctx;
+use crate::units::Moment;
+
+/// Who hears each step.
+type Teller<'a> = Box<dyn FnMut(Handshake) + 'a>;
+
+/// The host's side of the process data of one encoder, for one job.
+pub struct Master<'a> {
+    data: Box<dyn ProcessData + 'a>,
+    known: &'a mut Known,
+    patience: Duration,
+    /// It is a recording that answers.
+    recorded: bool,
+    tell: Option<Teller<'a>>,
+    /// What it does, as it said in this job.
+    is: Option<StartupMode>,
+    /// It was sent into another mode and has not said yet that it is there.
+    unsure: bool,
+    /// It was sent into other modes in this job.
+    switched: bool,
+    /// What it did before this job.
+    found: Option<StartupMode>,
+    /// The error that it had already: it sends no position anyway.
+    found_error: Option<u32>,
+    /// Parameters or cams are being set.
+    parameterising: bool,
+    /// What was sent last in this job.
+    out: Option<Command>,
+    /// Whether it got there is not known.
+    lost: bool,
+    /// What came last.
+    input: u32,
+    /// When it was seen last to do what it did before this job, with nothing asked of it.
+    rested: Option<Moment>,
+    told: Option<(u32, Says)>,
+    /// What outlasts this job.
+    notes: Notes<'a>,
+}
+
+impl<'a> Master<'a> {
+    /// A master over a station's gateway, for one job.
+    pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        let (patience, recorded) = (station.handshake, station.recorded);
+        let (gateway, known) = Gateway::new(ctx, station);
+        Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
+    }
+
+    /// A master over other process data, for one job.
+    pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
+        let patience = station.handshake;
+        Master::with(Box::new(data), &mut station.known, patience)
+    }
+
+    fn with(data: Box<dyn ProcessData + 'a>, known: &'a mut Known, patience: Duration) -> Self {
+        Master {
+            data,
+            known,
+            patience: patience.max(LEAST_PATIENCE),
+            recorded: false,
+            tell: None,
+            is: None,
+            unsure: false,
+            switched: false,
+            found: None,
+            found_error: None,
+            parameterising: false,
+            out: None,
+            lost: false,
+            input: 0,
+            rested: None,
+            told: None,
+            notes: Notes::default(),
+        }
+    }
+
+    /// Tells each step of the handshake to `tell`.
+    #[must_use]
+    pub fn telling(mut self, tell: impl FnMut(Handshake) + 'a) -> Self {
+        self.tell = Some(Box::new(tell));
+        self
+    }
+
+    /// Now.
+    pub fn now(&self) -> Moment {
+        self.data.now()
+    }
+
+    /// What the encoder does, as it said last.
+    pub fn mode(&self) -> Option<StartupMode> {
+        self.is.or(self.known.mode)
+    }
+
+    /// What the encoder does, as it said in this job.
+    pub(super) const fn said_mode(&self) -> Option<StartupMode> {
+        if self.unsure { None } else { self.is }
+    }
+
+    /// The gear that is in force from now on, as far as this session knows.
+    pub(super) fn learn_gear(&mut self, gear: Option<Gear>) {
+        self.known.gear = gear;
+    }
+
+    /// The gear that was read last.
+    pub(super) fn gear(&self) -> Option<Gear> {
+        self.known.gear
+    }
+
+    pub(super) fn learn_shift(&mut self, shift: WindowShift) {
+        self.known.shift = Some(shift);
+    }
+
+    /// Reads the IN word; nothing is sent to the encoder.
+    ///
+    /// # Errors
+    /// The way to it.
+    pub fn reading(&mut self) -> Result<Reading, Error> {
+        let word = self.data.input()?;
+        let Known { mode, gear, shift, .. } = *self.known;
+        Ok(Reading { at: self.data.now(), word, mode, gear, shift })
+    }
+
+    /// In which state the encoder may be.
+    pub(super) fn standing(&self) -> Standing {
+        let out = self.out.map_or(0, Command::emit);
+        Standing { out, parameterising: self.parameterising, found: self.found, is: self.is }
+    }
+
+    /// Does what leads back to a safe state: in it, a wish to end is not heard.
+    pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.data.shield(true);
+        let result = work(self);
+        self.data.shield(before);
+        result
+    }
+
+    /// Waits; ends early when the user wishes.
+    pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        self.data.wait(duration)
+    }
+
+    /// Asks for a value, and waits until it stands. The value of another question is gone by then: they look the same.
+    /// An echo may come late, of whatever word: it is no answer, and no sign of another master either.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set); [`Error::UnknownReadOut`].
+    pub(super) fn ask(&mut self, command: Command) -> Result<Value, Error> {
+        self.leave_value()?;
+        self.ensure_legal(command)?;
+        let (before, found) = (self.input, self.found_error);
+        self.until(command, Awaited::Value, self.patience, |Look { word, same, .. }| match Reply::parse(word) {
+            Reply::ReadOut(value) if same.stands() => Some(Ok(value)),
+            Reply::UnknownReadOut(_) if same.stands() => Some(Err(Error::UnknownReadOut { command })),
+            Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
+                Some(Err(Error::Refused { sent: command, error }))
+            }
+            _ => None,
+        })
+    }
+
+    /// Reads something out.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set); [`Error::UnknownReadOut`].
+    pub(super) fn read_out(&mut self, read_out: ReadOut) -> Result<Value, Error> {
+        let value = self.ask(Command::ReadOut(read_out))?;
+        if read_out == ReadOut::SERIAL_NUMBER {
+            self.said_serial_number(value.get());
+        }
+        Ok(value)
+    }
+
+    /// `80000000`, until the encoder runs.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] where an error stays; [`Error::TimeOut`]; the way.
+    pub(super) fn run(&mut self) -> Result<(), Error> {
+        self.running(Command::Run, self.patience)?;
+        self.parameterising = false;
+        Ok(())
+    }
+
+    /// `00000000`, until the encoder runs.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub(super) fn normal(&mut self) -> Result<(), Error> {
+        self.running(Command::Normal, self.patience)
+    }
+
+    fn running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
+        self.ensure_legal(command)?;
+        let (mut runs, found) = (Held::new(self.recorded), self.found_error);
+        self.until(command, Awaited::Run, patience, |Look { now, word, same }| {
+            runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
+            (runs.stands() || Some(word) == found && same.stays()).then_some(Ok(()))
+        })
+    }
+
+    /// Sends `40000000` until the position is the preset, and takes it back. Once for each preset that was set. The word
+    /// stands for a while in any case: the position from before may be there already.
+    ///
+    /// # Errors
+    /// [`Error::TimeOut`] where the position does not become that; otherwise as [`set`](Self::set).
+    pub(super) fn fire(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
+        self.normal()?;
+        self.ensure_legal(Command::Preset)?;
+        let (mut sent, mut there) = (Held::new(self.recorded), Held::new(self.recorded));
+        let fired = self.until(Command::Preset, Awaited::Preset, self.patience, |Look { now, word, .. }| {
+            sent.go_on(true, now);
+            there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
+            (sent.stays() && there.stands()).then_some(Ok(()))
+        });
+        self.shielded(Self::normal).and(fired)
+    }
+
+    /// Sends `out` cycle by cycle, until `judge` has something to say of the IN word and how long it has been that. How
+    /// long the encoder is at work meanwhile is remembered.
+    fn until<T>(
+        &mut self,
+        command: Command,
+        awaited: Awaited,
+        patience: Duration,
+        mut judge: impl FnMut(Look) -> Option<Result<T, Error>>,
+    ) -> Result<T, Error> {
+        let begun = self.data.now();
+        let least = held::least_cycles(self.recorded);
+        let (mut last, mut same, mut cycles) = (None, Held::new(self.recorded), 0);
+        let mut at_work = Held::new(self.recorded);
+        loop {
+            let word = self.cycle(command)?;
+            let now = self.data.now();
+            cycles += 1;
+            if last != Some(word) {
+                same = Held::new(self.recorded);
+            }
+            same.go_on(true, now);
+            last = Some(word);
+            at_work.go_on(matches!(Reply::parse(word), Reply::Busy { .. }) && !is_echo(command, word), now);
+            self.known.processing = self.known.processing.max(at_work.lasted());
+            if let Some(ended) = judge(Look { now, word, same }) {
+                return ended;
+            }
+            if cycles >= least && now.since(begun) >= patience {
+                return Err(self.too_late(command, awaited, word, patience));
+            }
+        }
+    }
+
+    fn cycle(&mut self, command: Command) -> Result<u32, Error> {
+        let before = self.out.replace(command);
+        self.input = match self.data.cycle(command.emit()) {
+            Err(error) if is_unwritten(&error) => {
+                self.out = before;
+                return Err(error);
+            }
+            // It may be there also where writing it fails: a gateway that did not get an answer says so.
+            ended => {
+                self.lost = ended.is_err();
+                ended?
+            }
+        };
+        let (out, input, says) = (command.emit(), self.input, Says::of(command, self.input));
+        // The position of a shaft that turns is not told again and again.
+        if self.told != Some((out, says))
+            && let Some(tell) = &mut self.tell
+        {
+            tell(Handshake { at: self.data.now(), out, command, input, says });
+        }
+        self.told = Some((out, says));
+        Ok(input)
+    }
+
+    /// What an IN word would be with its halves exchanged, where nothing else explains it: OUT asks for nothing.
+    ///
+    /// # Errors
+    /// The way to the encoder.
+    pub(super) fn suspected_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
+        if !matches!(Reply::parse(input), Reply::Run { .. }) && self.data.output()? != Some(0) {
+            return Ok(None);
+        }
+        Ok(swapped_unexplained(input))
+    }
+
+    /// Why nothing came, as far as that can be seen.
+    fn too_late(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
+        let sent = command.emit();
+        match self.shielded(|master| master.data.output()) {
+            Ok(Some(word)) if word != sent => return Error::OtherMaster { sent, output: word },
+            Err(error) => return error,
+            Ok(_) => {}
+        }
+        let suspected = if self.is.is_none() { swapped_unexplained(input) } else { swapped(input) };
+        if let Some(swapped) = suspected {
+            return Error::WordOrder { input, swapped };
+        }
+        match Reply::parse(input) {
+            Reply::Error(error) => Error::Refused { sent: command, error },
+            _ => Error::TimeOut { awaited, sent, input, milliseconds: patience.as_millis() as u64 },
+        }
+    }
+
+    fn ensure_legal(&self, command: Command) -> Result<(), Error> {
+        Ok(command.ensure_legal(self.taken_in())?)
+    }
+
+    /// The mode in which the encoder takes a word; what is read out is left before any other is sent.
+    fn taken_in(&self) -> Mode {
+        match self.is {
+            Some(StartupMode::Cams(_)) => Mode::Cam,
+            // The manual does not say what other words do then.
+            Some(StartupMode::Unknown(_)) => Mode::ReadOut,
+            _ if self.parameterising => Mode::Parameterisation,
+            // Nothing but reading out may be done before it has said what it does.
+            None => Mode::ReadOut,
+            Some(StartupMode::Velocity) => Mode::Velocity,
+            Some(_) => Mode::Position,
+        }
+    }
+}
+
+/// The gateway refuses the word as such: it was not written. With any other exception it may have been.
+fn is_unwritten(error: &Error) -> bool {
+    matches!(error, Error::Exception { asked: Asked::Write { .. }, exception } if !exception.passes())
+}

@@ -1,0 +1,99 @@
+//! Words that are acknowledged (reference 4), and those whose echo looks like an encoder at work (reference 6.11a).
+//!
+//! The echo of what sets cam 0, the mask, the shift or a program has code 0, as the processing word has, which may carry
+//! any data, those that were just sent included. It counts once it has stayed for longer than any processing that was seen
+//! of this encoder; an edge of cam 0 is read out as well before the program is left, since leaving it stores.
+
+use std::time::Duration;
+
+use super::held::{Held, Look, STAYS_FOR};
+use super::{Error, Master};
+use crate::devices::interbus::procedures::error::Awaited;
+use crate::devices::interbus::procedures::handshake::is_echo;
+use crate::devices::interbus::protocol::{Command, Reply, Value};
+
+/// The word of an encoder at work without anything beside it: also the echo of cam 0's start at 0.
+const BUSY: u32 = 0xC000_0000;
+/// So often an edge of cam 0 is set until it reads back. None of it stores.
+const TRIES: u32 = 4;
+
+impl Master<'_> {
+    /// Sends a word that is acknowledged, until its exact echo stands.
+    ///
+    /// # Errors
+    /// [`Error::Illegal`], and nothing is sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; the way.
+    pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
+        self.set_again(command, 0)
+    }
+
+    /// As [`set`](Self::set), for a word whose echo proves nothing: `question` reads out what it sets, and it is sent again
+    /// where that is not there, each time watched for longer.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set); [`Error::NotTaken`] with what it is called by `item`.
+    pub(in crate::devices::interbus::procedures) fn set_and_read_out(
+        &mut self,
+        command: Command,
+        question: Command,
+        wanted: Value,
+        item: impl FnOnce() -> String,
+    ) -> Result<(), Error> {
+        let mut reads = wanted;
+        for tried in 0..TRIES {
+            self.set_again(command, tried)?;
+            reads = self.ask(question)?;
+            if reads == wanted {
+                return Ok(());
+            }
+        }
+        Err(Error::NotTaken { item: item(), wanted: wanted.get(), reads: reads.get() })
+    }
+
+    fn set_again(&mut self, command: Command, tried: u32) -> Result<(), Error> {
+        self.ensure_legal(command)?;
+        self.leave_value()?;
+        self.parameterising = true;
+        self.sets_program();
+        self.acknowledged(command, tried, false)
+    }
+
+    /// As [`set`](Self::set), for a word that an encoder may also take without a word, and go on (`U`).
+    pub(super) fn tell_to(&mut self, command: Command) -> Result<(), Error> {
+        self.ensure_legal(command)?;
+        self.leave_value()?;
+        self.acknowledged(command, 0, true)
+    }
+
+    fn acknowledged(&mut self, command: Command, tried: u32, may_run: bool) -> Result<(), Error> {
+        let (before, found) = (self.input, self.found_error);
+        let holds = self.holds(command, tried);
+        let patience = self.patience + holds.unwrap_or_default();
+        let mut rests = Held::new(self.recorded);
+        self.until(command, Awaited::Echo, patience, |Look { now, word, same }| {
+            let reply = Reply::parse(word);
+            rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
+            match reply {
+                _ if is_echo(command, word) => {
+                    holds.map_or(same.stands(), |holds| same.stays_for(holds)).then_some(Ok(()))
+                }
+                Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
+                    Some(Err(Error::Refused { sent: command, error }))
+                }
+                _ if may_run && rests.stays() => Some(Ok(())),
+                // The echo of an earlier word may stand or come late, with other data than were sent (manual 5.3).
+                _ => None,
+            }
+        })
+    }
+
+    /// So long an echo has to stay that looks like an encoder at work; `None` where it does not.
+    fn holds(&self, command: Command, tried: u32) -> Option<Duration> {
+        let echo = Reply::echo_of(command);
+        let most = self.patience / 2;
+        match echo {
+            _ if echo.emit() == BUSY => Some(most),
+            Reply::Busy { .. } => Some(((STAYS_FOR + self.known.processing) * (1 << tried.min(TRIES))).min(most)),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! What an encoder does, what it is sent to do, and back to what it did.
+
+use std::time::Duration;
+
+use super::Master;
+use super::held::Look;
+use crate::devices::interbus::procedures::Error;
+use crate::devices::interbus::procedures::error::Awaited;
+use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
+
+/// So long the value of a question about a cam may stay behind `00000000`, before `80000000` is tried (`U`).
+const VALUE_STAYS: Duration = Duration::from_millis(300);
+/// An old word may still stand when one looks for the first time: so many looks after it.
+const LOOKS: u32 = 2;
+/// From one to the next.
+const LOOK: Duration = Duration::from_millis(10);
+/// What an encoder said it does holds for so long between two steps of a job; both lead it back.
+const STILL: Duration = Duration::from_secs(1);
+
+impl Master<'_> {
+    /// Does something with the encoder, and leads it back to what it did before, whatever happens.
+    ///
+    /// # Errors
+    /// Those of `work`; [`Error::NotRunning`] before it begins; [`Error::NotLedBack`].
+    pub fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
+        let ended = self.begin().and_then(|()| work(self));
+        let led = match &ended {
+            // Nothing can be sent any more.
+            Err(error @ Error::Link(_)) => Err(error.clone()),
+            _ => self.shielded(Self::lead_back),
+        };
+        let is_back = led.is_ok() || self.is_as_found();
+        self.conclude_notes(is_back);
+        let Err(why) = led else {
+            self.rested = self.is_as_found().then(|| self.data.now());
+            return ended;
+        };
+        let cause = ended.err().unwrap_or(why);
+        if self.is_as_found() {
+            return Err(cause);
+        }
+        Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
+    }
+
+    /// Ends what somebody has left: parameterisation, an error, a read-out. Gives back what the encoder does then. What was
+    /// set and not stored is stored by it: one store, which is counted. An error that stays is left
+    /// to whoever looks at the IN word: the encoder can be asked and set all the same.
+    ///
+    /// # Errors
+    /// The handshake and the way.
+    pub fn end_what_was_left(&mut self) -> Result<StartupMode, Error> {
+        let ended = self.shielded(|master| {
+            master.let_go_of_run()?;
+            let was_set = !matches!(Reply::parse(master.input), Reply::Run { .. });
+            match master.run() {
+                Err(Error::Refused { error, .. }) => {
+                    (master.found_error, master.parameterising) = (Some(Reply::Error(error).emit()), false);
+                }
+                ended => ended?,
+            }
+            master.normal()?;
+            let mode = master.ask_mode()?;
+            master.found = Some(mode);
+            if was_set {
+                master.note_store()?;
+            }
+            master.resume(mode)?;
+            master.lead_back()?;
+            Ok(master.is.unwrap_or(mode))
+        });
+        self.conclude_notes(ended.is_ok());
+        ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
+    }
+
+    /// Sends the encoder into a mode, and asks whether it is there.
+    ///
+    /// # Errors
+    /// [`Error::NoMode`], [`Error::NotSelectable`], [`Error::UnknownMode`]; the handshake and the way.
+    pub(in crate::devices::interbus::procedures) fn go(&mut self, wanted: StartupMode) -> Result<(), Error> {
+        use StartupMode::{Cams, K2, K3, Unknown, Velocity};
+        match (self.is, wanted) {
+            (_, Unknown(_)) => Err(Error::NotSelectable { mode: wanted }),
+            (Some(mode @ Unknown(_)), _) => Err(Error::UnknownMode { mode }),
+            (Some(is), wanted) if does_the_same(is, wanted) => Ok(()),
+            (Some(Velocity), K2 | K3) => self.switch(Command::Velocity(false), wanted),
+            (_, K2 | K3) => self.switch(Command::Cams(None), wanted),
+            (Some(Cams(_)), Velocity) => {
+                self.go(K3)?;
+                self.go(wanted)
+            }
+            (_, Velocity) => self.switch(Command::Velocity(true), wanted),
+            (Some(Velocity), Cams(_)) => {
+                self.go(K3)?;
+                self.go(wanted)
+            }
+            (_, Cams(program)) => self.switch(Command::Cams(Some(program)), wanted),
+        }
+    }
+
+    /// From now on this is what the encoder is led back to.
+    pub(in crate::devices::interbus::procedures) fn stay(&mut self) {
+        self.found = self.is;
+    }
+
+    /// Looks at the encoder, and asks what it does: so nothing is sent that it would take for something else.
+    fn begin(&mut self) -> Result<(), Error> {
+        let begun = self.data.now();
+        let mut looks = 0;
+        loop {
+            self.input = self.data.input()?;
+            let waited = self.data.now().since(begun);
+            match Reply::parse(self.input) {
+                Reply::Echo { .. } | Reply::Busy { .. } if waited >= self.patience => {
+                    let input = self.input;
+                    return Err(match self.suspected_order(input)? {
+                        Some(swapped) => Error::WordOrder { input, swapped },
+                        None => Error::NotRunning { input },
+                    });
+                }
+                Reply::Echo { .. } | Reply::Busy { .. } => {}
+                _ if looks >= LOOKS => break,
+                _ => looks += 1,
+            }
+            self.data.wait(LOOK)?;
+        }
+        if let Reply::Error(_) = Reply::parse(self.input) {
+            self.found_error = Some(self.input);
+        }
+        let runs = matches!(Reply::parse(self.input), Reply::Run { .. });
+        if runs && self.rested.take().is_some_and(|rested| self.data.now().since(rested) < STILL) {
+            return Ok(());
+        }
+        let mode = self.ask_mode()?;
+        self.found = Some(mode);
+        self.resume(mode)?;
+        let keeps = match mode {
+            StartupMode::Cams(_) => Command::Run,
+            StartupMode::Velocity => Command::Velocity(true),
+            _ => return Ok(()),
+        };
+        if self.known.kept == Some(mode) || self.known.hold.is_some_and(|(held, _)| held == mode) {
+            return Ok(());
+        }
+        // Whether this read-out has ended the mode. Words for cams do other things in another one.
+        self.rest()?;
+        if does_the_same(self.ask_mode()?, mode) {
+            self.known.kept = Some(mode);
+            return Ok(());
+        }
+        self.known.hold = Some((mode, keeps));
+        self.go(mode)
+    }
+
+    /// It was sent nothing, or nothing but normal running stands.
+    fn is_as_found(&self) -> bool {
+        let rests = matches!(self.out, None | Some(Command::Normal));
+        rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
+    }
+
+    fn ask_mode(&mut self) -> Result<StartupMode, Error> {
+        let mode = StartupMode::parse(self.read_out(ReadOut::STARTUP_MODE)?);
+        (self.is, self.known.mode, self.unsure) = (Some(mode), Some(mode), false);
+        Ok(mode)
+    }
+
+    /// A word that changes the mode; `00000000` behind it where the encoder keeps the mode then, or else the word that
+    /// keeps it (`U`: the manual does not say which does). The encoder is asked which it was.
+    fn switch(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
+        let of_cams = matches!(command, Command::Cams(_));
+        let keeps = if of_cams { Command::Run } else { command };
+        let known = self.known.hold.is_some_and(|(mode, _)| mode == wanted);
+        let mut is = wanted;
+        self.note_switch(wanted)?;
+        for held in [false, true].into_iter().skip(usize::from(known)) {
+            (self.unsure, self.switched) = (true, true);
+            self.tell_to(command)?;
+            if of_cams {
+                self.run()?;
+            }
+            self.known.hold = held.then_some((wanted, keeps));
+            if !held {
+                self.normal()?;
+            }
+            is = self.ask_mode()?;
+            if does_the_same(is, wanted) {
+                if !held {
+                    self.known.kept = Some(wanted);
+                }
+                return Ok(());
+            }
+        }
+        self.known.hold = None;
+        Err(Error::NoMode { wanted, is })
+    }
+
+    /// Back to what the encoder did when it was found.
+    fn lead_back(&mut self) -> Result<(), Error> {
+        if self.out.is_none() {
+            return Ok(());
+        }
+        let Some(found) = self.found else {
+            // It never said what it does, so that it was asked that and nothing else.
+            self.cycle(Command::Normal)?;
+            return Ok(());
+        };
+        let reply = Reply::parse(self.input);
+        let stands = matches!(reply, Reply::Echo { .. } | Reply::Busy { .. })
+            || matches!(reply, Reply::Error(_)) && Some(self.input) != self.found_error;
+        if self.parameterising || self.unsure || stands {
+            if self.out == Some(Command::Run) {
+                self.let_go_of_run()?;
+            }
+            self.run()?;
+            self.normal()?;
+        }
+        if self.unsure {
+            self.ask_mode()?;
+        }
+        // A read-out may end a mode as well.
+        if self.switched || !matches!(found, StartupMode::K2 | StartupMode::K3) {
+            self.rest()?;
+            self.ask_mode()?;
+        }
+        if !matches!(found, StartupMode::Unknown(_)) {
+            self.go(found)?;
+        }
+        self.rest()
+    }
+
+    /// `80000000` may stand already: its edge is what counts.
+    fn let_go_of_run(&mut self) -> Result<(), Error> {
+        for _ in 0..LOOKS {
+            self.cycle(Command::Normal)?;
+        }
+        Ok(())
+    }
+
+    /// The word that stands while nothing is asked of the encoder.
+    fn rest(&mut self) -> Result<(), Error> {
+        self.leave_value()?;
+        let word = self.resting_word();
+        if self.out == Some(word) { Ok(()) } else { self.running(word, self.patience) }
+    }
+
+    fn resting_word(&self) -> Command {
+        let hold = self.known.hold.filter(|(mode, _)| self.is.is_some_and(|is| does_the_same(is, *mode)));
+        hold.map_or(Command::Normal, |(_, word)| word)
+    }
+
+    /// Waits until no value stands any more: the next one would look the same.
+    pub(super) fn leave_value(&mut self) -> Result<(), Error> {
+        let asks = self.out.is_some_and(is_question);
+        let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
+        if !asks && !stands {
+            return Ok(());
+        }
+        if self.parameterising {
+            return self.stop_asking();
+        }
+        let word = self.resting_word();
+        let of_cams = matches!(self.is, Some(StartupMode::Cams(_))) && word == Command::Normal;
+        let patience = if of_cams { VALUE_STAYS.min(self.patience) } else { self.patience };
+        match self.running(word, patience) {
+            Err(Error::TimeOut { .. }) if of_cams => {
+                self.running(Command::Run, self.patience)?;
+                self.running(word, self.patience)
+            }
+            ended => ended,
+        }
+    }
+
+    /// `00000000` until no value stands, while something is being set: `80000000` would store it. A value that stays is
+    /// told from the echo that comes next.
+    fn stop_asking(&mut self) -> Result<(), Error> {
+        let patience = VALUE_STAYS.min(self.patience);
+        let ended = self.until(Command::Normal, Awaited::Run, patience, |Look { word, same, .. }| {
+            let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
+            (!asks && same.stands()).then_some(Ok(()))
+        });
+        match ended {
+            Err(Error::TimeOut { .. }) => Ok(()),
+            ended => ended,
+        }
+    }
+}
+
+/// Both give the position, or they are the same.
+pub(super) fn does_the_same(is: StartupMode, wanted: StartupMode) -> bool {
+    let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
+    is == wanted || is_plain(is) && is_plain(wanted)
+}
+
+fn is_question(command: Command) -> bool {
+    matches!(
+        command,
+        Command::ReadOut(_)
+            | Command::ReadActivation
+            | Command::ReadCamStart(_)
+            | Command::ReadCamStop(_)
+            | Command::ReadShift
+    )
+}

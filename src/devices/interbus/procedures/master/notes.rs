@@ -1,0 +1,126 @@
+//! What a job notes of an encoder that it sends into other modes, so that a run that is cut off is completed by the next.
+
+use super::Master;
+use super::modes::does_the_same;
+use crate::devices::interbus::procedures::Error;
+use crate::devices::interbus::procedures::journal::{Excursion, Journal};
+use crate::devices::interbus::protocol::{ReadOut, StartupMode};
+
+/// What is noted in this job.
+#[derive(Default)]
+pub(super) struct Notes<'a> {
+    journal: Option<Box<dyn Journal + 'a>>,
+    serial_number: Option<String>,
+    excursion: Option<Excursion>,
+    /// Cam programs that were left as they were: the encoder may have stored each (reference 5).
+    left: u64,
+    /// Something was set in the program that runs: its store is the write's.
+    is_set: bool,
+}
+
+impl<'a> Master<'a> {
+    /// Notes in `journal` what outlasts this job.
+    #[must_use]
+    pub fn noting(mut self, journal: impl Journal + 'a) -> Self {
+        self.notes.journal = Some(Box::new(journal));
+        self
+    }
+}
+
+impl Master<'_> {
+    /// An encoder said its serial number.
+    pub(super) fn said_serial_number(&mut self, serial_number: u32) {
+        self.notes.serial_number = Some(serial_number.to_string());
+    }
+
+    /// So many cam programs will be selected to be read.
+    pub(in crate::devices::interbus::procedures) fn will_read(&mut self, programs: usize) -> Result<(), Error> {
+        if programs == 0 || self.notes.journal.is_none() {
+            return Ok(());
+        }
+        let serial_number = self.serial_number()?;
+        if let Some(journal) = &mut self.notes.journal {
+            journal.intends(&serial_number, programs as u64);
+        }
+        Ok(())
+    }
+
+    /// Something is set in the program that runs.
+    pub(super) fn sets_program(&mut self) {
+        self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
+    }
+
+    /// Where an earlier run was cut off that had sent the encoder into this mode, it is led back to what it did before that.
+    pub(super) fn resume(&mut self, mode: StartupMode) -> Result<(), Error> {
+        if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_excursions()) {
+            return Ok(());
+        }
+        let serial_number = self.serial_number()?;
+        let Some(journal) = &mut self.notes.journal else { return Ok(()) };
+        let Some(excursion) = journal.excursion(&serial_number) else { return Ok(()) };
+        if does_the_same(mode, excursion.found) || !excursion.sent.contains(&mode) {
+            // It is back, or somebody has chosen another mode since.
+            journal.is_back(&serial_number);
+            return Ok(());
+        }
+        tracing::warn!(
+            "A run that was cut off left encoder {serial_number} in mode {}: it is led back to mode {}.",
+            mode.emit(),
+            excursion.found.emit()
+        );
+        (self.found, self.switched) = (Some(excursion.found), true);
+        self.notes.excursion = Some(excursion);
+        Ok(())
+    }
+
+    /// It is about to be sent into this mode.
+    pub(super) fn note_switch(&mut self, wanted: StartupMode) -> Result<(), Error> {
+        if let Some(StartupMode::Cams(_)) = self.is
+            && !std::mem::take(&mut self.notes.is_set)
+        {
+            self.notes.left += 1;
+        }
+        let Some(found) = self.found.filter(|found| !does_the_same(*found, wanted)) else { return Ok(()) };
+        if self.notes.journal.is_none() {
+            return Ok(());
+        }
+        let serial_number = self.serial_number()?;
+        let excursion = self.notes.excursion.get_or_insert_with(|| Excursion { found, sent: Vec::new() });
+        if !excursion.sent.contains(&wanted) {
+            excursion.sent.push(wanted);
+        }
+        if let Some(journal) = &mut self.notes.journal {
+            journal.leaves(&serial_number, excursion);
+        }
+        Ok(())
+    }
+
+    /// What somebody else had set was stored by leading back.
+    pub(super) fn note_store(&mut self) -> Result<(), Error> {
+        if self.notes.journal.is_some() {
+            self.serial_number()?;
+            self.notes.left += 1;
+        }
+        Ok(())
+    }
+
+    /// A step of the job has ended; the encoder does what it did before, or not.
+    pub(super) fn conclude_notes(&mut self, is_back: bool) {
+        let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
+        else {
+            return;
+        };
+        // What it is left in, it has still to leave.
+        journal.may_have_stored(serial_number, std::mem::take(left) + u64::from(!is_back && excursion.is_some()));
+        if is_back && excursion.take().is_some() {
+            journal.is_back(serial_number);
+        }
+    }
+
+    fn serial_number(&mut self) -> Result<String, Error> {
+        if self.notes.serial_number.is_none() {
+            self.read_out(ReadOut::SERIAL_NUMBER)?;
+        }
+        Ok(self.notes.serial_number.clone().unwrap_or_default())
+    }
+}

@@ -1,0 +1,168 @@
+//! The IN word as a person or a plot takes it.
+
+use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
+use crate::units::Moment;
+
+/// An IN word as it was read, with what the session knows of the encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// When it came.
+    pub at: Moment,
+    /// As it came.
+    pub word: u32,
+    /// What the encoder sends; `None` where it was not asked yet: then a word that runs is taken for a position.
+    pub mode: Option<StartupMode>,
+    /// Its steps and turns, where they were read.
+    pub gear: Option<Gear>,
+    /// How its position is shifted in cam mode, where that was read.
+    pub shift: Option<WindowShift>,
+}
+
+/// A place within the programmed turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Whole turns, from 0.
+    pub turns: u32,
+    /// Steps within the turn, from 0.
+    pub steps: u32,
+    /// Degrees within the turn, from 0 up to 360.
+    pub degrees: f64,
+}
+
+impl Reading {
+    /// What the word says.
+    pub fn reply(&self) -> Reply {
+        Reply::parse(self.word)
+    }
+
+    /// The encoder runs: the word is a position, a speed or cam outputs, and counts.
+    pub fn is_valid(&self) -> bool {
+        matches!(self.reply(), Reply::Run { .. })
+    }
+
+    /// The position in steps; `None` where the word is something else. In cam mode only where the window has all of it.
+    pub fn position(&self) -> Option<u32> {
+        match (self.mode, self.reply()) {
+            (Some(StartupMode::Velocity), _) => None,
+            (Some(StartupMode::Cams(_)), Reply::Run { .. }) => {
+                let (gear, shift) = (self.gear?, self.shift?);
+                let bits = u32::BITS - (gear.steps() - 1).leading_zeros();
+                let whole = shift.get() == 0 && bits <= 17;
+                whole.then(|| self.cams().map(|cams| cams.position_bits(shift)))?
+            }
+            (_, Reply::Run { value, .. }) => Some(value.get()),
+            _ => None,
+        }
+    }
+
+    /// The speed in revolutions a minute, in velocity mode; with its sign in 25 bits (`U`, reference 6.13).
+    pub fn rpm(&self) -> Option<i32> {
+        match (self.mode, self.reply()) {
+            (Some(StartupMode::Velocity), Reply::Run { value, .. }) => {
+                let above = u32::BITS - Value::BITS;
+                Some((value.get() << above) as i32 >> above)
+            }
+            _ => None,
+        }
+    }
+
+    /// The cam outputs, in cam mode.
+    pub fn cams(&self) -> Option<CamOutput> {
+        match self.mode {
+            Some(StartupMode::Cams(_)) => CamOutput::parse(self.word).ok(),
+            _ => None,
+        }
+    }
+
+    /// Bits that should be 0 in a word that runs.
+    pub fn stray(&self) -> u8 {
+        match self.reply() {
+            Reply::Run { stray, .. } => stray,
+            _ => 0,
+        }
+    }
+
+    /// The position within the programmed turns; `None` without a position or a gear, and beyond the measuring range.
+    pub fn place(&self) -> Option<Place> {
+        let (position, gear) = (u64::from(self.position()?), self.gear?);
+        let (all, turns) = (u64::from(gear.steps()), u64::from(gear.turns()));
+        if position >= all {
+            return None;
+        }
+        let turn = position * turns / all;
+        let first = (turn * all).div_ceil(turns);
+        let degrees = (position * turns % all) as f64 * 360.0 / all as f64;
+        // Less than the turns and the steps of the gear.
+        Some(Place { turns: turn as u32, steps: (position - first) as u32, degrees })
+    }
+}
+
+/// The word with its halves exchanged, where that makes a position of what is none: its bits 30..25 should be 0.
+pub(super) fn swapped(word: u32) -> Option<u32> {
+    let other = word.rotate_left(16);
+    let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
+    let runs = |word| matches!(Reply::parse(word), Reply::Run { stray: 0, .. });
+    (strays(word) && runs(other)).then_some(other)
+}
+
+/// The same of a word that is no position at all, and of which nothing explains why it should be there: with its halves
+/// exchanged it is one. An error without anything beside it is just that.
+pub(super) fn swapped_unexplained(word: u32) -> Option<u32> {
+    match Reply::parse(word) {
+        Reply::Run { .. } => swapped(word),
+        Reply::Error(error) if error.data.get() == 0 => None,
+        _ => Some(word.rotate_left(16)).filter(|other| matches!(Reply::parse(*other), Reply::Run { stray: 0, .. })),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::interbus::protocol::ProgramNumber;
+
+    fn reading(word: u32, mode: StartupMode, gear: (u32, u32), shift: u8) -> Reading {
+        let gear = Gear::new(gear.0, gear.1).ok();
+        Reading { at: Moment::START, word, mode: Some(mode), gear, shift: WindowShift::new(shift) }
+    }
+
+    #[test]
+    fn a_word_is_read_with_its_mode() {
+        let cams = StartupMode::Cams(ProgramNumber::new(3).unwrap());
+        let word = reading(0x0012_3456, StartupMode::K3, (8192 * 4096 - 1, 4096), 0);
+        assert_eq!((word.position(), word.rpm(), word.cams()), (Some(1_193_046), None, None));
+        let word = reading(0x01FF_FFC4, StartupMode::Velocity, (8192, 1), 0);
+        assert_eq!((word.position(), word.rpm(), word.cams()), (None, Some(-60), None));
+        // Position 1000 = 3E8h under the window at shift 0, cams 0 and 2 on.
+        let word = reading(0x0003_E805, cams, (3600, 1), 0);
+        assert_eq!((word.position(), word.cams().map(|own| own.outputs)), (Some(1000), Some(5)));
+        // More bits than the window has, or shifted away.
+        assert_eq!(reading(0x0003_E805, cams, (1 << 18, 4096), 0).position(), None);
+        assert_eq!(reading(0x0003_E805, cams, (3600, 1), 2).position(), None);
+        for word in [0xC200_00FF, 0xA000_0FA0, 0x8000_0000] {
+            let word = reading(word, StartupMode::K3, (8192, 1), 0);
+            assert_eq!((word.position(), word.is_valid()), (None, false));
+        }
+    }
+
+    /// 1000 steps over 3 turns: turn 1 begins at 333.3, so that 334 is its first step.
+    #[test]
+    fn a_position_lies_in_its_turn() {
+        let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).place();
+        assert_eq!(place(333).map(|own| (own.turns, own.steps)), Some((0, 333)));
+        assert_eq!(place(334).map(|own| (own.turns, own.steps)), Some((1, 0)));
+        assert_eq!(place(999).map(|own| (own.turns, own.steps)), Some((2, 332)));
+        assert!(place(334).is_some_and(|own| (own.degrees - 0.72).abs() < 1e-9), "1002 of 1000 parts");
+        assert_eq!(place(1000), None);
+    }
+
+    #[test]
+    fn exchanged_halves_are_noticed() {
+        assert_eq!(swapped(0x3456_0012), Some(0x0012_3456));
+        assert_eq!(swapped(0x0012_3456), None);
+        // Stray bits either way tell nothing.
+        assert_eq!(swapped(0x3456_3456), None);
+        // 2DC6C0h; and parameters lost, which is no position.
+        assert_eq!((swapped(0xC6C0_002D), swapped_unexplained(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
+        assert_eq!(swapped_unexplained(0x8600_0000), None);
+    }
+}

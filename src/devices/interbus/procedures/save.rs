@@ -1,0 +1,111 @@
+//! What is read to be kept, to be planned upon, or to be shown as an item.
+
+use super::identify::{direction_of, programs, read_cam, read_image, read_other_parameters, read_survey};
+use super::write::read_parameter;
+use super::{Error, Identity, Master, Survey};
+use crate::devices::interbus::profile::{DeviceState, InterbusProfile, Item, ItemValue, ProfileIdentity, Recorded};
+use crate::devices::interbus::protocol::{Command, Parameter, ProgramNumber, ReadOut, ReadOutValue, StartupMode};
+use crate::profile::Unknown;
+
+impl Identity {
+    /// As it stands in a profile.
+    pub fn profile(&self) -> ProfileIdentity {
+        ProfileIdentity { serial_number: self.serial_number.clone(), flags: Some(self.flags), unknown: Unknown::new() }
+    }
+}
+
+impl Survey {
+    /// What a profile keeps of it beside what can be restored.
+    pub fn recorded(&self) -> Recorded {
+        Recorded {
+            software_version: Some(self.identity.software_version),
+            operating_minutes: Some(self.operating_minutes),
+            temperature_tenths: Some(self.temperature_tenths),
+            mode: Some(self.identity.mode),
+            preset_flag: Some(self.preset_flag),
+            unknown: Unknown::new(),
+        }
+    }
+}
+
+/// Reads everything that can be restored; the cam programs on wish, since each switches the encoder's outputs.
+///
+/// # Errors
+/// The handshake and the way.
+pub fn save(
+    master: &mut Master<'_>,
+    with_programs: bool,
+    told: &mut dyn FnMut(u64, u64, Kept),
+) -> Result<InterbusProfile, Error> {
+    master.guarded(|master| {
+        let survey = read_survey(master, &mut |done, total, read_out| told(done, total, Kept::ReadOut(read_out)))?;
+        let wanted: Vec<ProgramNumber> = if with_programs { ProgramNumber::all().collect() } else { Vec::new() };
+        let of_program = &mut |done, total, program| told(done, total, Kept::Program(program));
+        let image = read_image(master, survey.parameters, &wanted, of_program)?;
+        Ok(InterbusProfile::of(survey.identity.profile(), image, survey.recorded()))
+    })
+}
+
+/// What is read at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Something that is read out.
+    ReadOut(ReadOut),
+    /// A cam program.
+    Program(ProgramNumber),
+}
+
+/// What a plan needs to know of an encoder that was identified in this job: its parameters, and these programs of it.
+///
+/// # Errors
+/// [`Error::Implausible`] where steps and turns are no gear; the handshake and the way.
+pub fn read_state(
+    master: &mut Master<'_>,
+    identity: &Identity,
+    programs: &[ProgramNumber],
+    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+) -> Result<DeviceState, Error> {
+    identity.gear()?;
+    master.guarded(|master| {
+        let parameters = read_other_parameters(master, identity)?;
+        let image = read_image(master, parameters, programs, told)?;
+        Ok(DeviceState { identity: identity.profile(), image })
+    })
+}
+
+/// Reads an item. What lies in a cam program selects it for that.
+///
+/// # Errors
+/// The handshake and the way.
+pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error> {
+    master.guarded(|master| {
+        if let Some(program) = item.program() {
+            master.will_read(1)?;
+            master.go(StartupMode::Cams(program))?;
+        }
+        if let Some(parameter) = item.parameter() {
+            let number = read_parameter(master, parameter)?;
+            return Ok(match parameter {
+                Parameter::Direction => ItemValue::Direction(direction_of(number)?),
+                _ => ItemValue::Number(number),
+            });
+        }
+        Ok(match item {
+            Item::Shift => {
+                let (_, shift) = programs(master, &[], &mut |_, _, _| {})?;
+                ItemValue::Number(shift.get().into())
+            }
+            Item::CamMask(_) => ItemValue::Mask(master.ask(Command::ReadActivation)?.get() as u8),
+            Item::Cam(_, cam) => ItemValue::Cam(read_cam(master, cam)?),
+            item => {
+                let read_out = if item == Item::Temperature { ReadOut::TEMPERATURE } else { ReadOut::OPERATING_TIME };
+                let value = master.read_out(read_out)?;
+                match read_out.value(value) {
+                    ReadOutValue::TenthsOfDegree(tenths) => ItemValue::TenthsOfDegree(tenths),
+                    ReadOutValue::Minutes(minutes) => ItemValue::Minutes(minutes),
+                    _ => ItemValue::Number(value.get()),
+                }
+            }
+        })
+    })
+}

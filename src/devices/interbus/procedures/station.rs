@@ -1,0 +1,180 @@
+//! What a session knows about its gateway and the encoder behind it, from one job to the next.
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::device::line::LineState;
+use crate::devices::interbus::protocol::{Command, Gear, StartupMode, WindowShift, WordOrder};
+use crate::link::{Query, UrlError};
+
+/// Link parameters that describe the gateway and the encoder's place behind it.
+pub const PARAMETERS: [&str; 7] = ["unit", "input", "output", "order", "handshake", "cycle", "timeout"];
+
+/// What a session knows about its gateway and the encoder behind it.
+#[derive(Clone, Debug)]
+pub struct Station {
+    /// The unit that the gateway is asked for.
+    pub unit: u8,
+    /// The first of the two input registers with the IN word.
+    pub input: u16,
+    /// The first of the two holding registers with the OUT word.
+    pub output: u16,
+    /// Which half of a word comes first.
+    pub order: WordOrder,
+    /// So long an echo, a value or a position may take (`U`: 2 s).
+    pub handshake: Duration,
+    /// So long from one look at the IN word to the next.
+    pub cycle: Duration,
+    /// So long a gateway may take for a reply, beside the margin of the line.
+    pub timeout: Duration,
+    /// It is a recording that answers: its replies have the numbers of the requests of that time.
+    pub recorded: bool,
+    pub(super) line: LineState,
+    /// The number of the next request.
+    pub(super) next: u16,
+    /// What has come and was not taken.
+    pub(super) waiting: Vec<u8>,
+    /// The gateway was silent when it was asked last.
+    pub(super) silent: bool,
+    pub(super) known: Known,
+}
+
+/// What is known of the encoder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Known {
+    /// Its mode, as it said last.
+    pub(super) mode: Option<StartupMode>,
+    /// Its gear.
+    pub(super) gear: Option<Gear>,
+    /// The shift of its window.
+    pub(super) shift: Option<WindowShift>,
+    /// The OUT word that keeps this mode, where normal running does not.
+    pub(super) hold: Option<(StartupMode, Command)>,
+    /// Normal running keeps this mode.
+    pub(super) kept: Option<StartupMode>,
+    /// The longest that it was seen at work on a word.
+    pub(super) processing: Duration,
+}
+
+impl Station {
+    /// Of the handshake (reference 4).
+    pub const HANDSHAKE: Duration = Duration::from_secs(2);
+    /// Of process data: a gateway's own cycle is about that long.
+    pub const CYCLE: Duration = Duration::from_millis(5);
+    /// Of a gateway.
+    pub const TIMEOUT: Duration = Duration::from_secs(1);
+
+    /// A gateway that nobody has asked, with an encoder at its first registers.
+    pub fn new(margin: Duration) -> Self {
+        Station {
+            unit: 1,
+            input: 0,
+            output: 0,
+            order: WordOrder::HighFirst,
+            handshake: Self::HANDSHAKE,
+            cycle: Self::CYCLE,
+            timeout: Self::TIMEOUT,
+            recorded: false,
+            line: LineState::new(margin),
+            next: 1,
+            waiting: Vec::new(),
+            silent: false,
+            known: Known::default(),
+        }
+    }
+
+    /// A gateway as the parameters of its link say.
+    ///
+    /// # Errors
+    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
+        let mut station = Station::new(margin);
+        if let Some(unit) = query.read("unit", "a unit from 0 to 255", number)? {
+            station.unit = unit;
+        }
+        if let Some(register) = query.read("input", "an input register from 0 to 65534", register)? {
+            station.input = register;
+        }
+        if let Some(register) = query.read("output", "a holding register from 0 to 65534", register)? {
+            station.output = register;
+        }
+        if let Some(order) = query.read("order", "high-first or low-first", WordOrder::read)? {
+            station.order = order;
+        }
+        let time = |name, allowed, range: std::ops::RangeInclusive<u64>| {
+            let read = |text: &str| text.parse().ok().filter(|ms| range.contains(ms)).map(Duration::from_millis);
+            query.read(name, allowed, read)
+        };
+        if let Some(handshake) = time("handshake", "milliseconds from 50 to 8000", 50..=8000)? {
+            station.handshake = handshake;
+        }
+        if let Some(cycle) = time("cycle", "milliseconds from 1 to 1000", 1..=1000)? {
+            station.cycle = cycle;
+        }
+        if let Some(timeout) = time("timeout", "milliseconds from 10 to 2000", 10..=2000)? {
+            station.timeout = timeout;
+        }
+        Ok(station)
+    }
+}
+
+impl fmt::Display for Station {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "unit {}, IN at {}, OUT at {}", self.unit, self.input, self.output)
+    }
+}
+
+/// Decimal, or hexadecimal behind 0x.
+fn number<T: TryFrom<u32>>(text: &str) -> Option<T> {
+    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u32::from_str_radix(digits, 16).ok()?,
+        None => text.parse().ok()?,
+    };
+    T::try_from(number).ok()
+}
+
+/// The first of two: there is one behind it.
+fn register(text: &str) -> Option<u16> {
+    number(text).filter(|register| *register < u16::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn station(query: &str) -> Result<Station, UrlError> {
+        Station::from_query(&query.parse().unwrap(), Duration::from_millis(50))
+    }
+
+    #[test]
+    fn what_is_left_out_is_usual() {
+        let station = station("").unwrap();
+        assert_eq!(station.to_string(), "unit 1, IN at 0, OUT at 0");
+        assert_eq!((station.order, station.handshake), (WordOrder::HighFirst, Duration::from_secs(2)));
+    }
+
+    #[test]
+    fn a_gateway_is_read_from_its_parameters() {
+        let station =
+            station("unit=17&input=0x1000&output=2048&order=low-first&handshake=500&cycle=20&timeout=250").unwrap();
+        assert_eq!(station.to_string(), "unit 17, IN at 4096, OUT at 2048");
+        assert_eq!((station.order, station.handshake), (WordOrder::LowFirst, Duration::from_millis(500)));
+        assert_eq!((station.cycle, station.timeout), (Duration::from_millis(20), Duration::from_millis(250)));
+    }
+
+    #[test]
+    fn a_value_that_cannot_be_used_names_what_can() {
+        let cases = [
+            ("unit=256", "unit=256: a unit from 0 to 255"),
+            ("input=65535", "input=65535: an input register from 0 to 65534"),
+            ("output=-1", "output=-1: a holding register from 0 to 65534"),
+            ("order=swapped", "order=swapped: high-first or low-first"),
+            ("handshake=10", "handshake=10: milliseconds from 50 to 8000"),
+            ("cycle=0", "cycle=0: milliseconds from 1 to 1000"),
+            ("timeout=5000", "timeout=5000: milliseconds from 10 to 2000"),
+        ];
+        for (query, message) in cases {
+            assert_eq!(station(query).unwrap_err().to_string(), message);
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! The one way to write to an encoder: a plan, a consent to it, what was read is read again, then exactly the operations
+//! that were shown, each read back, and back to the mode in which the encoder was found.
+//!
+//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+
+use std::time::Duration;
+
+pub use crate::device::written::Written;
+
+use super::error::Implausible;
+use super::handshake::Standing;
+use super::identify::{direction_of, programs, read_cam, read_parameters, read_program, read_shift, refresh_gear};
+use super::{Error, Identity, Master};
+use crate::devices::interbus::profile::{CamChange, Edge, InterbusPlan, Item, Op, ParameterChange, ProgramChange};
+use crate::devices::interbus::protocol::{
+    Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOut, Reply, StartupMode, Value,
+};
+use crate::profile::Consent;
+
+/// A plan that a person consented to and whose base still holds.
+pub struct Confirmed<'p> {
+    plan: &'p InterbusPlan,
+}
+
+/// A write that ended early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("after {} of the operations: {cause}", done.ops)]
+pub struct Interrupted {
+    /// What was written until then.
+    pub done: Written,
+    /// What the operation changes that was under way, and of which is not known how far it came; empty where all were
+    /// carried out.
+    pub unclear: Vec<Item>,
+    /// Why it ended.
+    pub cause: Error,
+    /// In which state the encoder was left.
+    pub left: Left,
+}
+
+/// In which state an encoder was left.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Left {
+    /// In the mode in which it was found, running.
+    AsFound,
+    /// It could not be led back: what is known of it.
+    Unknown(Standing),
+}
+
+/// What is told of a write: the operation that begins, from 0.
+pub type News = usize;
+
+/// So long a shaft is watched before a preset.
+const WATCHED: Duration = Duration::from_millis(300);
+/// Between two looks at it.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the encoder for which it
+/// was made.
+///
+/// # Errors
+/// [`Error::Changed`] when anything is no longer as it was; [`Error::Moving`]; [`Error::OtherPlan`]; the handshake and the
+/// way.
+pub fn confirm<'p>(
+    master: &mut Master<'_>,
+    plan: &'p InterbusPlan,
+    consent: Consent,
+    identity: &Identity,
+) -> Result<Confirmed<'p>, Error> {
+    if !consent.covers(plan.id()) {
+        return Err(Error::OtherPlan);
+    }
+    let changed = |item: String| Err(Error::Changed { item });
+    master.guarded(|master| {
+        if master.read_out(ReadOut::SERIAL_NUMBER)?.get().to_string() != identity.serial_number {
+            return changed("the encoder itself".to_owned());
+        }
+        if let Some(before) = plan.base.parameters {
+            let now = read_parameters(master)?;
+            let differs = |row: &&ParameterRow| now.value(row.parameter) != before.value(row.parameter);
+            if let Some(row) = PARAMETERS.iter().find(differs) {
+                return changed(row.name.to_owned());
+            }
+        }
+        master.will_read(plan.base.programs.len())?;
+        for (number, program) in &plan.base.programs {
+            master.go(StartupMode::Cams(*number))?;
+            if read_program(master)? != *program {
+                return changed(format!("cam program {}", number.get()));
+            }
+        }
+        if let Some(shift) = plan.base.shift
+            && programs(master, &[], &mut |_, _, _| {})?.1 != shift
+        {
+            return changed(Item::Shift.to_string());
+        }
+        if plan.ops.iter().any(|op| matches!(op, Op::FirePreset { .. })) {
+            refresh_gear(master)?;
+            ensure_standstill(master)?;
+        }
+        Ok(Confirmed { plan })
+    })
+}
+
+/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
+/// words; the encoder is led back all the same.
+///
+/// # Errors
+/// [`Interrupted`], with what was written until then and the state in which the encoder was left.
+pub fn carry_out(
+    master: &mut Master<'_>,
+    confirmed: &Confirmed<'_>,
+    tell: &mut dyn FnMut(News),
+) -> Result<Written, Box<Interrupted>> {
+    let mut done = Written::default();
+    let ops = &confirmed.plan.ops;
+    let ended = master.guarded(|master| {
+        for (number, op) in ops.iter().enumerate() {
+            tell(number);
+            perform(master, op, &mut done)?;
+            done.ops += 1;
+        }
+        Ok(())
+    });
+    let Err(cause) = ended else { return Ok(done) };
+    let left = match &cause {
+        Error::NotLedBack { standing, .. } => Left::Unknown(*standing),
+        _ => Left::AsFound,
+    };
+    let unclear = ops.get(done.ops).map(Op::items).unwrap_or_default();
+    Err(Box::new(Interrupted { done, unclear, cause, left }))
+}
+
+fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {
+    match op {
+        Op::Parameterise(changes) => parameterise(master, changes, done)?,
+        Op::Program(change) => program(master, change, done)?,
+        Op::FirePreset { value } => {
+            fire(master, *value)?;
+            done.verified += 1;
+        }
+        Op::Default => {
+            master.go(StartupMode::K3)?;
+            done.write_cycles += 1;
+            master.set(Command::Set(Parameter::Default, Value::default()))?;
+            master.run()?;
+            master.normal()?;
+            // What it holds now nobody has said before.
+            refresh_gear(master)?;
+        }
+    }
+    done.written += op.weight();
+    Ok(())
+}
+
+/// All in one parameterisation, which `80000000` stores.
+fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut Written) -> Result<(), Error> {
+    master.go(StartupMode::K3)?;
+    done.write_cycles += 1;
+    for change in changes {
+        let code = u32::from(change.parameter.row().code) << Value::BITS;
+        let value = Value::new(change.to).ok_or(Implausible::Value { read: code, value: change.to })?;
+        master.set(Command::Set(change.parameter, value))?;
+    }
+    master.run()?;
+    master.normal()?;
+    for change in changes {
+        let item = || change.parameter.name().to_owned();
+        let reads = read_back(master, change.parameter)?;
+        check(item, change.to, reads)?;
+        done.verified += 1;
+    }
+    let of_gear = |change: &ParameterChange| matches!(change.parameter, Parameter::Steps | Parameter::Turns);
+    if changes.iter().any(of_gear) { refresh_gear(master) } else { Ok(()) }
+}
+
+/// What the encoder says that a parameter is; of the direction its code as it is set.
+fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
+    let value = read_parameter(master, parameter)?;
+    match parameter {
+        Parameter::Direction => Ok(direction_of(value)?.code()),
+        _ => Ok(value),
+    }
+}
+
+/// What the encoder says that a parameter is; 0 for the default, which cannot be read.
+pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
+    let number = match parameter {
+        Parameter::Steps => 1,
+        Parameter::Turns => 2,
+        Parameter::Direction => 3,
+        Parameter::Preset => 4,
+        Parameter::ZeroShift => 5,
+        Parameter::Default => return Ok(0),
+    };
+    Ok(master.read_out(ReadOut::new(number))?.get())
+}
+
+fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), Error> {
+    if reads == wanted { Ok(()) } else { Err(Error::NotTaken { item: item(), wanted, reads }) }
+}
+
+/// A program is selected and set; `80000000` stores it, and it is read back.
+fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) -> Result<(), Error> {
+    let number = change.program;
+    master.go(StartupMode::Cams(number))?;
+    done.write_cycles += 1;
+    for CamChange { cam, edge, to, .. } in &change.cams {
+        let (command, question) = match edge {
+            Edge::Start => (Command::CamStart(*cam, *to), Command::ReadCamStart(*cam)),
+            Edge::Stop => (Command::CamStop(*cam, *to), Command::ReadCamStop(*cam)),
+        };
+        match Reply::echo_of(command) {
+            Reply::Busy { .. } => {
+                master.set_and_read_out(command, question, *to, || format!("{} {edge}", Item::Cam(number, *cam)))?;
+            }
+            _ => master.set(command)?,
+        }
+    }
+    if let Some((_, to)) = change.mask {
+        master.set(Command::Activate(to.into()))?;
+    }
+    if let Some((_, to)) = change.shift {
+        master.set(Command::Shift(to))?;
+    }
+    master.run()?;
+    let mut cams: Vec<&CamChange> = change.cams.iter().collect();
+    while let Some(first) = cams.first().copied() {
+        let reads = read_cam(master, first.cam)?;
+        for own in cams.extract_if(.., |own| own.cam == first.cam) {
+            let item = || format!("{} {}", Item::Cam(number, own.cam), own.edge);
+            check(item, own.to.get(), own.edge.of(reads).get())?;
+        }
+        done.verified += 1;
+    }
+    if let Some((_, to)) = change.mask {
+        let reads = master.ask(Command::ReadActivation)?.get();
+        check(|| Item::CamMask(number).to_string(), to.into(), reads)?;
+        done.verified += 1;
+    }
+    if let Some((_, to)) = change.shift {
+        check(|| Item::Shift.to_string(), to.get().into(), read_shift(master)?.get().into())?;
+        done.verified += 1;
+    }
+    Ok(())
+}
+
+/// The shaft's place becomes the preset, which was programmed before.
+fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
+    ensure_standstill(master)?;
+    let gear = master.gear();
+    // No nearer than a step: the place from before may be almost there.
+    master.fire(|position| apart(position, value, gear) <= 1)
+}
+
+/// Watches the position for a moment; the encoder gives it from then on.
+///
+/// # Errors
+/// [`Error::Moving`]; [`Error::NotRunning`] without a position; the handshake and the way.
+fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
+    master.go(StartupMode::K3)?;
+    master.normal()?;
+    let gear = master.gear();
+    let until = master.now() + WATCHED;
+    let mut first = None;
+    while master.now() < until {
+        let reading = master.reading()?;
+        let Some(position) = reading.position() else {
+            let input = reading.word;
+            return Err(Error::NotRunning { input });
+        };
+        let from = *first.get_or_insert(position);
+        if !is_near(position, from, gear) {
+            return Err(Error::Moving { from, to: position });
+        }
+        master.wait(LOOK)?;
+    }
+    Ok(())
+}
+
+/// As near as a shaft that stands is to itself: its position may be one step up or down, or a third of a degree with fine
+/// steps.
+fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
+    let most = gear.map_or(1, |gear| (gear.steps() / gear.turns() / 1000).max(1));
+    apart(position, other, gear) <= most
+}
+
+/// Steps from one position to another, the shorter way round.
+fn apart(position: u32, other: u32, gear: Option<Gear>) -> u32 {
+    let apart = position.abs_diff(other);
+    gear.map_or(apart, |gear| apart.min(gear.steps().saturating_sub(apart)))
+}

@@ -1,0 +1,161 @@
+//! Plans for changes, each with the encoder's own rules checked before anything is sent, and in as few stores as it takes:
+//! one for all parameters, and one for each program that changes.
+
+use super::{
+    Base, CamChange, Edge, Image, InterbusPlan, Item, Op, ParameterChange, Parameters, PlanError, ProgramChange,
+};
+use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value};
+
+/// Makes an encoder what is wanted of it: only what differs is written. What the wanted image says nothing about stays as it
+/// is; `device` has all that it does speak of.
+///
+/// The parameters come first, all in one parameterisation and in an order in which each is legal when it is sent; the cams
+/// then lie within the range. The shift of the window is set along with the first program that changes; where none does, it
+/// is set for itself with the first one that was read, which costs a store.
+///
+/// # Errors
+/// See [`PlanError`].
+pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanError> {
+    let mut plan = InterbusPlan { base: Base::default(), ops: Vec::new() };
+    let changes = parameter_changes(&device.parameters, &wanted.parameters)?;
+    if !changes.is_empty() {
+        plan.ops.push(Op::Parameterise(changes));
+    }
+    check_cams_that_stay(device, wanted)?;
+    let mut programs = Vec::new();
+    for (number, to) in wanted.known() {
+        let item = Item::CamMask(number);
+        let from = device.program(number).ok_or(PlanError::NotRead { item })?;
+        let change = ProgramChange {
+            program: number,
+            cams: cam_changes(number, from, to, wanted.parameters.steps)?,
+            mask: (from.mask != to.mask).then_some((from.mask, to.mask)),
+            shift: None,
+        };
+        if !change.is_empty() {
+            plan.base.programs.push((number, *from));
+            programs.push(change);
+        }
+    }
+    if let Some(to) = wanted.shift.filter(|to| device.shift != Some(*to)) {
+        let not_read = || PlanError::NotRead { item: Item::Shift };
+        let from = device.shift.ok_or_else(not_read)?;
+        plan.base.shift = Some(from);
+        match programs.first_mut() {
+            Some(change) => change.shift = Some((from, to)),
+            None => {
+                let (program, own) = device.known().next().ok_or_else(not_read)?;
+                plan.base.programs.push((program, *own));
+                programs.push(ProgramChange { program, cams: Vec::new(), mask: None, shift: Some((from, to)) });
+            }
+        }
+    }
+    plan.ops.extend(programs.into_iter().map(Op::Program));
+    plan.base.parameters = (!plan.is_empty()).then_some(device.parameters);
+    Ok(plan)
+}
+
+/// Makes the shaft's place this value: it is programmed, also where it is already, since a preset can be fired once for each
+/// time (reference 4); then it is fired.
+///
+/// # Errors
+/// The value is beyond the measuring range.
+pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, PlanError> {
+    Parameter::Preset.check(value, device.gear()?)?;
+    let change = ParameterChange { parameter: Parameter::Preset, from: device.preset, to: value };
+    let base = Base { parameters: Some(*device), ..Base::default() };
+    Ok(InterbusPlan { base, ops: vec![Op::Parameterise(vec![change]), Op::FirePreset { value }] })
+}
+
+/// Sets the encoder back to what was delivered: experimental (reference 6.10). What it then is nobody knows before.
+pub fn plan_default(device: &Parameters) -> InterbusPlan {
+    InterbusPlan { base: Base { parameters: Some(*device), ..Base::default() }, ops: vec![Op::Default] }
+}
+
+/// What differs, in an order in which each number is within its limits when it is sent.
+fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<ParameterChange>, PlanError> {
+    if device == wanted {
+        return Ok(Vec::new());
+    }
+    let gear = wanted.gear()?;
+    // The manual's order, from which only limits move something.
+    let mut order = vec![Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::ZeroShift];
+    let now_has_room = Gear::new(wanted.steps, device.revolutions).is_ok();
+    if !now_has_room {
+        order.swap(0, 1);
+    }
+    order.insert(3, Parameter::Preset);
+    // A place beyond the range that is to be has to go before the range does.
+    let is_beyond = |parameter: &Parameter| {
+        let places = matches!(parameter, Parameter::Preset | Parameter::ZeroShift);
+        places && device.value(*parameter).is_some_and(|place| place >= wanted.steps)
+    };
+    order.sort_by_key(|parameter| !is_beyond(parameter));
+    let mut changes = Vec::new();
+    for parameter in order {
+        let (Some(from), Some(to)) = (device.value(parameter), wanted.value(parameter)) else { continue };
+        // Also of one that stays: another gear may have other limits.
+        parameter.check(to, gear)?;
+        if from != to {
+            changes.push(ParameterChange { parameter, from, to });
+        }
+    }
+    Ok(changes)
+}
+
+/// The edges that differ, by cam and the start first.
+fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) -> Result<Vec<CamChange>, PlanError> {
+    let mut changes = Vec::new();
+    for cam in CamNumber::all() {
+        let Some(to) = to.cam(cam) else { continue };
+        let item = Item::Cam(number, cam);
+        let from = from.cam(cam).ok_or(PlanError::NotRead { item })?;
+        for edge in Edge::BOTH {
+            let (from, to) = (edge.of(from), edge.of(to));
+            if from != to {
+                check_edge(item, edge, to, steps)?;
+                changes.push(CamChange { cam, edge, from, to });
+            }
+        }
+    }
+    Ok(changes)
+}
+
+/// A cam that works must not be left beyond a range that becomes shorter.
+fn check_cams_that_stay(device: &Image, wanted: &Image) -> Result<(), PlanError> {
+    if wanted.parameters.steps >= device.parameters.steps {
+        return Ok(());
+    }
+    for number in ProgramNumber::all() {
+        let (Some(now), own) = (device.program(number), wanted.program(number)) else { continue };
+        let mask = own.map_or(now.mask, |own| own.mask);
+        for cam in CamNumber::all().filter(|cam| mask >> cam.get() & 1 != 0) {
+            let Some(will_be) = own.and_then(|own| own.cam(cam)).or_else(|| now.cam(cam)) else { continue };
+            for edge in Edge::BOTH {
+                check_edge(Item::Cam(number, cam), edge, edge.of(will_be), wanted.parameters.steps)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_edge(item: Item, edge: Edge, position: Value, steps: u32) -> Result<(), PlanError> {
+    let (position, last) = (position.get(), steps.saturating_sub(1));
+    if position <= last { Ok(()) } else { Err(PlanError::CamBeyondRange { item, edge, position, last }) }
+}
+
+impl Edge {
+    /// Both, in the order in which they are set.
+    pub const BOTH: [Edge; 2] = [Edge::Start, Edge::Stop];
+
+    /// Where it is.
+    pub const fn of(self, cam: Cam) -> Value {
+        match self {
+            Edge::Start => cam.start,
+            Edge::Stop => cam.stop,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,67 @@
+//! Why something cannot be planned.
+
+use super::{Edge, Item};
+use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
+
+/// A profile and an encoder of two types, by their flags (manual, 10.2): one counts turns and the other does not, or one
+/// gives its steps less one, so that the same number is another gear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the profile is of a {} encoder, the encoder is a {} one", profile.type_name(), device.type_name())]
+pub struct OtherType {
+    /// In the profile.
+    pub profile: Flags,
+    /// In the encoder.
+    pub device: Flags,
+}
+
+/// Why something cannot be planned. Nothing has been written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// The profile was read from another encoder.
+    #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
+    OtherDevice {
+        /// In the profile.
+        profile: String,
+        /// In the encoder.
+        device: String,
+    },
+    /// The profile is of another type of encoder.
+    #[error(transparent)]
+    OtherType(#[from] OtherType),
+    /// Steps and turns are no gear.
+    #[error(transparent)]
+    Gear(#[from] GearError),
+    /// A parameter is beyond its limits.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// A value of the mounting, which is left as it is in the encoder, does not fit what else is to be written.
+    #[error("{item}, which is left alone as a value of the mounting: {value} is not within {low} to {high}")]
+    MountingLeft {
+        /// Which one.
+        item: Item,
+        /// What the encoder has.
+        value: u32,
+        /// The least.
+        low: u32,
+        /// The greatest.
+        high: u32,
+    },
+    /// An edge of a cam lies beyond the measuring range.
+    #[error("{item}, {edge}: {position} is not within 0 to {last}")]
+    CamBeyondRange {
+        /// Which cam.
+        item: Item,
+        /// Which of its edges.
+        edge: Edge,
+        /// As it is to be.
+        position: u32,
+        /// The last position of the measuring range.
+        last: u32,
+    },
+    /// Something is to be changed of which it is not known what it is now.
+    #[error("{item} was not read before it is to be changed")]
+    NotRead {
+        /// Which one.
+        item: Item,
+    },
+}

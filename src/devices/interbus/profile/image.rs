@@ -1,0 +1,161 @@
+//! What a K3 encoder keeps in its EEPROM and gives back when it is read.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::devices::interbus::protocol::{Gear, GearError, Parameter, Program, ProgramNumber, WindowShift};
+
+/// All that can be written and read back. What was not read, or what a profile does not say, is `None`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Image {
+    /// How the position is made.
+    pub parameters: Parameters,
+    /// How far the position is shifted under its window in cam mode: one for all programs.
+    pub shift: Option<WindowShift>,
+    /// The cam programs, the first at 0. In one that was read every cam is there, whether it works or not.
+    pub programs: [Option<Program>; ProgramNumber::COUNT],
+}
+
+/// How an encoder makes its position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Parameters {
+    /// Steps over all programmed turns: the measuring range. See [`Gear`].
+    pub steps: u32,
+    /// Turns until the position begins anew.
+    pub revolutions: u32,
+    /// Which way it counts.
+    pub direction: Direction,
+    /// The position that the shaft's place is to have when the preset is fired; it belongs to the mounting.
+    pub preset: u32,
+    /// Zero point shifting; it belongs to the mounting.
+    pub zero_shift: u32,
+}
+
+/// Which way the position counts, seen at the shaft.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// 3: up when the shaft turns clockwise.
+    Clockwise,
+    /// 4: up when it turns counterclockwise.
+    Counterclockwise,
+}
+
+impl Direction {
+    /// The parameter's number.
+    pub const fn code(self) -> u32 {
+        match self {
+            Direction::Clockwise => 3,
+            Direction::Counterclockwise => 4,
+        }
+    }
+
+    /// Of the parameter's number; `None` where it is neither 3 nor 4.
+    pub const fn of_code(code: u32) -> Option<Self> {
+        match code {
+            3 => Some(Direction::Clockwise),
+            4 => Some(Direction::Counterclockwise),
+            _ => None,
+        }
+    }
+
+    /// As the command line and profiles spell it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Direction::Clockwise => "cw",
+            Direction::Counterclockwise => "ccw",
+        }
+    }
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+/// A word that is no direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a direction is cw (3) or ccw (4)")]
+pub struct DirectionError;
+
+impl FromStr for Direction {
+    type Err = DirectionError;
+
+    fn from_str(text: &str) -> Result<Self, DirectionError> {
+        match text {
+            "cw" | "3" => Ok(Direction::Clockwise),
+            "ccw" | "4" => Ok(Direction::Counterclockwise),
+            _ => Err(DirectionError),
+        }
+    }
+}
+
+impl Parameters {
+    /// A parameter's number; `None` for what is no setting.
+    pub const fn value(&self, parameter: Parameter) -> Option<u32> {
+        match parameter {
+            Parameter::Steps => Some(self.steps),
+            Parameter::Turns => Some(self.revolutions),
+            Parameter::Direction => Some(self.direction.code()),
+            Parameter::Preset => Some(self.preset),
+            Parameter::ZeroShift => Some(self.zero_shift),
+            Parameter::Default => None,
+        }
+    }
+
+    /// Steps and turns as the gear that they are together.
+    ///
+    /// # Errors
+    /// One of them is beyond its limit.
+    pub const fn gear(&self) -> Result<Gear, GearError> {
+        Gear::new(self.steps, self.revolutions)
+    }
+}
+
+impl Image {
+    /// With nothing but parameters.
+    pub const fn of(parameters: Parameters) -> Self {
+        Image { parameters, shift: None, programs: [None; ProgramNumber::COUNT] }
+    }
+
+    /// A program; `None` where nothing is known of it.
+    pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
+        self.programs.get(usize::from(number.get() - 1)).and_then(Option::as_ref)
+    }
+
+    /// The place of a program.
+    pub fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Option<Program>> {
+        self.programs.get_mut(usize::from(number.get() - 1))
+    }
+
+    /// The programs of which something is known.
+    pub fn known(&self) -> impl Iterator<Item = (ProgramNumber, &Program)> {
+        ProgramNumber::all().filter_map(|number| Some((number, self.program(number)?)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_have_the_numbers_of_the_manual() {
+        for (text, code) in [("cw", 3), ("3", 3), ("ccw", 4), ("4", 4)] {
+            let direction: Direction = text.parse().unwrap();
+            assert_eq!((direction.code(), Direction::of_code(code)), (code, Some(direction)), "{text}");
+        }
+        assert_eq!("left".parse::<Direction>(), Err(DirectionError));
+        assert_eq!(Direction::of_code(5), None);
+    }
+
+    #[test]
+    fn a_program_stands_at_its_number() {
+        let parameters =
+            Parameters { steps: 255, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
+        let mut image = Image::of(parameters);
+        let last = ProgramNumber::new(8).unwrap();
+        *image.program_mut(last).unwrap() = Some(Program { mask: 0x93, ..Program::default() });
+        assert_eq!(image.known().map(|(number, own)| (number.get(), own.mask)).collect::<Vec<_>>(), [(8, 0x93)]);
+        assert_eq!(image.programs.iter().position(Option::is_some), Some(7));
+    }
+}

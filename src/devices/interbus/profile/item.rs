@@ -1,0 +1,315 @@
+//! The names of things in an encoder, as `read` takes them: `steps`, `cam:2:5`, `cam-mask:2`; and what they hold.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::{Direction, Image, Parameters};
+use crate::devices::interbus::protocol::{Cam, CamNumber, Parameter, Program, ProgramNumber, WindowShift};
+
+/// A thing in an encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Item {
+    /// Steps over all programmed turns.
+    Steps,
+    /// Turns until the position begins anew.
+    Revolutions,
+    /// Which way it counts.
+    Direction,
+    /// What the preset makes of the shaft's place.
+    Preset,
+    /// Zero point shifting.
+    ZeroShift,
+    /// How far the position is shifted under its window: one for all programs.
+    Shift,
+    /// Which cams of a program work.
+    CamMask(ProgramNumber),
+    /// Both edges of a cam.
+    Cam(ProgramNumber, CamNumber),
+    /// How warm the encoder is.
+    Temperature,
+    /// How long it has been on.
+    OperatingTime,
+}
+
+/// What a thing in an encoder holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ItemValue {
+    /// Steps, turns, or the shift of the window.
+    Number(u32),
+    /// Which way it counts.
+    Direction(Direction),
+    /// Bit i for cam i.
+    Mask(u8),
+    /// Both edges.
+    Cam(Cam),
+    /// Tenths of a degree Celsius.
+    TenthsOfDegree(i32),
+    /// Minutes, in tens.
+    Minutes(u32),
+}
+
+/// Why a text names nothing in an encoder.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ItemError {
+    /// Not of the form of any item.
+    #[error("{0:?} is not an item; items are {ITEMS}")]
+    Unknown(String),
+    /// There is no such program.
+    #[error("program {number} is not within 1 to {}", ProgramNumber::COUNT)]
+    Program {
+        /// As given.
+        number: u64,
+    },
+    /// There is no such cam.
+    #[error("cam {number} is not within 0 to {}", Program::CAMS - 1)]
+    Cam {
+        /// As given.
+        number: u64,
+    },
+}
+
+/// All items, for a person.
+const ITEMS: &str = "steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
+                     cam-mask:P, temperature and operating-time";
+
+impl Item {
+    /// Those that have no number behind them, in the order in which they are compared.
+    const PLAIN: [Item; 8] = [
+        Item::Steps,
+        Item::Revolutions,
+        Item::Direction,
+        Item::Preset,
+        Item::ZeroShift,
+        Item::Shift,
+        Item::Temperature,
+        Item::OperatingTime,
+    ];
+
+    /// Everything that can be written, in the order in which it is compared: parameters, the shift, then program by program
+    /// its mask and its cams.
+    pub fn writable() -> impl Iterator<Item = Item> {
+        let plain = Item::PLAIN.into_iter().filter(|item| item.is_writable());
+        plain.chain(ProgramNumber::all().flat_map(Item::of_program))
+    }
+
+    /// A program's mask and its cams.
+    pub fn of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
+        std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
+    }
+
+    /// It is set by somebody; what is measured is not.
+    pub const fn is_writable(self) -> bool {
+        !matches!(self, Item::Temperature | Item::OperatingTime)
+    }
+
+    /// The parameter that it is; `None` for what belongs to the cams, or is measured.
+    pub const fn parameter(self) -> Option<Parameter> {
+        match self {
+            Item::Steps => Some(Parameter::Steps),
+            Item::Revolutions => Some(Parameter::Turns),
+            Item::Direction => Some(Parameter::Direction),
+            Item::Preset => Some(Parameter::Preset),
+            Item::ZeroShift => Some(Parameter::ZeroShift),
+            Item::Shift | Item::CamMask(_) | Item::Cam(..) | Item::Temperature | Item::OperatingTime => None,
+        }
+    }
+
+    /// The item of a parameter; `None` for what is no setting.
+    pub const fn of_parameter(parameter: Parameter) -> Option<Self> {
+        match parameter {
+            Parameter::Steps => Some(Item::Steps),
+            Parameter::Turns => Some(Item::Revolutions),
+            Parameter::Direction => Some(Item::Direction),
+            Parameter::Preset => Some(Item::Preset),
+            Parameter::ZeroShift => Some(Item::ZeroShift),
+            Parameter::Default => None,
+        }
+    }
+
+    /// The program that it lies in.
+    pub const fn program(self) -> Option<ProgramNumber> {
+        match self {
+            Item::CamMask(program) | Item::Cam(program, _) => Some(program),
+            _ => None,
+        }
+    }
+
+    /// Of its number; empty where it has none.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Item::Steps | Item::Preset | Item::ZeroShift | Item::Cam(..) => "steps",
+            Item::Revolutions => "turns",
+            Item::Shift => "bits",
+            Item::Temperature => "°C",
+            Item::OperatingTime => "min",
+            Item::Direction | Item::CamMask(_) => "",
+        }
+    }
+}
+
+impl fmt::Display for Item {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Item::Steps => f.write_str("steps"),
+            Item::Revolutions => f.write_str("revolutions"),
+            Item::Direction => f.write_str("direction"),
+            Item::Preset => f.write_str("preset"),
+            Item::ZeroShift => f.write_str("zero-shift"),
+            Item::Shift => f.write_str("shift"),
+            Item::CamMask(program) => write!(f, "cam-mask:{}", program.get()),
+            Item::Cam(program, cam) => write!(f, "cam:{}:{}", program.get(), cam.get()),
+            Item::Temperature => f.write_str("temperature"),
+            Item::OperatingTime => f.write_str("operating-time"),
+        }
+    }
+}
+
+impl FromStr for Item {
+    type Err = ItemError;
+
+    fn from_str(text: &str) -> Result<Self, ItemError> {
+        if let Some(plain) = Item::PLAIN.into_iter().find(|item| item.to_string() == text) {
+            return Ok(plain);
+        }
+        let unknown = || ItemError::Unknown(text.to_owned());
+        let number = |text: &str| match text.bytes().all(|c| c.is_ascii_digit()) {
+            true => text.parse::<u64>().map_err(|_| unknown()),
+            false => Err(unknown()),
+        };
+        let program = |text: &str| {
+            let number = number(text)?;
+            u8::try_from(number).ok().and_then(ProgramNumber::new).ok_or(ItemError::Program { number })
+        };
+        let cam = |text: &str| {
+            let number = number(text)?;
+            u8::try_from(number).ok().and_then(CamNumber::new).ok_or(ItemError::Cam { number })
+        };
+        match text.split(':').collect::<Vec<_>>().as_slice() {
+            ["cam-mask", of] => Ok(Item::CamMask(program(of)?)),
+            ["cam", of, which] => Ok(Item::Cam(program(of)?, cam(which)?)),
+            _ => Err(unknown()),
+        }
+    }
+}
+
+impl fmt::Display for ItemValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ItemValue::Number(number) | ItemValue::Minutes(number) => write!(f, "{number}"),
+            ItemValue::Direction(direction) => direction.fmt(f),
+            ItemValue::Mask(mask) => write!(f, "0x{mask:02X}"),
+            ItemValue::Cam(cam) => write!(f, "{}..{}", cam.start.get(), cam.stop.get()),
+            ItemValue::TenthsOfDegree(tenths) => write!(f, "{:.1}", f64::from(*tenths) / 10.0),
+        }
+    }
+}
+
+impl Image {
+    /// What it holds of an item; `None` where nothing is known of it, and for what is measured.
+    pub fn item(&self, item: Item) -> Option<ItemValue> {
+        let number = ItemValue::Number;
+        let Parameters { steps, revolutions, direction, preset, zero_shift } = self.parameters;
+        Some(match item {
+            Item::Steps => number(steps),
+            Item::Revolutions => number(revolutions),
+            Item::Direction => ItemValue::Direction(direction),
+            Item::Preset => number(preset),
+            Item::ZeroShift => number(zero_shift),
+            Item::Shift => number(self.shift?.get().into()),
+            Item::CamMask(program) => ItemValue::Mask(self.program(program)?.mask),
+            Item::Cam(program, cam) => ItemValue::Cam(self.program(program)?.cam(cam)?),
+            Item::Temperature | Item::OperatingTime => return None,
+        })
+    }
+
+    /// Makes an item hold something. Of a program of which nothing was known, that much is known then; its mask is 0.
+    /// False where such an item holds no such value.
+    pub fn put(&mut self, item: Item, value: ItemValue) -> bool {
+        let parameters = &mut self.parameters;
+        match (item, value) {
+            (Item::Steps, ItemValue::Number(steps)) => parameters.steps = steps,
+            (Item::Revolutions, ItemValue::Number(revolutions)) => parameters.revolutions = revolutions,
+            (Item::Direction, ItemValue::Direction(direction)) => parameters.direction = direction,
+            (Item::Preset, ItemValue::Number(preset)) => parameters.preset = preset,
+            (Item::ZeroShift, ItemValue::Number(zero_shift)) => parameters.zero_shift = zero_shift,
+            (Item::Shift, ItemValue::Number(shift)) => match u8::try_from(shift).ok().and_then(WindowShift::new) {
+                Some(shift) => self.shift = Some(shift),
+                None => return false,
+            },
+            (Item::CamMask(program), ItemValue::Mask(mask)) => self.program_or_new(program, |own| own.mask = mask),
+            (Item::Cam(program, number), ItemValue::Cam(cam)) => {
+                self.program_or_new(program, |own| own.set_cam(number, Some(cam)));
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn program_or_new(&mut self, number: ProgramNumber, change: impl FnOnce(&mut Program)) {
+        if let Some(place) = self.program_mut(number) {
+            change(place.get_or_insert_default());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_profiles::{edges, image};
+    use super::*;
+
+    #[test]
+    fn items_are_named_as_on_the_command_line() {
+        for text in [
+            "steps",
+            "revolutions",
+            "direction",
+            "preset",
+            "zero-shift",
+            "shift",
+            "cam:1:0",
+            "cam:8:7",
+            "cam-mask:1",
+            "cam-mask:8",
+            "temperature",
+            "operating-time",
+        ] {
+            assert_eq!(text.parse::<Item>().map(|item| item.to_string()).as_deref(), Ok(text));
+        }
+        for text in ["", "Steps", "cam", "cam:1", "cam:1:0:0", "cam:+1:0", "cam:1:", "cam:x:0", "cam-mask", "mask:1"] {
+            assert_eq!(text.parse::<Item>(), Err(ItemError::Unknown(text.to_owned())));
+        }
+        let said = |text: &str| text.parse::<Item>().unwrap_err().to_string();
+        assert_eq!(said("cam:9:0"), "program 9 is not within 1 to 8");
+        assert_eq!(said("cam-mask:0"), "program 0 is not within 1 to 8");
+        assert_eq!(said("cam:1:8"), "cam 8 is not within 0 to 7");
+    }
+
+    #[test]
+    fn an_image_gives_back_what_was_put_into_it() {
+        // Five parameters, the shift, eight programs with a mask and eight cams.
+        assert_eq!(Item::writable().count(), 5 + 1 + 8 * 9);
+        let full = image();
+        let mut copy = Image::of(Parameters { steps: 1, revolutions: 2, preset: 3, zero_shift: 4, ..full.parameters });
+        for item in Item::writable() {
+            assert!(copy.put(item, full.item(item).unwrap()), "{item}");
+        }
+        assert_eq!(copy, full);
+        for (item, value) in [
+            (Item::Steps, ItemValue::Mask(1)),
+            (Item::Shift, ItemValue::Number(26)),
+            (Item::Temperature, ItemValue::TenthsOfDegree(0)),
+        ] {
+            assert!(!copy.put(item, value), "{item}");
+        }
+        assert_eq!(copy, full);
+    }
+
+    #[test]
+    fn values_are_printed_as_they_are_typed() {
+        let said = |value: ItemValue| value.to_string();
+        assert_eq!(said(ItemValue::Cam(edges(3500, 40))), "3500..40");
+        assert_eq!(said(ItemValue::Mask(0x0B)), "0x0B");
+        assert_eq!(said(ItemValue::Direction(Direction::Counterclockwise)), "ccw");
+        assert_eq!(said(ItemValue::TenthsOfDegree(-3)), "-0.3");
+    }
+}

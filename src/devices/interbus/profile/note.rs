@@ -1,0 +1,64 @@
+//! What an operation changes, in one line for the logbook: items, old and new. Its words are the manual's, whatever the
+//! language of the window.
+
+use super::{CamChange, Direction, Op, ParameterChange};
+use crate::devices::interbus::protocol::Parameter;
+
+/// A line of an operation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// What changes: an item, or an edge of one.
+    pub name: String,
+    /// What it is.
+    pub from: String,
+    /// What it will be.
+    pub to: String,
+}
+
+impl Op {
+    /// What it changes, old and new.
+    pub fn note(&self) -> String {
+        match self {
+            Op::FirePreset { value } => format!("position: → {value}"),
+            Op::Default => "default: all parameters as delivered".to_owned(),
+            op => {
+                let steps = op.steps().into_iter();
+                steps.map(|step| format!("{}: {} → {}", step.name, step.from, step.to)).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+
+    /// What it changes, one by one: a parameter, a mask, an edge of a cam. Empty where nothing can be read.
+    pub fn steps(&self) -> Vec<Step> {
+        let step = |name: String, from: &dyn ToString, to: &dyn ToString| Step {
+            name,
+            from: from.to_string(),
+            to: to.to_string(),
+        };
+        match self {
+            Op::Parameterise(changes) => {
+                let number = |parameter: Parameter, number: u32| match Direction::of_code(number) {
+                    Some(direction) if parameter == Parameter::Direction => direction.to_string(),
+                    _ => number.to_string(),
+                };
+                let one = |change: &ParameterChange| {
+                    let (parameter, from, to) = (change.parameter, change.from, change.to);
+                    step(parameter.name().to_owned(), &number(parameter, from), &number(parameter, to))
+                };
+                changes.iter().map(one).collect()
+            }
+            Op::Program(change) => {
+                let number = change.program.get();
+                let edge = |change: &CamChange| {
+                    let name = format!("cam:{number}:{} {}", change.cam.get(), change.edge);
+                    step(name, &change.from.get(), &change.to.get())
+                };
+                let hex = |mask: u8| format!("0x{mask:02X}");
+                let mask = change.mask.map(|(from, to)| step(format!("cam-mask:{number}"), &hex(from), &hex(to)));
+                let shift = change.shift.map(|(from, to)| step("shift".to_owned(), &from.get(), &to.get()));
+                change.cams.iter().map(edge).chain(mask).chain(shift).collect()
+            }
+            Op::FirePreset { .. } | Op::Default => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! What is saved of an INTERBUS encoder: who it is, what it keeps in its EEPROM, what its cams are called, and beside them
+//! what is only recorded. Its text is in [`text`](super::text).
+
+use std::collections::BTreeMap;
+
+use super::{Image, Item};
+use crate::devices::interbus::protocol::{CamNumber, Flags, ProgramNumber, StartupMode};
+use crate::profile::ron_text::Unknown;
+
+/// An INTERBUS encoder as it is saved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InterbusProfile {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// What it keeps. A program or a cam that is `None`, and a shift that is: the profile says nothing about it.
+    pub image: Image,
+    /// What a person calls the programs and their cams; the encoder does not keep it.
+    pub names: Names,
+    /// What belongs to the mounting and never goes onto another encoder by itself.
+    pub mounting: Vec<MountingMark>,
+    /// Values that change by themselves or cannot be written: recorded, neither compared nor restored.
+    pub recorded: Recorded,
+    /// Entries that this program does not know.
+    pub unknown: Kept,
+}
+
+/// Who an encoder is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProfileIdentity {
+    /// Read-out 0, decimal; empty where the profile is of no encoder.
+    pub serial_number: String,
+    /// Read-out Ah: how its steps count, and whether it counts turns; `None` where it is not known.
+    pub flags: Option<Flags>,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Values that change by themselves or cannot be written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recorded {
+    /// Read-out 7.
+    pub software_version: Option<u32>,
+    /// Read-out 8.
+    pub operating_minutes: Option<u32>,
+    /// Read-out Ch.
+    pub temperature_tenths: Option<i32>,
+    /// Read-out 9: the mode it was found in.
+    pub mode: Option<StartupMode>,
+    /// Read-out 6.
+    pub preset_flag: Option<u32>,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Something that is right for one encoder on one machine and no other.
+pub type MountingMark = crate::profile::MountingMark<Item>;
+
+/// What a person calls programs and cams. What has no name has an empty one.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Names {
+    programs: BTreeMap<ProgramNumber, String>,
+    cams: BTreeMap<(ProgramNumber, CamNumber), String>,
+}
+
+/// Entries that this program does not know, by the structure in which they stand.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kept {
+    pub(super) parameters: Unknown,
+    pub(super) programs: BTreeMap<ProgramNumber, Unknown>,
+    pub(super) cams: BTreeMap<(ProgramNumber, CamNumber), Unknown>,
+}
+
+impl InterbusProfile {
+    /// Of an encoder that was read, with its values of the mounting marked.
+    pub fn of(identity: ProfileIdentity, image: Image, recorded: Recorded) -> Self {
+        let mut profile = InterbusProfile {
+            identity,
+            image,
+            names: Names::default(),
+            mounting: Vec::new(),
+            recorded,
+            unknown: Kept::default(),
+        };
+        profile.mark_mounting();
+        profile
+    }
+
+    /// Marks what is known to be a value of the mounting, and is not marked yet: preset and zero shift.
+    pub fn mark_mounting(&mut self) {
+        for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
+            if !self.is_mounting(item) {
+                self.mounting.push(MountingMark { item, meaning: meaning.to_owned(), unknown: Unknown::new() });
+            }
+        }
+    }
+
+    /// An item belongs to the mounting.
+    pub fn is_mounting(&self, item: Item) -> bool {
+        self.mounting.iter().any(|mark| mark.item == item)
+    }
+
+    /// The items that it says something about, in the order in which they are compared.
+    pub fn items(&self) -> impl Iterator<Item = Item> {
+        Item::writable().filter(|item| self.image.item(*item).is_some())
+    }
+}
+
+impl Names {
+    /// A program's name.
+    pub fn program(&self, program: ProgramNumber) -> &str {
+        self.programs.get(&program).map_or("", String::as_str)
+    }
+
+    /// A cam's name.
+    pub fn cam(&self, program: ProgramNumber, cam: CamNumber) -> &str {
+        self.cams.get(&(program, cam)).map_or("", String::as_str)
+    }
+
+    /// Calls a program something; an empty name takes it away.
+    pub fn set_program(&mut self, program: ProgramNumber, name: String) {
+        if name.is_empty() {
+            self.programs.remove(&program)
+        } else {
+            self.programs.insert(program, name)
+        };
+    }
+
+    /// Calls a cam something; an empty name takes it away.
+    pub fn set_cam(&mut self, program: ProgramNumber, cam: CamNumber, name: String) {
+        let place = (program, cam);
+        if name.is_empty() {
+            self.cams.remove(&place)
+        } else {
+            self.cams.insert(place, name)
+        };
+    }
+}

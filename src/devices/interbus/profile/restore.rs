@@ -1,0 +1,118 @@
+//! What restoring a profile would do: only what differs, in the fewest stores, and nothing that belongs to another
+//! encoder's mounting. A preset is stored and never fired.
+
+pub use crate::profile::RestoreOptions;
+
+use super::{Image, InterbusPlan, InterbusProfile, Item, OtherType, PlanError, ProfileIdentity, plan_edits};
+use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
+
+/// An encoder as it is, as far as a plan needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceState {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// What it keeps: the programs that were read are at least [`programs_needed`], with the shift where there are any.
+    pub image: Image,
+}
+
+/// What a restore would do.
+pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
+
+/// The programs that have to be read before a restore of this profile can be planned. The shift of the window is read with
+/// one of them: with the first program where the profile has nothing but the shift.
+pub fn programs_needed(profile: &InterbusProfile) -> Vec<ProgramNumber> {
+    let of_cams = profile.image.known().map(|(number, _)| number);
+    let all: Vec<ProgramNumber> = of_cams.collect();
+    match profile.image.shift {
+        Some(_) if all.is_empty() => ProgramNumber::all().take(1).collect(),
+        _ => all,
+    }
+}
+
+/// Plans a restore.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_restore(
+    profile: &InterbusProfile,
+    device: &DeviceState,
+    options: RestoreOptions,
+) -> Result<Restore, PlanError> {
+    check_allowed(profile, &device.identity, options)?;
+    let is_other = !is_same_device(profile, &device.identity);
+    let mut wanted = Image::of(device.image.parameters);
+    let (mut unchanged, mut missing) = (0, Vec::new());
+    let (mut mounting_left, mut mounting_written) = (Vec::new(), Vec::new());
+    for item in profile.items() {
+        let (Some(to), Some(from)) = (profile.image.item(item), device.image.item(item)) else {
+            missing.push(item.to_string());
+            continue;
+        };
+        if to == from {
+            unchanged += 1;
+        } else if is_other && profile.is_mounting(item) {
+            if options.with_mounting { &mut mounting_written } else { &mut mounting_left }.push(item);
+        }
+        wanted.put(item, if mounting_left.last() == Some(&item) { from } else { to });
+    }
+    let plan = plan_edits(&device.image, &wanted).map_err(|error| match error {
+        PlanError::OutOfRange(refused) => match Item::of_parameter(refused.parameter) {
+            Some(item) if mounting_left.contains(&item) => {
+                let OutOfRange { value, low, high, .. } = refused;
+                PlanError::MountingLeft { item, value, low, high }
+            }
+            _ => PlanError::OutOfRange(refused),
+        },
+        other => other,
+    })?;
+    Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
+}
+
+/// Refuses an encoder that the profile was not read from. A profile without a serial number is of no encoder, so that it is
+/// refused by none.
+///
+/// # Errors
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
+pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
+    check_allowed(profile, device, RestoreOptions::default())
+}
+
+/// What differs between the types of a profile and of an encoder; `None` where they are the same, or one of them is not known.
+pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
+    let (profile, device) = profile.flags.zip(device.flags)?;
+    let what = |flags: Flags| (flags.multiturn(), flags.steps_minus_one());
+    (what(profile) != what(device)).then_some(OtherType { profile, device })
+}
+
+/// Refuses an encoder that the profile was not read from, as far as that is not allowed.
+///
+/// # Errors
+/// As [`check_device`].
+pub fn check_allowed(
+    profile: &InterbusProfile,
+    device: &ProfileIdentity,
+    options: RestoreOptions,
+) -> Result<(), PlanError> {
+    if let Some(error) = other_type(&profile.identity, device).filter(|_| !options.allow_other_type) {
+        return Err(error.into());
+    }
+    let is_of_none = profile.identity.serial_number.is_empty();
+    if options.allow_other_device || is_of_none || is_same_number(profile, device) {
+        return Ok(());
+    }
+    Err(PlanError::OtherDevice {
+        profile: profile.identity.serial_number.clone(),
+        device: device.serial_number.clone(),
+    })
+}
+
+fn is_same_device(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
+    is_same_number(profile, device) && other_type(&profile.identity, device).is_none()
+}
+
+fn is_same_number(profile: &InterbusProfile, device: &ProfileIdentity) -> bool {
+    !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
+}
+
+#[cfg(test)]
+mod tests;

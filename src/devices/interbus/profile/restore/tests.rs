@@ -1,0 +1,201 @@
+//! What a restore writes, leaves and refuses; what a comparison names.
+
+use super::super::test_profiles::{edges, identity, image, profile, value, with};
+use super::super::{Base, ItemValue, Op, compare};
+use super::*;
+use crate::devices::interbus::protocol::{Flags, WindowShift};
+use crate::profile::{Document, Profile};
+
+use ItemValue::{Cam, Mask, Number};
+
+const MINE: &str = "1234567";
+
+fn device(serial_number: &str, items: &[(&str, ItemValue)]) -> DeviceState {
+    DeviceState { identity: identity(serial_number), image: with(&image(), items) }
+}
+
+fn operations(restore: &Restore) -> Vec<String> {
+    restore.plan.ops.iter().map(Op::note).collect()
+}
+
+#[test]
+fn the_same_again_writes_nothing() {
+    let restore = plan_restore(&profile(MINE), &device(MINE, &[]), RestoreOptions::default()).unwrap();
+    // 5 parameters, the shift, 8 masks, 64 cams.
+    assert_eq!((restore.plan.is_empty(), restore.unchanged), (true, 78));
+    assert_eq!(restore.plan.base, Base::default());
+}
+
+#[test]
+fn only_what_differs_is_written() {
+    let items = [("steps", Number(4096)), ("preset", Number(1)), ("cam:3:4", Cam(edges(1, 2))), ("shift", Number(8))];
+    let restore = plan_restore(&profile(MINE), &device(MINE, &items), RestoreOptions::default()).unwrap();
+    let expected =
+        ["steps: 4096 → 3600, preset: 1 → 500", "cam:3:4 start: 1 → 403, cam:3:4 stop: 2 → 452, shift: 8 → 0"];
+    assert_eq!(operations(&restore), expected);
+    assert_eq!((restore.plan.write_cycles(), restore.unchanged), (2, 74));
+    let written: u64 = restore.plan.ops.iter().map(Op::weight).sum();
+    assert_eq!(written + restore.unchanged, 78);
+}
+
+#[test]
+fn another_encoder_is_refused_and_keeps_its_mounting() {
+    let of = profile(MINE);
+    let other = device("7654321", &[("preset", Number(7)), ("zero-shift", Number(9)), ("cam-mask:1", Mask(0))]);
+    let refused = PlanError::OtherDevice { profile: MINE.to_owned(), device: "7654321".to_owned() };
+    assert_eq!(plan_restore(&of, &other, RestoreOptions::default()), Err(refused));
+    let allowed = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
+    let restore = plan_restore(&of, &other, allowed).unwrap();
+    assert_eq!(operations(&restore), ["cam-mask:1: 0x00 → 0xFF"]);
+    assert_eq!(restore.mounting_left, [Item::Preset, Item::ZeroShift]);
+    assert_eq!(restore.unchanged, 75);
+    let with_it = RestoreOptions { with_mounting: true, ..allowed };
+    let restore = plan_restore(&of, &other, with_it).unwrap();
+    assert_eq!(operations(&restore), ["preset: 7 → 500, zero-shift: 9 → 0", "cam-mask:1: 0x00 → 0xFF"]);
+    assert!(restore.mounting_left.is_empty());
+    // Issue 22.7: what comes from another mounting is named where it is written.
+    assert_eq!(restore.mounting_written, [Item::Preset, Item::ZeroShift]);
+}
+
+/// What stands in the file counts, not what usually belongs to a mounting.
+#[test]
+fn marks_are_what_belongs_to_the_mounting() {
+    let mut of = profile(MINE);
+    of.mounting.retain(|mark| mark.item == Item::Preset);
+    if let Some(mark) = of.mounting.first_mut() {
+        mark.item = "cam:1:1".parse().unwrap();
+    }
+    let other = device("7654321", &[("preset", Number(7)), ("cam:1:1", Cam(edges(0, 1)))]);
+    let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
+    let restore = plan_restore(&of, &other, options).unwrap();
+    assert_eq!((operations(&restore), restore.mounting_left.len()), (vec!["preset: 7 → 500".to_owned()], 1));
+}
+
+/// A profile that somebody wrote by hand is of no encoder: it may go onto any, but for the mounting.
+#[test]
+fn a_profile_of_no_encoder_is_refused_by_none() {
+    let options = RestoreOptions::default();
+    let restore = plan_restore(&profile(""), &device(MINE, &[("preset", Number(7))]), options).unwrap();
+    assert_eq!((restore.plan.is_empty(), restore.mounting_left), (true, vec![Item::Preset]));
+}
+
+#[test]
+fn a_preset_that_is_left_has_to_fit() {
+    let other = device("7654321", &[("steps", Number(8192)), ("preset", Number(5000))]);
+    let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
+    let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };
+    assert_eq!(plan_restore(&profile(MINE), &other, options), Err(left));
+    assert!(plan_restore(&profile(MINE), &other, RestoreOptions { with_mounting: true, ..options }).is_ok());
+}
+
+/// Issue 22.9: an encoder that gives its steps less one, or that counts no turns, is of another type, which needs a permit of
+/// its own; another serial number needs the other one beside it.
+#[test]
+fn another_type_needs_a_permit_of_its_own() {
+    let mut own = device(MINE, &[("preset", Number(7))]);
+    let (device_only, type_only) = (
+        RestoreOptions { allow_other_device: true, ..RestoreOptions::default() },
+        RestoreOptions { allow_other_type: true, ..RestoreOptions::default() },
+    );
+    for other in [0, 1, 3] {
+        own.identity.flags = Some(Flags::new(value(other)));
+        let types = OtherType { profile: Flags::new(value(2)), device: Flags::new(value(other)) };
+        for refused in [RestoreOptions::default(), device_only] {
+            assert_eq!(plan_restore(&profile(MINE), &own, refused), Err(types.into()));
+        }
+        // The same number of another type is another encoder: it keeps its mounting.
+        let restore = plan_restore(&profile(MINE), &own, type_only).unwrap();
+        assert_eq!(restore.mounting_left, [Item::Preset]);
+        let mut two = own.clone();
+        two.identity.serial_number = "7654321".to_owned();
+        assert!(matches!(plan_restore(&profile(MINE), &two, type_only), Err(PlanError::OtherDevice { .. })));
+        let both = RestoreOptions { allow_other_type: true, ..device_only };
+        assert!(plan_restore(&profile(MINE), &two, both).is_ok());
+    }
+    // Bits of which nothing is known make no type.
+    own.identity.flags = Some(Flags::new(value(6)));
+    assert!(plan_restore(&profile(MINE), &own, RestoreOptions::default()).is_ok());
+    own.identity.flags = None;
+    assert!(plan_restore(&profile(MINE), &own, RestoreOptions::default()).is_ok());
+}
+
+#[test]
+fn programs_are_read_as_far_as_they_are_needed() {
+    let mut of = profile(MINE);
+    let numbers = |profile: &InterbusProfile| -> Vec<u8> {
+        programs_needed(profile).into_iter().map(ProgramNumber::get).collect()
+    };
+    assert_eq!(numbers(&of), [1, 2, 3, 4, 5, 6, 7, 8]);
+    of.image.programs[..6].fill(None);
+    assert_eq!(numbers(&of), [7, 8]);
+    of.image.programs.fill(None);
+    assert_eq!(numbers(&of), [1]);
+    of.image.shift = None;
+    assert!(numbers(&of).is_empty());
+    // What it says nothing about is left alone.
+    let restore = plan_restore(&of, &device(MINE, &[("cam-mask:2", Mask(0))]), RestoreOptions::default()).unwrap();
+    assert_eq!((restore.plan.is_empty(), restore.unchanged), (true, 5));
+}
+
+#[test]
+fn what_the_encoder_does_not_have_is_named() {
+    let mut own = device(MINE, &[]);
+    (own.image.shift, own.image.programs[2]) = (None, None);
+    let restore = plan_restore(&profile(MINE), &own, RestoreOptions::default()).unwrap();
+    assert_eq!((restore.plan.is_empty(), restore.missing.len()), (true, 1 + 9));
+    assert_eq!(restore.missing[..3], ["shift", "cam-mask:3", "cam:3:0"]);
+}
+
+/// Onto an encoder whose programs are those of the tests.
+#[test]
+fn the_ready_made_profiles_do_what_they_say() {
+    let read = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/interbus").join(name);
+        let text = std::fs::read_to_string(path).unwrap();
+        let document = Document::parse(&text, InterbusProfile::FORMATS).unwrap();
+        assert_eq!(document.emit(), text, "as this program writes it");
+        document.body.into_profile().unwrap()
+    };
+    let machine = read("packaging-machine.ron");
+    let now = device(MINE, &[]);
+    let restore = plan_restore(&machine, &now, RestoreOptions::default()).unwrap();
+    // Three programs; steps, turns and direction are those of the tests, the preset belongs to the mounting.
+    assert_eq!((restore.plan.ops.len(), restore.plan.write_cycles()), (3, 3));
+    assert_eq!((restore.mounting_left, restore.missing), (vec![Item::Preset], Vec::<String>::new()));
+    let after = machine.image.known().map(|(number, own)| (machine.names.program(number), own.outputs(value(1500))));
+    assert_eq!(
+        after.collect::<Vec<_>>(),
+        [("carton 120 mm", 1 << 2), ("carton 180 mm", 1 << 2), ("set-up, glue off", 0)]
+    );
+    // 100 steps a millimetre over 2.5 m; the preset is not within the range that the encoder has.
+    let spindle = read("scaled-encoder.ron");
+    assert_eq!(spindle.image.parameters.gear().map(|gear| gear.steps()), Ok(250_000));
+    let with_it = RestoreOptions { with_mounting: true, ..RestoreOptions::default() };
+    let restore = plan_restore(&spindle, &now, with_it).unwrap();
+    let expected = ["revolutions: 1 → 250, steps: 3600 → 250000, direction: cw → ccw, preset: 500 → 125000"];
+    assert_eq!(operations(&restore), expected);
+}
+
+#[test]
+fn a_comparison_names_what_differs() {
+    let (left, mut right) = (profile(MINE), profile("7654321"));
+    right.recorded.temperature_tenths = None;
+    assert_eq!(compare(&left, &right).compared, 78);
+    assert!(compare(&left, &right).differences.is_empty());
+    right.image = with(&right.image, &[("direction", ItemValue::Direction(super::super::Direction::Counterclockwise))]);
+    right.image = with(&right.image, &[("cam:2:5", Cam(edges(1, 2))), ("cam-mask:2", Mask(0x0F))]);
+    right.image.shift = WindowShift::new(25);
+    right.image.programs[7] = None;
+    let comparison = compare(&left, &right);
+    let found: Vec<[&str; 3]> =
+        comparison.differences.iter().map(|own| [own.item.as_str(), own.left.as_str(), own.right.as_str()]).collect();
+    let expected = [
+        ["direction", "cw", "ccw"],
+        ["shift", "0", "25"],
+        ["cam-mask:2", "0xFF", "0x0F"],
+        ["cam:2:5", "502..551", "1..2"],
+    ];
+    assert_eq!((found, comparison.compared), (expected.to_vec(), 69));
+    assert_eq!((comparison.only_left.len(), comparison.only_right.len()), (9, 0));
+    assert_eq!(comparison.only_left[1], "cam:8:0");
+}

@@ -1,0 +1,259 @@
+//! Tables of cams, as they stand in a spreadsheet or on a machine's drawing: read from a file or from what was pasted, and
+//! written. A row is a pulse: program, cam or name, start, stop; in steps, degrees or millimetres of the machine.
+//!
+//! What cannot be taken is told by line and column, and the rest is taken all the same. What an edge became on the
+//! encoder's steps stands beside what was asked for.
+
+mod columns;
+mod emit;
+mod read;
+#[cfg(test)]
+mod tests;
+
+pub use emit::emit as emit_table;
+
+use super::{Names, Outside, Scale, Unit};
+use crate::analysis::capture::Delimiter;
+use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
+
+/// How a table is to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableOptions {
+    /// What its edges are in.
+    pub scale: Scale,
+    /// Steps of the measuring range.
+    pub range: u32,
+    /// The program of rows that name none.
+    pub program: ProgramNumber,
+}
+
+/// A table that was read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CamTable {
+    /// What stands between its columns.
+    pub delimiter: Option<Delimiter>,
+    /// Its first line names the columns.
+    pub header: bool,
+    /// What could be taken, in the order of the table.
+    pub rows: Vec<TableRow>,
+    /// What could not, in the order of the table.
+    pub problems: Vec<TableProblem>,
+    /// What a person should know of what was taken.
+    pub notes: Vec<TableNote>,
+}
+
+/// A pulse.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableRow {
+    /// The line, counted from 1.
+    pub line: u64,
+    /// Its program.
+    pub program: ProgramNumber,
+    /// The cam that it takes.
+    pub cam: CamNumber,
+    /// What it is called; empty without a name.
+    pub name: String,
+    /// Its first position.
+    pub start: TableEdge,
+    /// Its last one.
+    pub stop: TableEdge,
+}
+
+/// An edge as it was asked for, and as the encoder can have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableEdge {
+    /// As it stands in the table, in units.
+    pub asked: f64,
+    /// On the encoder.
+    pub step: u32,
+    /// How far that is beyond what was asked for, in units.
+    pub off: f64,
+}
+
+/// Something that could not be taken.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("line {line}, column {column}: {what}")]
+pub struct TableProblem {
+    /// The line, counted from 1.
+    pub line: u64,
+    /// The column, counted from 1.
+    pub column: u64,
+    /// What is wrong.
+    pub what: Wrong,
+}
+
+/// What is wrong in a line.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Wrong {
+    /// There is nothing in the table.
+    #[error("the table has no rows")]
+    Empty,
+    /// A header without a start or a stop.
+    #[error("the header names no column for the {0}")]
+    NoColumn(Column),
+    /// The line ends before this column.
+    #[error("the {0} is missing")]
+    Missing(Column),
+    /// No number.
+    #[error("{text:?} is no number")]
+    Number {
+        /// As it stands there.
+        text: String,
+    },
+    /// No program.
+    #[error("{text:?} is no cam program: there are 1 to 8")]
+    Program {
+        /// As it stands there.
+        text: String,
+    },
+    /// No cam.
+    #[error("{text:?} is no cam: there are 0 to 7")]
+    Cam {
+        /// As it stands there.
+        text: String,
+    },
+    /// Beyond the measuring range.
+    #[error("the {column} {0} within the measuring range", .outside)]
+    Outside {
+        /// Which edge.
+        column: Column,
+        /// With the limits, in units.
+        outside: Outside,
+    },
+    /// All eight cams of the program are taken.
+    #[error("program {} has no cam left: it has eight", .0.get())]
+    Full(ProgramNumber),
+    /// This cam of the program stands in an earlier line, which counts.
+    #[error("cam {} of program {} stands in line {first} already", cam.get(), program.get())]
+    Twice {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+        /// The line that counts.
+        first: u64,
+    },
+    /// A name that is too long.
+    #[error("a name has at most {most} characters")]
+    Name {
+        /// So many.
+        most: usize,
+    },
+}
+
+/// Something about what was taken.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TableNote {
+    /// Several pulses on one track, each of which takes a cam of its own.
+    Pulses {
+        /// In this program.
+        program: ProgramNumber,
+        /// The track's name.
+        name: String,
+        /// The cams that they take.
+        cams: Vec<CamNumber>,
+    },
+    /// The first line names no column that is known: they are taken in the usual order.
+    OtherHeader,
+    /// The header names another unit than the one that counts.
+    OtherUnit {
+        /// As it stands in the header.
+        header: Unit,
+        /// The one that counts.
+        used: Unit,
+    },
+}
+
+/// A column by what it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Column {
+    /// 1 to 8.
+    Program,
+    /// 0 to 7.
+    Cam,
+    /// A track.
+    Name,
+    /// The first position.
+    Start,
+    /// The last one.
+    Stop,
+}
+
+/// A program as a table has it: its cams work, and no others. The edges of those others stay as they are.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Filled {
+    /// Which one.
+    pub program: ProgramNumber,
+    /// Its cams.
+    pub cams: [Option<Cam>; Program::CAMS],
+    /// What they are called; empty where they have no name.
+    pub names: [String; Program::CAMS],
+}
+
+/// The most characters of a cam's name.
+pub const LONGEST_NAME: usize = 40;
+
+impl std::fmt::Display for Column {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Column::Program => "program",
+            Column::Cam => "cam",
+            Column::Name => "name",
+            Column::Start => "start",
+            Column::Stop => "stop",
+        })
+    }
+}
+
+impl TableOptions {
+    /// Reads a table. Nothing of it is lost but what is told.
+    pub fn read(&self, text: &str) -> CamTable {
+        read::read(self, text)
+    }
+}
+
+impl CamTable {
+    /// The programs that it has something of, as edits take them.
+    pub fn filled(&self) -> Vec<Filled> {
+        let own = |program| self.rows.iter().filter(move |row| row.program == program);
+        ProgramNumber::all()
+            .filter(|program| own(*program).next().is_some())
+            .map(|program| {
+                let mut filled = Filled { program, cams: Default::default(), names: Default::default() };
+                for row in own(program) {
+                    let at = usize::from(row.cam.get());
+                    if let Some((cam, name)) = filled.cams.get_mut(at).zip(filled.names.get_mut(at)) {
+                        *cam = Some(row.cam());
+                        name.clone_from(&row.name);
+                    }
+                }
+                filled
+            })
+            .collect()
+    }
+
+    /// The rows with an edge that is not where it was asked for.
+    pub fn rounded(&self) -> impl Iterator<Item = &TableRow> {
+        self.rows.iter().filter(|row| row.start.is_off() || row.stop.is_off())
+    }
+
+    /// The most that an edge is off, in units.
+    pub fn most_off(&self) -> f64 {
+        let edges = self.rows.iter().flat_map(|row| [row.start, row.stop]);
+        edges.map(|edge| edge.off.abs()).fold(0.0, f64::max)
+    }
+}
+
+impl TableRow {
+    /// Its edges.
+    pub fn cam(&self) -> Cam {
+        Cam { start: Value::of_word(self.start.step), stop: Value::of_word(self.stop.step) }
+    }
+}
+
+impl TableEdge {
+    /// It is not where it was asked for.
+    pub fn is_off(self) -> bool {
+        self.off.abs() > 1e-9 * self.asked.abs().max(1.0)
+    }
+}

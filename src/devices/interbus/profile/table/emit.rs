@@ -1,0 +1,56 @@
+//! Cams as a table: those that work, which is what a table that is read says of them.
+
+use std::fmt::Write;
+
+use super::{Names, Scale, Unit};
+use crate::devices::interbus::profile::Image;
+use crate::devices::interbus::protocol::CamNumber;
+
+/// The cams of all known programs that work, in units of a machine. With a decimal comma the columns are separated by
+/// semicolons, else by commas. Reading it again gives the same steps.
+pub fn emit(image: &Image, names: &Names, scale: &Scale, decimal_comma: bool) -> String {
+    let separator = if decimal_comma { ';' } else { ',' };
+    let unit = match scale.unit() {
+        Unit::Steps => "steps",
+        Unit::Degrees => "deg",
+        Unit::Millimetres => "mm",
+    };
+    let mut table = String::new();
+    let header = ["program", "cam", "name", &format!("start [{unit}]"), &format!("stop [{unit}]")];
+    line(&mut table, &header, separator);
+    let range = image.parameters.steps;
+    let number = |step| {
+        let value = scale.value(step, range);
+        let text = format!("{value:.*}", scale.decimals());
+        if decimal_comma { text.replace('.', ",") } else { text }
+    };
+    for (program, own) in image.known() {
+        for (number_of, cam) in CamNumber::all().zip(&own.cams).filter(|(number, _)| own.is_on(*number)) {
+            let Some(cam) = cam else { continue };
+            let cells = [
+                program.get().to_string(),
+                number_of.get().to_string(),
+                names.cam(program, number_of).to_owned(),
+                number(cam.start.get()),
+                number(cam.stop.get()),
+            ];
+            line(&mut table, &cells.each_ref().map(String::as_str), separator);
+        }
+    }
+    table
+}
+
+fn line(table: &mut String, cells: &[&str], separator: char) {
+    for (place, cell) in cells.iter().enumerate() {
+        if place > 0 {
+            table.push(separator);
+        }
+        if cell.contains([separator, '"', '\n', '\r']) {
+            // Writing into a text cannot fail.
+            let _ = write!(table, "\"{}\"", cell.replace('"', "\"\""));
+        } else {
+            table.push_str(cell);
+        }
+    }
+    table.push('\n');
+}

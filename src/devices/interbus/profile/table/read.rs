@@ -1,0 +1,271 @@
+//! A table's text to rows: split by csv-core, columns by their header, each edge to the nearest step.
+
+use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
+
+use super::columns::{self, Columns};
+use super::{CamTable, Column, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableRow, Wrong};
+use crate::analysis::capture::Delimiter;
+use crate::devices::interbus::profile::{Outside, Placed, Unit};
+use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
+
+/// What is more is no table of cams: eight programs of eight, with room for what is wrong in it.
+const MOST_ROWS: usize = 1000;
+/// Letters of a wrong cell that are told.
+const SHOWN: usize = 24;
+
+/// A line, split.
+struct Line {
+    /// Counted from 1.
+    number: u64,
+    cells: Vec<String>,
+}
+
+/// A row whose cam may be open still.
+struct Draft {
+    line: u64,
+    /// The column that named the cam, or the first one.
+    column: u64,
+    program: ProgramNumber,
+    cam: Option<CamNumber>,
+    name: String,
+    start: TableEdge,
+    stop: TableEdge,
+}
+
+pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
+    let text = text.trim_start_matches('\u{FEFF}');
+    let delimiter = columns::delimiter(text);
+    let lines = split(text, delimiter);
+    let mut table = CamTable { delimiter: Some(delimiter), ..CamTable::default() };
+    let Some(first) = lines.first() else {
+        table.problems.push(TableProblem { line: 1, column: 1, what: Wrong::Empty });
+        return table;
+    };
+    let columns = table.columns(options, first, &lines);
+    if !table.problems.is_empty() {
+        return table;
+    }
+    let mut drafts = Vec::new();
+    for line in lines.iter().skip(usize::from(table.header)).take(MOST_ROWS) {
+        match draft(options, &columns, line, delimiter != Delimiter::Comma) {
+            Ok(draft) => drafts.push(draft),
+            Err(problem) => table.problems.push(problem),
+        }
+    }
+    if drafts.is_empty() && table.problems.is_empty() {
+        table.problems.push(TableProblem { line: first.number, column: 1, what: Wrong::Empty });
+    }
+    table.place(drafts);
+    table.problems.sort_by_key(|problem| (problem.line, problem.column));
+    table.note_pulses();
+    table
+}
+
+impl CamTable {
+    /// The columns, from the first line where it is a header.
+    fn columns(&mut self, options: &TableOptions, first: &Line, lines: &[Line]) -> Columns {
+        let cells: Vec<&str> = first.cells.iter().map(String::as_str).collect();
+        let count = lines.iter().map(|line| line.cells.len()).max().unwrap_or_default();
+        // A line without any number names something.
+        self.header = !cells.iter().any(|cell| number(cell, true).is_some());
+        if !self.header {
+            return Columns::of_count(count);
+        }
+        let known = Columns::of_header(&cells);
+        if known.is_none() {
+            self.notes.push(TableNote::OtherHeader);
+        }
+        let columns = known.unwrap_or_else(|| Columns::of_count(count));
+        let mut missing = [Column::Start, Column::Stop].into_iter().filter(|column| columns.place(*column).is_none());
+        if let Some(column) = missing.next() {
+            self.problems.push(TableProblem { line: first.number, column: 1, what: Wrong::NoColumn(column) });
+        }
+        let named = [Column::Start, Column::Stop].into_iter().filter_map(|column| cells.get(columns.place(column)?));
+        let used = options.scale.unit();
+        if let Some(header) = named.filter_map(|cell| columns::unit(cell)).find(|unit| *unit != used) {
+            self.notes.push(TableNote::OtherUnit { header, used });
+        }
+        columns
+    }
+
+    /// Gives each row its cam: those that name one first, then the others what is left.
+    fn place(&mut self, drafts: Vec<Draft>) {
+        let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
+        let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
+        let wrong = |draft: &Draft, what| TableProblem { line: draft.line, column: draft.column, what };
+        for (draft, own) in drafts.iter().zip(&mut rows) {
+            let Some(cam) = draft.cam else { continue };
+            let earlier = taken.iter().find(|(program, number, _)| (*program, *number) == (draft.program, cam));
+            match earlier.map(|(.., line)| *line) {
+                Some(first) => {
+                    self.problems.push(wrong(draft, Wrong::Twice { program: draft.program, cam, first }));
+                }
+                None => {
+                    taken.push((draft.program, cam, draft.line));
+                    *own = Some(cam);
+                }
+            }
+        }
+        for (draft, own) in drafts.iter().zip(&mut rows).filter(|(draft, _)| draft.cam.is_none()) {
+            let is_free =
+                |cam: &CamNumber| !taken.iter().any(|(program, own, _)| (*program, *own) == (draft.program, *cam));
+            *own = CamNumber::all().find(is_free);
+            match own {
+                Some(cam) => taken.push((draft.program, *cam, draft.line)),
+                None => self.problems.push(wrong(draft, Wrong::Full(draft.program))),
+            }
+        }
+        let placed = drafts.into_iter().zip(rows).filter_map(|(draft, cam)| {
+            let Draft { line, program, name, start, stop, .. } = draft;
+            Some(TableRow { line, program, cam: cam?, name, start, stop })
+        });
+        self.rows = placed.collect();
+    }
+
+    /// Says where several pulses of one track take a cam each.
+    fn note_pulses(&mut self) {
+        for program in ProgramNumber::all() {
+            let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
+            for row in self.rows.iter().filter(|row| row.program == program && !row.name.is_empty()) {
+                let track = row.name.to_lowercase();
+                match tracks.iter_mut().find(|(own, ..)| *own == track) {
+                    Some((.., cams)) => cams.push(row.cam),
+                    None => tracks.push((track, row.name.clone(), vec![row.cam])),
+                }
+            }
+            let several = tracks.into_iter().filter(|(.., cams)| cams.len() > 1);
+            self.notes.extend(several.map(|(_, name, cams)| TableNote::Pulses { program, name, cams }));
+        }
+    }
+}
+
+/// The lines with something in them.
+fn split(text: &str, delimiter: Delimiter) -> Vec<Line> {
+    let mut lines = Vec::new();
+    for (line, number) in text.lines().zip(1..) {
+        // A line is a row: a quote that is never closed takes one line with it, not all.
+        let cells = cells(&mut ReaderBuilder::new().delimiter(delimiter.byte()).build(), line);
+        if cells.iter().any(|cell| !cell.is_empty()) {
+            lines.push(Line { number, cells });
+        }
+    }
+    lines
+}
+
+/// The cells of a line, without quotes and blanks around them.
+fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
+    // Quotes are left out: there is never more than there was, nor more ends than characters.
+    let (mut out, mut ends) = (vec![0; line.len() + 1], vec![0; line.len() + 2]);
+    let (mut read, mut written, mut ended) = (0, 0, 0);
+    loop {
+        // An empty input ends the row.
+        let input = line.as_bytes().get(read..).unwrap_or_default();
+        let (Some(room), Some(marks)) = (out.get_mut(written..), ends.get_mut(ended..)) else { break };
+        let (result, taken, wrote, fields) = reader.read_record(input, room, marks);
+        (read, written, ended) = (read + taken, written + wrote, ended + fields);
+        if !matches!(result, ReadRecordResult::InputEmpty) || taken == 0 {
+            break;
+        }
+    }
+    let text = out.get(..written).unwrap_or_default();
+    let mut begin = 0;
+    let cells = ends.iter().take(ended).map(|end| {
+        let cell = text.get(begin..*end).unwrap_or_default();
+        begin = *end;
+        String::from_utf8_lossy(cell).trim().to_owned()
+    });
+    cells.collect()
+}
+
+fn draft(options: &TableOptions, columns: &Columns, line: &Line, comma: bool) -> Result<Draft, TableProblem> {
+    let at = |column| columns.place(column).map_or(1, |place| place as u64 + 1);
+    let wrong = |column, what| TableProblem { line: line.number, column: at(column), what };
+    let cell = |column| columns.place(column).and_then(|place| line.cells.get(place)).map_or("", String::as_str);
+    let program = match cell(Column::Program) {
+        "" => options.program,
+        text => {
+            let own =
+                whole(text, &["program", "programm", "p"]).and_then(|own| ProgramNumber::new(u8::try_from(own).ok()?));
+            own.ok_or_else(|| wrong(Column::Program, Wrong::Program { text: told(text) }))?
+        }
+    };
+    let (mut cam, mut name) = (None, cell(Column::Name).to_owned());
+    let text = cell(Column::Cam);
+    match whole(text, &["cam", "nocken", "nocke"]) {
+        Some(own) => {
+            let own = u8::try_from(own).ok().and_then(CamNumber::new);
+            cam = Some(own.ok_or_else(|| wrong(Column::Cam, Wrong::Cam { text: told(text) }))?);
+        }
+        None if text.is_empty() => {}
+        None if columns.cam_or_name => text.clone_into(&mut name),
+        None => return Err(wrong(Column::Cam, Wrong::Cam { text: told(text) })),
+    }
+    if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
+        let column = if columns.cam_or_name { Column::Cam } else { Column::Name };
+        return Err(wrong(column, Wrong::Name { most: LONGEST_NAME }));
+    }
+    let value = |column| match cell(column) {
+        "" => Err(wrong(column, Wrong::Missing(column))),
+        text => number(text, comma).ok_or_else(|| wrong(column, Wrong::Number { text: told(text) })),
+    };
+    let (start, stop) = (value(Column::Start)?, value(Column::Stop)?);
+    let outside = |column| move |outside| wrong(column, Wrong::Outside { column, outside });
+    let (start, stop) = edges(options, start, stop, outside(Column::Start), outside(Column::Stop))?;
+    let column = if columns.place(Column::Cam).is_some() { at(Column::Cam) } else { at(Column::Name) };
+    Ok(Draft { line: line.number, column, program, cam, name, start, stop })
+}
+
+/// Both edges on steps. A pulse that goes once around ends right before it begins.
+fn edges(
+    options: &TableOptions,
+    start: f64,
+    stop: f64,
+    start_outside: impl Fn(Outside) -> TableProblem,
+    stop_outside: impl Fn(Outside) -> TableProblem,
+) -> Result<(TableEdge, TableEdge), TableProblem> {
+    let (scale, range) = (&options.scale, options.range);
+    let edge = |asked, Placed { step, off }| TableEdge { asked, step, off };
+    let first = scale.place(start, range).map_err(start_outside)?;
+    let span = scale.span(range);
+    let one = span / f64::from(range.max(1));
+    if scale.is_round(range) && scale.unit() != Unit::Steps && (stop - start - span).abs() < one / 2.0 {
+        let step = first.step.checked_sub(1).unwrap_or(range.saturating_sub(1));
+        let off = start + first.off + span - one - stop;
+        return Ok((edge(start, first), TableEdge { asked: stop, step, off }));
+    }
+    let last = scale.place(stop, range).map_err(stop_outside)?;
+    Ok((edge(start, first), edge(stop, last)))
+}
+
+/// A number with a point, or a comma where that stands between no columns; a unit may follow it.
+fn number(text: &str, comma: bool) -> Option<f64> {
+    let text = text.trim();
+    let text =
+        ["°", "mm", "deg", "Grad", "grad"].iter().find_map(|unit| text.strip_suffix(unit)).unwrap_or(text).trim_end();
+    let text = text.replace('−', "-");
+    let text = if comma { text.replace(',', ".") } else { text };
+    // The parser would take words for infinity.
+    let is_plain = text.bytes().all(|c| c.is_ascii_digit() || matches!(c, b'.' | b'-' | b'+' | b'e' | b'E'));
+    text.parse().ok().filter(|value: &f64| is_plain && value.is_finite())
+}
+
+/// A whole number, with or without one of these words before it.
+fn whole(text: &str, words: &[&str]) -> Option<u64> {
+    let text = text.trim().to_lowercase();
+    let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);
+    // Digits alone: a track may well be called 1e3.
+    let is_whole = !bare.is_empty() && bare.bytes().all(|c| c.is_ascii_digit());
+    bare.parse().ok().filter(|_| is_whole)
+}
+
+/// The beginning of a cell.
+fn told(text: &str) -> String {
+    let mut told: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
+    if text.chars().count() > SHOWN {
+        told.push('…');
+    }
+    told
+}
+
+/// A table has room for every cam.
+const _: () = assert!(MOST_ROWS >= Program::CAMS * ProgramNumber::COUNT);

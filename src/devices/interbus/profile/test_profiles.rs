@@ -1,0 +1,69 @@
+//! Profiles for tests: an encoder with programs, to be changed.
+
+use super::{Direction, Image, InterbusProfile, Item, ItemValue, Parameters, ProfileIdentity, Recorded};
+use crate::devices::interbus::protocol::{
+    Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
+};
+
+pub(super) fn value(number: u32) -> Value {
+    Value::new(number).unwrap()
+}
+
+pub(super) fn program(number: u8) -> ProgramNumber {
+    ProgramNumber::new(number).unwrap()
+}
+
+pub(super) fn cam(number: u8) -> CamNumber {
+    CamNumber::new(number).unwrap()
+}
+
+pub(super) fn edges(start: u32, stop: u32) -> Cam {
+    Cam { start: value(start), stop: value(stop) }
+}
+
+pub(super) fn item(text: &str) -> Item {
+    text.parse().unwrap()
+}
+
+/// With items changed.
+pub(super) fn with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
+    let mut image = image.clone();
+    for (name, value) in items {
+        assert!(image.put(item(name), *value), "{name}");
+    }
+    image
+}
+
+/// 3600 steps over a turn, and in each program 8 cams: cam c of program p from 100·c + p to 100·c + p + 49, all of which work.
+pub(super) fn image() -> Image {
+    let parameters =
+        Parameters { steps: 3600, revolutions: 1, direction: Direction::Clockwise, preset: 500, zero_shift: 0 };
+    let mut image = Image::of(parameters);
+    image.shift = WindowShift::new(0);
+    for number in ProgramNumber::all() {
+        let mut own = Program { mask: 0xFF, ..Program::default() };
+        for cam in CamNumber::all() {
+            let start = 100 * u32::from(cam.get()) + u32::from(number.get());
+            own.set_cam(cam, Some(edges(start, start + 49)));
+        }
+        *image.program_mut(number).unwrap() = Some(own);
+    }
+    image
+}
+
+pub(super) fn identity(serial_number: &str) -> ProfileIdentity {
+    let flags = Some(Flags::new(value(2)));
+    ProfileIdentity { serial_number: serial_number.to_owned(), flags, ..ProfileIdentity::default() }
+}
+
+pub(super) fn profile(serial_number: &str) -> InterbusProfile {
+    let recorded = Recorded {
+        software_version: Some(0x102),
+        operating_minutes: Some(10_000),
+        temperature_tenths: Some(-100),
+        mode: Some(StartupMode::K3),
+        preset_flag: Some(0),
+        unknown: Default::default(),
+    };
+    InterbusProfile::of(identity(serial_number), image(), recorded)
+}

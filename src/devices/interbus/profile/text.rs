@@ -1,0 +1,249 @@
+//! The text of an INTERBUS profile: written for people, read from their hands. What is wrong names its entry.
+
+use super::{
+    Direction, Image, InterbusProfile, Item, ItemError, Kept, MountingMark, Names, Parameters, ProfileIdentity,
+    Recorded,
+};
+use crate::devices::interbus::protocol::{
+    self, Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
+};
+use crate::profile::mounting::NEVER_BY_ITSELF;
+use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::{Profile, ProfileError};
+
+const NUMBER: &str = "a number from 0 to 33554431";
+const WHOLE: &str = "a whole number";
+const TEXT: &str = "a text";
+const DIRECTION: &str = "cw or ccw";
+const SHIFT: &str = "a number from 0 to 25";
+
+impl Profile for InterbusProfile {
+    const KIND: &'static str = protocol::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let identity = match entries.optional_structure("identity")? {
+            Some(entries) => read_identity(entries)?,
+            None => ProfileIdentity::default(),
+        };
+        let mut unknown = Kept::default();
+        let mut image = Image::of(read_parameters(entries.structure("parameters")?, &mut unknown)?);
+        image.shift = entries.optional("shift", SHIFT)?.map(|shift| window_shift(entries, shift)).transpose()?;
+        let mut names = Names::default();
+        for entries in entries.structures("programs")? {
+            let path = entries.path_of("program");
+            let (number, program) = read_program(entries, &mut names, &mut unknown)?;
+            match image.program_mut(number) {
+                Some(place @ None) => *place = Some(program),
+                _ => {
+                    let what = format!("program {} stands twice", number.get());
+                    return Err(ProfileError::Value { path, what });
+                }
+            }
+        }
+        let mounting = MountingMark::read_all(entries, "a text such as \"preset\"", read_marked)?;
+        let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
+        Ok(InterbusProfile { identity, image, names, mounting, recorded, unknown })
+    }
+
+    fn write(&self, writer: &mut Writer) {
+        // A profile that was made by hand is of no encoder.
+        if self.identity != ProfileIdentity::default() {
+            self.identity.write(writer);
+        }
+        if self.recorded != Recorded::default() {
+            self.recorded.write(writer);
+        }
+        MountingMark::write_all(&self.mounting, NEVER_BY_ITSELF, writer);
+        self.write_parameters(writer);
+        if let Some(shift) = self.image.shift {
+            number(writer, "shift", shift.get(), "of the position under its window in cam mode");
+        }
+        if self.image.known().next().is_some() {
+            writer.open("programs", '[');
+            for (number, program) in self.image.known() {
+                self.write_program(writer, number, program);
+            }
+            writer.close(']');
+        }
+    }
+}
+
+impl InterbusProfile {
+    fn write_parameters(&self, writer: &mut Writer) {
+        let Parameters { steps, revolutions, direction, preset, zero_shift } = self.image.parameters;
+        writer.open("parameters", '(');
+        number(writer, "steps", steps, "over all turns: the measuring range");
+        number(writer, "revolutions", revolutions, "");
+        writer.text("direction", direction.word());
+        number(writer, "preset", preset, "stored, never fired by a restore");
+        number(writer, "zero_shift", zero_shift, "");
+        writer.unknown(&self.unknown.parameters);
+        writer.close(')');
+    }
+
+    fn write_program(&self, writer: &mut Writer, at: ProgramNumber, program: &Program) {
+        writer.open("", '(');
+        number(writer, "program", at.get(), "");
+        name(writer, self.names.program(at));
+        let active = CamNumber::all().filter(|cam| program.is_on(*cam)).map(|cam| cam.get().to_string());
+        let active = active.collect::<Vec<_>>().join(", ");
+        let comment = if active.is_empty() { "no cam works".to_owned() } else { format!("these cams work: {active}") };
+        writer.entry("mask", &format!("0x{:02X}", program.mask), &comment);
+        writer.open("cams", '[');
+        for cam in CamNumber::all() {
+            let Some(Cam { start, stop }) = program.cam(cam) else { continue };
+            let called = match self.names.cam(at, cam) {
+                "" => String::new(),
+                called => format!(", name: {}", quoted(called)),
+            };
+            let more = self.unknown.cams.get(&(at, cam)).map(entries_text).unwrap_or_default();
+            let (cam, start, stop) = (cam.get(), start.get(), stop.get());
+            writer.entry_in_list(&format!("(cam: {cam}, start: {start}, stop: {stop}{called}{more})"));
+        }
+        writer.close(']');
+        if let Some(unknown) = self.unknown.programs.get(&at) {
+            writer.unknown(unknown);
+        }
+        writer.close(')');
+    }
+}
+
+impl ProfileIdentity {
+    fn write(&self, writer: &mut Writer) {
+        writer.open("identity", '(');
+        writer.text("serial_number", &self.serial_number);
+        if let Some(flags) = self.flags {
+            number(writer, "flags", flags.value().get(), flags.type_name());
+        }
+        writer.unknown(&self.unknown);
+        writer.close(')');
+    }
+}
+
+impl Recorded {
+    fn write(&self, writer: &mut Writer) {
+        writer.comment("recorded, neither compared nor restored");
+        writer.open("recorded", '(');
+        if let Some(version) = self.software_version {
+            number(writer, "software_version", version, "");
+        }
+        if let Some(minutes) = self.operating_minutes {
+            number(writer, "operating_minutes", minutes, "");
+        }
+        if let Some(tenths) = self.temperature_tenths {
+            let celsius = format!("{:.1} °C", f64::from(tenths) / 10.0);
+            writer.entry("temperature_tenths", &tenths.to_string(), &celsius);
+        }
+        if let Some(mode) = self.mode {
+            number(writer, "startup_mode", mode.emit(), "");
+        }
+        if let Some(flag) = self.preset_flag {
+            number(writer, "preset_flag", flag, "");
+        }
+        writer.unknown(&self.unknown);
+        writer.close(')');
+    }
+}
+
+fn number(writer: &mut Writer, name: &str, value: impl Into<u32>, comment: &str) {
+    writer.entry(name, &value.into().to_string(), comment);
+}
+
+fn name(writer: &mut Writer, name: &str) {
+    if !name.is_empty() {
+        writer.text("name", name);
+    }
+}
+
+fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
+    let serial_number = entries.optional("serial_number", TEXT)?.unwrap_or_default();
+    let flags = optional_value(&mut entries, "flags")?.map(Flags::new);
+    Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest()? })
+}
+
+fn read_parameters(mut entries: Entries, unknown: &mut Kept) -> Result<Parameters, ProfileError> {
+    let steps = value(&mut entries, "steps")?.get();
+    let revolutions = value(&mut entries, "revolutions")?.get();
+    let path = entries.path_of("direction");
+    let word: String = entries.required("direction", DIRECTION)?;
+    let direction = word.parse::<Direction>().map_err(|_| ProfileError::Shape { path, expected: DIRECTION })?;
+    let preset = value(&mut entries, "preset")?.get();
+    let zero_shift = value(&mut entries, "zero_shift")?.get();
+    unknown.parameters = entries.rest()?;
+    Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
+}
+
+fn read_program(
+    mut entries: Entries,
+    names: &mut Names,
+    unknown: &mut Kept,
+) -> Result<(ProgramNumber, Program), ProfileError> {
+    let path = entries.path_of("program");
+    let number: u32 = entries.required("program", WHOLE)?;
+    let at = u8::try_from(number)
+        .ok()
+        .and_then(ProgramNumber::new)
+        .ok_or_else(|| ProfileError::Value { path, what: ItemError::Program { number: number.into() }.to_string() })?;
+    names.set_program(at, entries.optional("name", TEXT)?.unwrap_or_default());
+    let mut program = Program { mask: entries.required("mask", BYTE)?, ..Program::default() };
+    for mut entries in entries.structures("cams")? {
+        let path = entries.path_of("cam");
+        let number: u32 = entries.required("cam", WHOLE)?;
+        let cam = u8::try_from(number).ok().and_then(CamNumber::new);
+        let wrong = |what: String| ProfileError::Value { path, what };
+        let Some(cam) = cam else {
+            return Err(wrong(ItemError::Cam { number: number.into() }.to_string()));
+        };
+        if program.cam(cam).is_some() {
+            return Err(wrong(format!("cam {number} stands twice")));
+        }
+        program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
+        names.set_cam(at, cam, entries.optional("name", TEXT)?.unwrap_or_default());
+        keep(&mut unknown.cams, (at, cam), entries.rest()?);
+    }
+    keep(&mut unknown.programs, at, entries.rest()?);
+    Ok((at, program))
+}
+
+fn keep<K: Ord>(kept: &mut std::collections::BTreeMap<K, Unknown>, place: K, unknown: Unknown) {
+    if !unknown.is_empty() {
+        kept.insert(place, unknown);
+    }
+}
+
+fn read_marked(text: &str) -> Result<Item, String> {
+    match text.parse::<Item>() {
+        Ok(item) if item.is_writable() => Ok(item),
+        Ok(item) => Err(format!("{item} is measured, and belongs to no mounting")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
+    Ok(Recorded {
+        software_version: entries.optional("software_version", WHOLE)?,
+        operating_minutes: entries.optional("operating_minutes", WHOLE)?,
+        temperature_tenths: entries.optional("temperature_tenths", WHOLE)?,
+        mode: optional_value(&mut entries, "startup_mode")?.map(StartupMode::parse),
+        preset_flag: entries.optional("preset_flag", WHOLE)?,
+        unknown: entries.rest()?,
+    })
+}
+
+/// A number that has room in a word.
+fn value(entries: &mut Entries, name: &str) -> Result<Value, ProfileError> {
+    optional_value(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
+}
+
+fn optional_value(entries: &mut Entries, name: &str) -> Result<Option<Value>, ProfileError> {
+    let Some(number) = entries.optional(name, NUMBER)? else { return Ok(None) };
+    let shape = || ProfileError::Shape { path: entries.path_of(name), expected: NUMBER };
+    Value::new(number).ok_or_else(shape).map(Some)
+}
+
+fn window_shift(entries: &Entries, shift: u8) -> Result<WindowShift, ProfileError> {
+    WindowShift::new(shift).ok_or_else(|| ProfileError::Shape { path: entries.path_of("shift"), expected: SHIFT })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,392 @@
+//! The encoder without any line: what an OUT word does at a moment, and what its IN word is then (reference 2 to 5).
+//!
+//! ```text
+//! running ── parameter, cam word ──▶ setting ── run ──▶ store, running
+//!    ├── 2021xxxxh, 2020xxxxh ──▶ reading out ── normal, run ──▶ running (setting, if something was set and not stored)
+//!    └── 2080000ph ──▶ cam program; of a changed one before it a store
+//! ```
+//! Chosen here (`U`): a store is spent for every parameterisation and every program into which anything was written, be it
+//! what it held; a parameter that comes where none is legal is an unknown one (84000000), and any other word that means
+//! nothing in its mode gets no reaction; the mode, the place of the zero point and a preset that was fired survive a loss
+//! of power without a store; a speed has its sign in 25 bits; IN is 86000000 while what the EEPROM held is lost.
+
+mod cams;
+mod position;
+mod read_out;
+
+use std::time::Duration;
+
+use super::config::Config;
+use super::memory::{Eeprom, Ended, Memory, Stored};
+use super::shaft::Shaft;
+use crate::devices::interbus::protocol::{
+    Class, Code, Command, Gear, Mode, Parameter, ProgramNumber, StartupMode, Value,
+};
+use crate::sim::{Faults, Motor};
+use crate::units::Moment;
+
+/// A virtual encoder.
+#[derive(Debug)]
+pub struct Encoder {
+    class: Class,
+    identity: Identity,
+    motor: Motor,
+    shaft: Shaft,
+    /// Steps of the disc between the shaft's place and the position's zero.
+    offset: i64,
+    mode: StartupMode,
+    doing: Doing,
+    /// What is set; a store keeps it.
+    memory: Memory,
+    eeprom: Eeprom,
+    /// What a store has to keep.
+    unstored: Option<Stored>,
+    power: bool,
+    /// What its master says; it stands there until it says another word.
+    out: u32,
+    says: Says,
+    /// The IN word that is still read after a new OUT word.
+    old: Old,
+    busy_until: Moment,
+    busy: Duration,
+    stale: u32,
+    acknowledges_selection: bool,
+}
+
+/// What it tells of itself.
+#[derive(Clone, Copy, Debug)]
+struct Identity {
+    serial_number: u32,
+    steps_minus_one: bool,
+    complement_bit: bool,
+    temperature: i32,
+    narrow_temperature: bool,
+    operating_time: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Doing {
+    Running,
+    /// A parameter or a cam word was the last: position and cam outputs do not count.
+    Setting,
+    ReadingOut,
+}
+
+/// What stands in the IN word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Says {
+    /// Position, speed or cam output, as they are at the moment.
+    Live,
+    Word(u32),
+}
+
+/// What was there before the OUT word changed. A cycle is every reading of the IN word; without one they go on by
+/// themselves.
+#[derive(Clone, Copy, Debug, Default)]
+struct Old {
+    word: u32,
+    /// In which it still stands there.
+    cycles: u32,
+    until: Moment,
+}
+
+/// Why a word is refused (reference 2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fault {
+    WrongData,
+    UnknownCode,
+    BeyondRange,
+}
+
+/// A position or cam value that does not count.
+const INVALID: u32 = 0x8000_0000;
+const LOST: u32 = 0x8600_0000;
+const BUSY: u32 = 0xC000_0000;
+/// Over a word that was received.
+const ECHO: u32 = 0xC000_0000;
+
+impl Fault {
+    const fn word(self) -> u32 {
+        match self {
+            Fault::WrongData => 0x8200_0000,
+            Fault::UnknownCode => 0x8400_0000,
+            Fault::BeyondRange => 0x9800_0004,
+        }
+    }
+}
+
+impl Encoder {
+    /// Chosen: how long a cycle takes in which nobody reads.
+    const CYCLE: Duration = Duration::from_millis(5);
+    /// Chosen; read-out 7.
+    const SOFTWARE_VERSION: u32 = 204;
+
+    /// The encoder that `config` wants; of several behind a gateway this one, counted from 0. It got its power long ago.
+    pub(super) fn new(config: &Config, number: u8) -> Self {
+        let memory = config.memory.clone();
+        Encoder {
+            class: config.class,
+            identity: Identity {
+                serial_number: Value::of_word(config.serial_number + u32::from(number)).get(),
+                steps_minus_one: config.steps_minus_one,
+                complement_bit: config.complement_bit,
+                temperature: config.temperature,
+                narrow_temperature: config.narrow_temperature,
+                operating_time: config.operating_time,
+            },
+            motor: Motor::at(config.rpm),
+            shaft: Shaft::new(config.position, config.rpm),
+            offset: 0,
+            mode: config.mode,
+            doing: Doing::Running,
+            eeprom: Eeprom::new(memory.clone(), config.stores, config.faults.die_in_store()),
+            memory,
+            unstored: None,
+            power: true,
+            out: 0,
+            says: Says::Live,
+            old: Old::default(),
+            busy_until: Moment::START,
+            busy: config.busy,
+            stale: config.stale,
+            acknowledges_selection: config.acknowledges_selection,
+        }
+    }
+
+    /// What turns its shaft.
+    pub fn motor(&self) -> Motor {
+        self.motor.clone()
+    }
+
+    /// Puts the shaft at a place in steps of the disc, of which a turn has 8192.
+    pub fn put_shaft(&mut self, now: Moment, place: i32) {
+        self.settle(now);
+        self.shaft.put(now, place);
+    }
+
+    /// What is set, stored or not.
+    pub const fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// What survives a loss of power.
+    pub const fn kept(&self) -> &Memory {
+        &self.eeprom.kept
+    }
+
+    /// How often its EEPROM was stored into.
+    pub const fn stores(&self) -> u32 {
+        self.eeprom.stores()
+    }
+
+    /// The mode that read-out 9 gives.
+    pub const fn startup_mode(&self) -> StartupMode {
+        self.mode
+    }
+
+    /// What it takes a word for.
+    pub const fn mode(&self) -> Mode {
+        match (self.mode, self.doing) {
+            (StartupMode::Cams(_), _) => Mode::Cam,
+            (_, Doing::Setting) => Mode::Parameterisation,
+            (_, Doing::ReadingOut) => Mode::ReadOut,
+            (StartupMode::Velocity, Doing::Running) => Mode::Velocity,
+            (_, Doing::Running) => Mode::Position,
+        }
+    }
+
+    /// The OUT word that stands there.
+    pub const fn out(&self) -> u32 {
+        self.out
+    }
+
+    /// Warms or cools it: tenths of a degree Celsius.
+    pub const fn set_temperature(&mut self, tenths: i32) {
+        self.identity.temperature = tenths;
+    }
+
+    /// Other faults of its EEPROM from now on; stores are counted on.
+    pub(super) fn set_faults(&mut self, faults: &Faults) {
+        self.eeprom.set_die_in_store(faults.die_in_store());
+    }
+
+    /// It has power, without which it has no words.
+    pub const fn has_power(&self) -> bool {
+        self.power
+    }
+
+    /// Takes the power away: what was not stored is forgotten.
+    pub fn disconnect(&mut self) {
+        self.power = false;
+        self.memory = self.eeprom.kept.clone();
+        (self.doing, self.unstored) = (Doing::Running, None);
+        (self.says, self.old) = (Says::Live, Old::default());
+    }
+
+    /// Gives the power back to an encoder that has lost it. What its master still says it takes as something new.
+    pub fn connect(&mut self, now: Moment) {
+        if !self.power {
+            self.power = true;
+            let out = std::mem::take(&mut self.out);
+            self.write(now, out);
+        }
+    }
+
+    /// Its master says this from `now` on.
+    pub fn write(&mut self, now: Moment, word: u32) {
+        self.settle(now);
+        let before = std::mem::replace(&mut self.out, word);
+        if word == before || !self.power || self.class != Class::K3 {
+            return;
+        }
+        self.old = Old { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
+        match Command::in_mode(word, self.mode()) {
+            Ok(command) => self.obey(now, command, before),
+            Err(_) => self.wonder(now, word),
+        }
+    }
+
+    /// Its IN word at `now`; `None` without power.
+    pub fn read(&mut self, now: Moment) -> Option<u32> {
+        self.settle(now);
+        if !self.power {
+            return None;
+        }
+        let word = self.shown(now);
+        self.old.cycles = self.old.cycles.saturating_sub(1);
+        Some(word)
+    }
+
+    fn obey(&mut self, now: Moment, command: Command, before: u32) {
+        match command {
+            Command::Normal if self.doing == Doing::ReadingOut => self.end_read_out(),
+            // What is not an edge of bit 31 changes nothing.
+            Command::Run if before >> 31 == 0 => self.run(),
+            Command::Normal | Command::Run | Command::Unknown(_) => {}
+            Command::Preset if self.memory.armed => {
+                self.fire(now);
+                (self.memory.armed, self.eeprom.kept.armed) = (false, false);
+            }
+            Command::Preset => {}
+            Command::FrabaPreset => self.fire(now),
+            Command::Set(parameter, value) => {
+                let taken = self.take(parameter, value).map(|()| Stored::Parameters);
+                self.set(now, taken);
+            }
+            Command::Velocity(on) => {
+                self.mode = if on { StartupMode::Velocity } else { StartupMode::K3 };
+                self.says = Says::Live;
+            }
+            Command::ReadOut(read_out) => self.read_out(now, read_out),
+            Command::Cams(program) => self.select(now, program),
+            Command::Activate(mask) => self.set_cams(now, |program, _| program.activate(mask)),
+            Command::CamStart(cam, value) => self.set_cams(now, |program, gear| program.start(cam, value, gear)),
+            Command::CamStop(cam, value) => self.set_cams(now, |program, gear| program.stop(cam, value, gear)),
+            Command::Shift(shift) => {
+                self.memory.shift = shift;
+                self.set_cams(now, |_, _| Ok(()));
+            }
+            Command::ReadActivation | Command::ReadCamStart(_) | Command::ReadCamStop(_) | Command::ReadShift => {
+                self.read_cams(command)
+            }
+        }
+    }
+
+    /// A word that means nothing in its mode. What a parameter, an edge, a shift or a read-out would look like gets the
+    /// error of its kind.
+    fn wonder(&mut self, now: Moment, word: u32) {
+        let of_cams = matches!(self.mode, StartupMode::Cams(_));
+        match (word >> 29, word >> 16) {
+            (0b000, _) if Code::of_word(word).get() != 0 => self.set(now, Err(Fault::UnknownCode)),
+            (0b010 | 0b011, _) if of_cams => self.set(now, Err(Fault::UnknownCode)),
+            (_, 0x2010) if of_cams => self.set(now, Err(Fault::WrongData)),
+            (_, 0x2020) if of_cams => self.show(None),
+            _ => {}
+        }
+    }
+
+    /// Something was set, or not: the IN word is its echo, or an error.
+    fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
+        let says = match taken {
+            Ok(_) => self.out | ECHO,
+            Err(fault) => fault.word(),
+        };
+        self.unstored = taken.ok().or(self.unstored);
+        self.turn_to(Doing::Setting, Says::Word(says));
+        self.busy_until = now + self.busy;
+    }
+
+    fn take(&mut self, parameter: Parameter, value: Value) -> Result<(), Fault> {
+        let less = u32::from(self.identity.steps_minus_one);
+        let (number, gear) = (value.get(), self.memory.gear);
+        let geared = |steps, turns| Gear::new(steps, turns).map_err(|_| Fault::WrongData);
+        let within = || parameter.check(number, gear).map(Value::get).map_err(|_| Fault::WrongData);
+        match parameter {
+            Parameter::Steps => self.memory.gear = geared(number + less, gear.turns())?,
+            Parameter::Turns => self.memory.gear = geared(gear.steps(), number)?,
+            Parameter::Direction => self.memory.counterclockwise = within()? == 4,
+            Parameter::Preset => (self.memory.preset, self.memory.armed) = (within()?, true),
+            Parameter::ZeroShift => self.memory.zero_shift = within()?,
+            Parameter::Default => {
+                within()?;
+                let Memory { shift, programs, .. } = self.memory.clone();
+                self.memory = Memory { shift, programs, ..Memory::delivered() };
+            }
+        }
+        Ok(())
+    }
+
+    /// The edge of run: back to position, speed or cam output.
+    fn run(&mut self) {
+        self.store();
+        self.turn_to(Doing::Running, Says::Live);
+    }
+
+    /// Keeps what was set, if anything was.
+    fn store(&mut self) {
+        let Some(what) = self.unstored.take() else { return };
+        match self.eeprom.store(&self.memory, what) {
+            Ended::Kept => {}
+            Ended::Worn => self.memory = self.eeprom.kept.clone(),
+            Ended::Died => self.disconnect(),
+        }
+    }
+
+    /// What stands in the IN word at `now`.
+    fn shown(&self, now: Moment) -> u32 {
+        let old = &self.old;
+        match self.says {
+            _ if old.cycles > 0 && now < old.until => old.word,
+            _ if now < self.busy_until => BUSY,
+            Says::Word(word) => word,
+            Says::Live => self.live(now),
+        }
+    }
+
+    /// From now on, without busy words.
+    const fn turn_to(&mut self, doing: Doing, says: Says) {
+        (self.doing, self.says, self.busy_until) = (doing, says, Moment::START);
+    }
+
+    fn settle(&mut self, now: Moment) {
+        let rpm = self.motor.rpm();
+        if rpm != self.shaft.rpm() {
+            self.shaft.set_rpm(now, rpm);
+        }
+    }
+
+    /// Cam mode with this program, or position mode. A program that was changed is stored before.
+    fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
+        self.store();
+        if !self.power {
+            return;
+        }
+        self.mode = program.map_or(StartupMode::K3, StartupMode::Cams);
+        if program.is_some() && self.acknowledges_selection {
+            self.turn_to(Doing::Setting, Says::Word(self.out | ECHO));
+            self.busy_until = now + self.busy;
+        } else {
+            self.turn_to(Doing::Running, Says::Live);
+        }
+    }
+}

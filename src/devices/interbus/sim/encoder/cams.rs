@@ -1,0 +1,55 @@
+//! What cam words set in the program that runs (reference 5).
+
+use super::{Doing, Encoder, Fault, INVALID, Says};
+use crate::devices::interbus::protocol::{CamNumber, Gear, Program, StartupMode, Value};
+use crate::devices::interbus::sim::memory::{Stored, cam_mut};
+use crate::units::Moment;
+
+/// The program that is being set.
+pub(super) struct Setting<'a>(&'a mut Program);
+
+impl Setting<'_> {
+    pub(super) fn start(&mut self, cam: CamNumber, value: Value, gear: Gear) -> Result<(), Fault> {
+        if let Some(cam) = cam_mut(self.0, cam) {
+            cam.start = within(value, gear)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn stop(&mut self, cam: CamNumber, value: Value, gear: Gear) -> Result<(), Fault> {
+        if let Some(cam) = cam_mut(self.0, cam) {
+            cam.stop = within(value, gear)?;
+        }
+        Ok(())
+    }
+
+    /// There are 8 cams: more of them are wrong data (reference 6.9, `U`).
+    pub(super) fn activate(&mut self, mask: u16) -> Result<(), Fault> {
+        self.0.mask = u8::try_from(mask).map_err(|_| Fault::WrongData)?;
+        Ok(())
+    }
+}
+
+/// An edge has to be a position that there is.
+fn within(value: Value, gear: Gear) -> Result<Value, Fault> {
+    if value.get() < gear.steps() { Ok(value) } else { Err(Fault::BeyondRange) }
+}
+
+impl Encoder {
+    /// Sets something of the program that runs.
+    pub(super) fn set_cams(&mut self, now: Moment, change: impl FnOnce(&mut Setting<'_>, Gear) -> Result<(), Fault>) {
+        let StartupMode::Cams(number) = self.mode else { return };
+        let gear = self.memory.gear;
+        let Some(program) = self.memory.program_mut(number) else { return };
+        let taken = change(&mut Setting(program), gear).map(|()| Stored::Program(number));
+        self.set(now, taken);
+    }
+
+    /// A read-out ends. What was set and not stored keeps the encoder setting: position and outputs do not count.
+    pub(super) fn end_read_out(&mut self) {
+        match self.unstored {
+            None => self.turn_to(Doing::Running, Says::Live),
+            Some(_) => self.turn_to(Doing::Setting, Says::Word(INVALID)),
+        }
+    }
+}

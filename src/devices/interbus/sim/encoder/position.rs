@@ -1,0 +1,59 @@
+//! The position that an encoder makes of its shaft's place, and what else its IN word says while it runs (reference 1, 3
+//! and 5).
+
+use super::{Encoder, LOST};
+use crate::devices::interbus::protocol::{CamOutput, Class, Single, StartupMode, Value};
+use crate::devices::interbus::sim::memory::PLACES;
+use crate::units::Moment;
+
+impl Encoder {
+    /// The position becomes the preset; one beyond the range, which a later gear may have made of it, begins anew.
+    pub(super) fn fire(&mut self, now: Moment) {
+        let gear = self.memory.gear;
+        let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
+        let zero_shift = u64::from(self.memory.zero_shift) % steps;
+        let wanted = (u64::from(self.memory.preset) + steps - zero_shift) % steps;
+        // The first place of the disc with this position.
+        let place = (wanted * range).div_ceil(steps);
+        self.offset = place as i64 - self.turned(now);
+    }
+
+    /// The shaft's place as its direction counts it.
+    fn turned(&self, now: Moment) -> i64 {
+        let place = self.shaft.place(now);
+        if self.memory.counterclockwise { -place } else { place }
+    }
+
+    /// The position at `now`, in steps.
+    fn position(&self, now: Moment) -> Value {
+        let gear = self.memory.gear;
+        let place = (self.turned(now) + self.offset).rem_euclid(i64::from(gear.range()));
+        // Below the range, which has at most 26 bits.
+        let position = u64::from(gear.position(place as u32).get()) + u64::from(self.memory.zero_shift);
+        Value::of_word((position % u64::from(gear.steps())) as u32)
+    }
+
+    /// What stands in the IN word while it runs.
+    pub(super) fn live(&self, now: Moment) -> u32 {
+        let position = self.position(now);
+        match (self.class, self.mode) {
+            (Class::K1, _) => {
+                // 12 of the 13 bits of a turn.
+                let place = self.turned(now).rem_euclid(i64::from(PLACES)) >> 1;
+                Single::parse_k1(place as u16 & 0x0FFF).emit()
+            }
+            (Class::K2, _) => Single::parse_k2(position.get()).emit(),
+            (Class::K3, _) if self.eeprom.lost => LOST,
+            (Class::K3, StartupMode::Velocity) => {
+                let rpm = self.shaft.rpm().round() as i32;
+                let rpm = if self.memory.counterclockwise { -rpm } else { rpm };
+                Value::of_word(rpm as u32).get()
+            }
+            (Class::K3, StartupMode::Cams(program)) => {
+                let outputs = self.memory.program(program).outputs(position);
+                CamOutput::at(position, outputs, self.memory.shift).emit()
+            }
+            (Class::K3, _) => position.get(),
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! What is set in an encoder, and the EEPROM that keeps it: about 200 stores, guaranteed up to 500 (reference 3).
+
+use crate::devices::interbus::protocol::{
+    Cam, CamNumber, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
+};
+
+/// What is set, all of which a store keeps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Memory {
+    pub(super) gear: Gear,
+    pub(super) counterclockwise: bool,
+    pub(super) preset: u32,
+    /// The preset was set and not fired yet.
+    pub(super) armed: bool,
+    pub(super) zero_shift: u32,
+    pub(super) shift: WindowShift,
+    pub(super) programs: [Program; ProgramNumber::COUNT],
+}
+
+impl Memory {
+    /// As delivered: all steps over all turns, no cam works.
+    pub(super) fn delivered() -> Self {
+        Memory {
+            gear: FULL,
+            counterclockwise: false,
+            preset: 0,
+            armed: false,
+            zero_shift: 0,
+            shift: WindowShift::default(),
+            programs: [NONE; ProgramNumber::COUNT],
+        }
+    }
+
+    /// Steps and turns.
+    pub const fn gear(&self) -> Gear {
+        self.gear
+    }
+
+    /// 3 clockwise, 4 counterclockwise.
+    pub const fn direction(&self) -> u32 {
+        if self.counterclockwise { 4 } else { 3 }
+    }
+
+    /// The position that the preset gives.
+    pub const fn preset(&self) -> u32 {
+        self.preset
+    }
+
+    /// A preset was set and not fired yet.
+    pub const fn preset_is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// Zero point shifting.
+    pub const fn zero_shift(&self) -> u32 {
+        self.zero_shift
+    }
+
+    /// How far the position is shifted under its window.
+    pub const fn shift(&self) -> WindowShift {
+        self.shift
+    }
+
+    /// A cam program; every cam is there, whether it works or not.
+    pub fn program(&self, number: ProgramNumber) -> &Program {
+        let [first, ..] = &self.programs;
+        self.programs.get(usize::from(number.get()) - 1).unwrap_or(first)
+    }
+
+    pub(super) fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Program> {
+        self.programs.get_mut(usize::from(number.get()) - 1)
+    }
+
+    /// Programs that show what cams do: a staircase, cams within each other, cams over the end of the range; and where the
+    /// range has room for it the manual's example, cam 3 from 15 to 213.
+    pub(super) fn with_demonstration(mut self) -> Self {
+        let steps = self.gear.steps();
+        let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
+        let cam = |start: u32, stop: u32| {
+            Some(Cam { start: Value::of_word(start), stop: Value::of_word(stop.min(steps - 1)) })
+        };
+        let all = |edges: &dyn Fn(u32) -> Option<Cam>| {
+            let mut program = Program { mask: 0xFF, ..NONE };
+            program.cams.iter_mut().zip(0..).for_each(|(cam, number)| *cam = edges(number));
+            program
+        };
+        let staircase = all(&|number| cam(place(2 * number), place(2 * number + 2).saturating_sub(1)));
+        let within = all(&|number| cam(place(number), (steps - 1).saturating_sub(place(number))));
+        let over_the_end = all(&|number| cam(place(15 - number), place(number)));
+        let mut example = NONE;
+        if let (true, Some(third)) = (steps > 213, example.cams.get_mut(3)) {
+            (*third, example.mask) = (cam(15, 213), 1 << 3);
+        }
+        let [first, second, third, .., last] = &mut self.programs;
+        (*first, *second, *third, *last) = (staircase, within, over_the_end, example);
+        self
+    }
+}
+
+/// A program in which no cam works.
+const NONE: Program = {
+    const ZERO: Cam = Cam { start: Value::of_word(0), stop: Value::of_word(0) };
+    Program { cams: [Some(ZERO); Program::CAMS], mask: 0 }
+};
+
+/// All turns, and all steps that 25 bits hold.
+const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
+    Ok(gear) => gear,
+    Err(_) => unreachable!(),
+};
+
+/// What keeps a [`Memory`] without power.
+#[derive(Clone, Debug)]
+pub(super) struct Eeprom {
+    pub(super) kept: Memory,
+    /// What it held was lost: 86000000 until all of it is stored anew.
+    pub(super) lost: bool,
+    stores: u32,
+    /// Of those since the encoder was made: what a fault counts.
+    begun: u32,
+    die_in_store: Option<u32>,
+}
+
+/// What a store keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stored {
+    Parameters,
+    Program(ProgramNumber),
+}
+
+/// How a store ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ended {
+    Kept,
+    /// It is worn out, and what it held is lost (`U`: the manual guarantees 500 and says nothing of later ones).
+    Worn,
+    /// Power was lost in the middle of it.
+    Died,
+}
+
+impl Eeprom {
+    /// Stores that are guaranteed.
+    pub(super) const LIFE: u32 = 500;
+
+    pub(super) const fn new(kept: Memory, stores: u32, die_in_store: Option<u32>) -> Self {
+        Eeprom { kept, lost: false, stores, begun: 0, die_in_store }
+    }
+
+    pub(super) const fn stores(&self) -> u32 {
+        self.stores
+    }
+
+    pub(super) const fn set_die_in_store(&mut self, number: Option<u32>) {
+        self.die_in_store = number;
+    }
+
+    /// Whatever is set is stored. A store that fails loses all that it was about to write (`U`).
+    pub(super) fn store(&mut self, memory: &Memory, what: Stored) -> Ended {
+        self.stores = self.stores.saturating_add(1);
+        self.begun = self.begun.saturating_add(1);
+        let died = self.die_in_store == Some(self.begun);
+        if !died && self.stores <= Self::LIFE {
+            (self.kept, self.lost) = (memory.clone(), false);
+            return Ended::Kept;
+        }
+        self.lost = true;
+        let delivered = Memory::delivered();
+        match what {
+            Stored::Parameters => {
+                let Memory { shift, programs, .. } = self.kept.clone();
+                self.kept = Memory { shift, programs, ..delivered };
+            }
+            Stored::Program(number) => {
+                if let Some(program) = self.kept.program_mut(number) {
+                    *program = NONE;
+                }
+            }
+        }
+        if died { Ended::Died } else { Ended::Worn }
+    }
+}
+
+/// A cam of a program.
+pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut Cam> {
+    program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
+}
+
+/// Steps of the disc: all places of the shaft that an encoder tells apart.
+pub(super) const PLACES: u32 = STEPS_PER_TURN * TURNS;

@@ -1,0 +1,108 @@
+//! Process data as Modbus registers: every encoder has two input registers with its IN word and two holding registers with
+//! its OUT word. Reading one or both of them, or writing one or both, is a cycle of its process data. The word of a K1
+//! encoder, which is half as long, stands in the lower register.
+
+use super::config::Config;
+use super::encoder::Encoder;
+use super::frame::Exception;
+use crate::devices::interbus::protocol::WordOrder;
+use crate::units::Moment;
+
+/// Which registers the encoders have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Map {
+    input: u16,
+    output: u16,
+    order: WordOrder,
+}
+
+/// The encoders in the order of their registers.
+#[derive(Debug)]
+pub(super) struct Encoders {
+    pub(super) first: Encoder,
+    others: Vec<Encoder>,
+}
+
+/// Registers of a word.
+const REGISTERS: usize = 2;
+
+type Result<T> = std::result::Result<T, Exception>;
+
+impl Encoders {
+    pub(super) fn new(config: &Config) -> Self {
+        let others = (1..config.encoders).map(|number| Encoder::new(config, number)).collect();
+        Encoders { first: Encoder::new(config, 0), others }
+    }
+
+    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut Encoder> {
+        std::iter::once(&mut self.first).chain(&mut self.others)
+    }
+
+    fn registers(&self) -> usize {
+        (1 + self.others.len()) * REGISTERS
+    }
+}
+
+impl Map {
+    pub(super) const fn new(config: &Config) -> Self {
+        Map { input: config.input, output: config.output, order: config.order }
+    }
+
+    /// IN words: function 4.
+    pub(super) fn inputs(&self, encoders: &mut Encoders, now: Moment, first: u16, count: u16) -> Result<Vec<u16>> {
+        self.read(encoders, self.input, first, count, |encoder| encoder.read(now).ok_or(Exception::NoAnswer))
+    }
+
+    /// OUT words as they stand: function 3.
+    pub(super) fn outputs(&self, encoders: &mut Encoders, first: u16, count: u16) -> Result<Vec<u16>> {
+        self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out()))
+    }
+
+    /// Writes OUT words, or halves of them: functions 6 and 16.
+    pub(super) fn write(&self, encoders: &mut Encoders, now: Moment, first: u16, values: &[u16]) -> Result<()> {
+        let begin = self.range(encoders, self.output, first, values.len())?;
+        let places = begin..begin + values.len();
+        for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
+            let mut halves = self.order.registers(encoder.out());
+            let written = halves.iter_mut().zip(own..).filter(|(_, place)| places.contains(place));
+            let mut written_to = false;
+            for (half, place) in written {
+                *half = values.get(place - begin).copied().unwrap_or(*half);
+                written_to = true;
+            }
+            if written_to && encoder.has_power() {
+                encoder.write(now, self.order.word(halves));
+            } else if written_to {
+                return Err(Exception::NoAnswer);
+            }
+        }
+        Ok(())
+    }
+
+    fn read(
+        &self,
+        encoders: &mut Encoders,
+        base: u16,
+        first: u16,
+        count: u16,
+        mut word: impl FnMut(&mut Encoder) -> Result<u32>,
+    ) -> Result<Vec<u16>> {
+        let begin = self.range(encoders, base, first, usize::from(count))?;
+        let places = begin..begin + usize::from(count);
+        let mut registers = Vec::new();
+        for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
+            if own < places.end && own + REGISTERS > places.start {
+                let halves = self.order.registers(word(encoder)?);
+                let asked = halves.into_iter().zip(own..).filter(|(_, place)| places.contains(place));
+                registers.extend(asked.map(|(half, _)| half));
+            }
+        }
+        Ok(registers)
+    }
+
+    /// Where registers begin, counted from the first encoder's; all of them have to be there.
+    fn range(&self, encoders: &Encoders, base: u16, first: u16, count: usize) -> Result<usize> {
+        let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
+        if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }
+    }
+}

@@ -1,0 +1,60 @@
+//! The shaft: its place as an exact function of time, in steps of the disc, of which a turn has 8192.
+
+use crate::devices::interbus::protocol::STEPS_PER_TURN;
+use crate::units::Moment;
+
+/// A shaft turning at constant speed. Its place knows no end: where a position begins anew is the gear's matter.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shaft {
+    rpm: f64,
+    /// In steps of the disc at `since`.
+    place: f64,
+    since: Moment,
+}
+
+impl Shaft {
+    pub(super) fn new(place: u32, rpm: f64) -> Self {
+        Shaft { rpm, place: f64::from(place), since: Moment::START }
+    }
+
+    /// Revolutions a minute; above 0 it turns clockwise, and its place rises.
+    pub(super) const fn rpm(&self) -> f64 {
+        self.rpm
+    }
+
+    pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        (self.place, self.since) = (self.exact(now), now);
+        self.rpm = rpm;
+    }
+
+    /// Puts it somewhere.
+    pub(super) fn put(&mut self, now: Moment, place: i32) {
+        (self.place, self.since) = (f64::from(place), now);
+    }
+
+    /// Where it is: whole steps, also below 0.
+    pub(super) fn place(&self, at: Moment) -> i64 {
+        self.exact(at).floor() as i64
+    }
+
+    fn exact(&self, at: Moment) -> f64 {
+        self.place + at.since(self.since).as_secs_f64() * self.rpm / 60.0 * f64::from(STEPS_PER_TURN)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn a_turning_shaft_is_where_it_must_be() {
+        let at = |ms| Moment::START + Duration::from_millis(ms);
+        let mut shaft = Shaft::new(100, 60.0);
+        assert_eq!((shaft.place(at(0)), shaft.place(at(1_000))), (100, 8292));
+        shaft.set_rpm(at(1_000), -120.0);
+        assert_eq!((shaft.place(at(1_500)), shaft.place(at(2_000))), (100, -8092));
+        shaft.put(at(2_000), 7);
+        assert_eq!(shaft.place(at(2_000)), 7);
+    }
+}

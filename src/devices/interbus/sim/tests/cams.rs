@@ -1,0 +1,161 @@
+//! Cam programs (reference 5 and 7).
+
+use super::*;
+use crate::devices::interbus::protocol::{Cam, StartupMode, Value};
+
+/// A step is two places of the disc.
+const SETTINGS: &str = "steps=4096&revolutions=1&position=200";
+
+fn at(position: i32) -> i32 {
+    position * 2
+}
+
+fn outputs(master: &mut Master, position: i32) -> u32 {
+    master.put_shaft(at(position));
+    master.read() & 0xFF
+}
+
+#[test]
+fn the_example_of_the_manual() {
+    let mut master = Master::with(SETTINGS);
+    master.exchange(&[
+        (0x2080_0001, 0xE080_0001),
+        (0x4600_0015, 0xC600_0015),
+        (0x6600_0213, 0xE600_0213),
+        (0x2040_0008, 0xE040_0008),
+        // Position 100 = 64h in bits 24..8, and cam 3 from 21 to 531 is on.
+        (0x8000_0000, 0x0000_6408),
+    ]);
+    assert_eq!([20, 21, 531, 532].map(|position| outputs(&mut master, position)), [0, 8, 8, 0]);
+    let expected = Cam { start: Value::new(0x15).unwrap(), stop: Value::new(0x213).unwrap() };
+    let kept = master.encoder.kept().program(program(1));
+    assert_eq!((kept.cams[3], kept.mask, master.encoder.stores()), (Some(expected), 8, 4));
+}
+
+#[test]
+fn cams_are_on_where_the_reference_says() {
+    let mut master = Master::with(SETTINGS);
+    // Cam 0 from 15 to 213, cam 1 over the end from 100 to 20.
+    master.put(&[0x2080_0002, 0x4000_000F, 0x6000_00D5, 0x4200_0064, 0x6200_0014, 0x2040_0003, 0x8000_0000]);
+    let cases = [(14, 2), (15, 3), (20, 3), (21, 1), (5, 2), (50, 1), (99, 1), (100, 3), (213, 3), (214, 2), (4095, 2)];
+    for (position, expected) in cases {
+        assert_eq!(outputs(&mut master, position), expected, "{position}");
+    }
+    // Only those of the mask.
+    master.put(&[0x2040_0001, 0x8000_0000]);
+    assert_eq!(outputs(&mut master, 5), 0);
+}
+
+/// Position 1ABCDEFh with cam 5 on, as the reference has it; all steps over all turns, a step is a place.
+#[test]
+fn the_window_shows_the_bits_of_the_position_that_the_shift_says() {
+    let cases = [(0, 0x01CD_EF20), (4, 0x00BC_DE20), (8, 0x01AB_CD20), (25, 0x0000_0020)];
+    for (shift, expected) in cases {
+        let mut master = Master::with("cams=none");
+        master.put(&[0x2080_0001, 0x4A00_0000, 0x6BFF_FFFE, 0x2040_0020, 0x2010_0000 | shift, 0x8000_0000]);
+        // The gear of 1FFFFFFh steps over 2000000h places takes a step away here: (1ABCDEFh + 1) places less one.
+        assert_eq!(master.position(0x1AB_CDF0), expected, "{shift}");
+    }
+}
+
+#[test]
+fn edges_beyond_the_range_and_more_cams_than_there_are_are_refused() {
+    let mut master = Master::with(SETTINGS);
+    master.put(&[0x2080_0001, 0x4000_0001, 0x8000_0000]);
+    let position = 0x0000_6400;
+    let cases = [
+        (0x4600_1000, 0x9800_0004),
+        (0x6600_1000, 0x9800_0004),
+        (0x5000_0000, 0x8400_0000),
+        (0x7E00_0000, 0x8400_0000),
+        (0x2040_0100, 0x8200_0000),
+        (0x2010_001A, 0x8200_0000),
+        (0x0200_0168, 0x8400_0000),
+        (0x2020_0050, 0xA400_0000),
+        (0x2020_0018, 0xA400_0000),
+    ];
+    for (word, error) in cases {
+        master.exchange(&[(word, error), (0x8000_0000, position)]);
+    }
+    assert_eq!(master.encoder.stores(), 4);
+}
+
+#[test]
+fn cams_mask_and_shift_are_read_out_of_the_program_that_runs() {
+    let mut master = Master::with(SETTINGS);
+    master.put(&[0x2080_0001, 0x4600_0015, 0x6600_0213, 0x2040_0008, 0x2010_0004, 0x8000_0000]);
+    let live = 0x0000_0608;
+    master.exchange(&[
+        (0x2020_0013, 0xA000_0015),
+        (0x0000_0000, live),
+        (0x2020_0023, 0xA000_0213),
+        (0x8000_0000, live),
+        (0x2020_0000, 0xA000_0008),
+        (0x2020_0040, 0xA000_0004),
+        (0x2021_0009, 0xA000_0003),
+        (0x0000_0000, live),
+        (0x2080_0002, 0xE080_0002),
+        (0x2020_0013, 0xA000_0000),
+        (0x2020_0040, 0xA000_0004),
+        (0x8000_0000, 0x0000_0600),
+    ]);
+    assert_eq!(master.encoder.stores(), 4, "reading and selecting store nothing");
+}
+
+#[test]
+fn what_was_set_and_not_stored_keeps_the_outputs_invalid() {
+    let mut master = Master::with(SETTINGS);
+    master.put(&[0x2080_0001]);
+    master.exchange(&[(0x4600_0015, 0xC600_0015), (0x2020_0013, 0xA000_0015), (0, 0x8000_0000)]);
+    assert_eq!(master.encoder.stores(), 3);
+    master.exchange(&[(0x8000_0000, 0x0000_6400)]);
+    assert_eq!(master.encoder.stores(), 4);
+}
+
+#[test]
+fn a_changed_program_is_stored_when_another_one_is_selected() {
+    let mut master = Master::with(SETTINGS);
+    master.put(&[0x2080_0001, 0x4000_0001, 0x2080_0002]);
+    assert_eq!(master.encoder.stores(), 4);
+    master.put(&[0x8000_0000, 0, 0x2080_0003, 0x8000_0000, 0x2080_0000]);
+    assert_eq!((master.encoder.stores(), master.encoder.startup_mode()), (4, StartupMode::K3));
+    master.exchange(&[(0, 100)]);
+}
+
+#[test]
+fn presets_are_cam_words_while_a_program_runs() {
+    let mut master = Master::with(SETTINGS);
+    master.put(&[0x2080_0001, 0x4000_0005, 0x8000_0000]);
+    // The start of cam 0 becomes 0, and its echo looks like a busy word.
+    master.exchange(&[(0x4000_0000, 0xC000_0000), (0x2020_0010, 0xA000_0000)]);
+}
+
+#[test]
+fn a_selected_program_can_go_straight_to_its_outputs() {
+    let mut master = Master::with(&format!("{SETTINGS}&selection=output&program=7"));
+    master.exchange(&[
+        (0, 0x0000_6400),
+        (0x2021_0009, 0xA000_0009),
+        (0x2080_0008, 0x0000_6400),
+        (0x2021_0009, 0xA000_000A),
+    ]);
+}
+
+#[test]
+fn the_demonstration_has_the_example_and_cams_over_the_end() {
+    for steps in [1, 2, 20, 4096] {
+        let config = config(&format!("steps={steps}&revolutions=1&cams=demo"));
+        for number in [1, 2, 3] {
+            let program = config.memory.program(program(number));
+            assert_eq!(program.mask, 0xFF);
+            for cam in program.cams.iter().flatten() {
+                assert!(cam.start.get() < steps && cam.stop.get() < steps, "{steps}: {cam:?}");
+            }
+        }
+    }
+    let config = config("steps=4096&revolutions=1&cams=demo");
+    let example = config.memory.program(program(8));
+    let third = example.cams[3].map(|cam| (cam.start.get(), cam.stop.get()));
+    assert_eq!((third, example.mask), (Some((15, 213)), 8));
+    assert!(config.memory.program(program(3)).cams.iter().flatten().any(|cam| cam.wraps()));
+}

@@ -1,0 +1,74 @@
+//! The EEPROM: what it keeps, what a loss of power takes, and its wear (reference 3, `U`).
+
+use super::*;
+use crate::devices::interbus::protocol::StartupMode;
+
+#[test]
+fn what_was_not_stored_is_forgotten_without_power() {
+    let mut master = Master::with("steps=360&revolutions=1&position=4096");
+    master.put(&[0x0200_00B4, 0x8000_0000, 0, 0x0200_0009]);
+    master.encoder.disconnect();
+    assert_eq!((master.encoder.read(master.now), master.encoder.memory().gear().steps()), (None, 180));
+    master.encoder.write(master.now, 0);
+    master.encoder.connect(master.now);
+    assert_eq!((master.read(), master.encoder.stores()), (90, 4));
+}
+
+/// The gateway says the same as before, which the encoder takes as a new word.
+#[test]
+fn what_the_master_still_says_is_taken_when_power_comes_back() {
+    let mut master = Master::with("steps=360&revolutions=1&position=4096");
+    master.put(&[0x0200_00B4]);
+    master.power_cycle();
+    assert_eq!((master.read(), master.encoder.stores()), (0xC200_00B4, 3));
+}
+
+#[test]
+fn mode_zero_point_and_a_fired_preset_survive_without_a_store() {
+    let mut master = Master::with("steps=360&revolutions=1&position=4096");
+    master.put(&[0x0800_0005, 0x8000_0000, 0, 0x4000_0000, 0, 0x2080_0004, 0x8000_0000]);
+    master.power_cycle();
+    assert_eq!(master.encoder.startup_mode(), StartupMode::Cams(program(4)));
+    master.exchange(&[(0x2080_0000, 5), (0, 5), (0x4000_0000, 5), (0x2021_0006, 0xA000_0000)]);
+    assert_eq!(master.encoder.stores(), 4);
+}
+
+#[test]
+fn power_lost_in_a_store_loses_what_was_stored() {
+    let mut master = Master::with("steps=360&revolutions=1&cams=demo&fault=die-in-store:2");
+    master.put(&[0x0600_0004, 0x8000_0000, 0, 0x0200_00B4]);
+    master.write(0x8000_0000);
+    assert_eq!((master.encoder.read(master.now), master.encoder.has_power()), (None, false));
+    master.encoder.connect(master.now);
+    assert_eq!((master.read(), master.encoder.stores()), (0x8600_0000, 5));
+    assert_eq!((master.encoder.memory().gear().steps(), master.encoder.memory().direction()), (0x01FF_FFFF, 3));
+    assert_eq!(master.encoder.memory().program(program(1)).mask, 0xFF);
+    // Set anew, it works again.
+    master.exchange(&[(0x0400_0001, 0x8200_0000), (0x0200_0168, 0xC200_0168), (0x0400_0001, 0xC400_0001)]);
+    master.write(0x8000_0000);
+    assert_eq!((master.read() >> 31, master.encoder.stores()), (0, 6));
+}
+
+#[test]
+fn power_lost_in_the_store_of_a_program_loses_that_program() {
+    let mut master = Master::with("steps=360&revolutions=1&cams=demo&fault=die-in-store:1");
+    master.put(&[0x2080_0001, 0x4000_0001]);
+    master.write(0x8000_0000);
+    master.power_cycle();
+    assert_eq!(master.read(), 0x8600_0000);
+    let memory = master.encoder.memory();
+    assert_eq!([1, 2].map(|number| memory.program(program(number)).mask), [0, 0xFF]);
+    assert_eq!(memory.gear().steps(), 360);
+}
+
+#[test]
+fn a_worn_out_eeprom_keeps_nothing_any_more() {
+    let mut master = Master::with("steps=360&revolutions=1&stores=499&position=4096");
+    master.exchange(&[(0x0600_0004, 0xC600_0004), (0x8000_0000, 180), (0, 180)]);
+    assert_eq!(master.encoder.stores(), 500);
+    for stores in [501, 502] {
+        master.exchange(&[(0x0600_0003, 0xC600_0003), (0x8000_0000, 0x8600_0000), (0, 0x8600_0000)]);
+        assert_eq!(master.encoder.stores(), stores);
+    }
+    master.exchange(&[(0x2021_0001, 0xA1FF_FFFF)]);
+}

@@ -1,0 +1,117 @@
+//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+
+use super::action::Action;
+use super::encoder::Encoder;
+use super::staged::Edit;
+use crate::app::action::FileQuestion;
+use crate::app::services::Services;
+use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::app::{Severity, Text};
+use crate::devices::interbus::jobs::InterbusJob;
+use crate::devices::interbus::profile::InterbusProfile;
+use crate::devices::interbus::protocol::ProgramNumber;
+use crate::profile::Body;
+
+impl Encoder {
+    /// Does what is asked.
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Stopped(stopped) => self.say_stopped(stopped),
+            Action::Read => {
+                if !self.session.read_file_again(services) && self.try_submit(InterbusJob::Survey, services) {
+                    self.read_after = self.known_programs();
+                }
+            }
+            Action::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),
+            Action::ReadOut(what) => self.submit(InterbusJob::ReadOut(what), services),
+            Action::Select(mode) => self.submit(InterbusJob::Select(mode), services),
+            Action::Check => self.submit(InterbusJob::Check, services),
+            Action::ReadPosition => self.submit(InterbusJob::Position, services),
+            Action::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            Action::Edit(edit) => self.edit(&edit),
+            Action::Undo => {
+                self.staged.undo();
+                self.refusal = None;
+            }
+            Action::Redo => {
+                self.staged.redo();
+                self.refusal = None;
+            }
+            Action::RevertAll => {
+                self.staged.revert();
+                self.refusal = None;
+            }
+            Action::Review => self.review_edits(services),
+            Action::Plan(change) => self.plan(*change, services),
+            Action::LeadBack => self.submit(InterbusJob::LeadBack, services),
+            Action::AskTable(program) => {
+                self.table_program = program;
+                services.file_question = Some(FileQuestion::OpenCams { session: self.session.id });
+            }
+            Action::OpenTable(path) => self.open_table(path, services),
+            Action::PasteTable(program, text) => self.read_table(Text::new("ib_table.pasted"), text, program),
+            Action::TakeTable(take) => self.take_table(take),
+            Action::AskSaveTable { decimal_comma } => {
+                let suggested = self.session.suggested_file().with_extension("csv");
+                services.file_question =
+                    Some(FileQuestion::Cams { session: self.session.id, decimal_comma, suggested });
+            }
+            Action::SaveTable { path, decimal_comma } => self.save_table(path, decimal_comma, services),
+            Action::SetScale(scale) => {
+                self.scale = scale;
+                self.read_table_anew();
+            }
+            Action::Turn(rpm) => {
+                if let Some(motor) = &self.motor {
+                    motor.set_rpm(rpm);
+                }
+            }
+            // Before a name is asked for: reading for a file selects cam programs. What was read before needs no reading.
+            Action::AskSave if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() => {
+                services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
+            }
+            Action::AskSave => self.session.ask_where_to_save(services),
+            Action::Save(path) => self.save(path, services),
+            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    pub(super) fn edit(&mut self, edit: &Edit) {
+        self.refusal = match self.session.is_writing() {
+            true => Some(Text::new("session.busy")),
+            false => self.staged.edit(edit).err().map(|error| super::cams::words::refused(&error)),
+        };
+    }
+
+    /// A profile was read for a file: with the names that its cams have here.
+    pub(super) fn saved(&mut self, mut profile: InterbusProfile, services: &mut Services) {
+        let programs: Vec<_> = profile.image.known().map(|(number, own)| (number, *own)).collect();
+        self.staged.refresh_parameters(profile.image.parameters);
+        self.staged.refresh_programs(&programs, profile.image.shift);
+        if let Some(wanted) = self.staged.wanted() {
+            profile.names = wanted.names.clone();
+        }
+        let edits = self.is_dirty().then(|| self.edits());
+        self.session.write_read(Body::new(profile), edits, Vec::new(), services);
+    }
+
+    /// Everything that there is to be read of a virtual encoder is read by itself; false where there is nothing more.
+    pub(super) fn read_on(&mut self, services: &mut Services) -> bool {
+        if !self.session.is_virtual() || self.session.phase == Phase::Offline {
+            return false;
+        }
+        if self.survey.is_none() {
+            self.try_submit(InterbusJob::Survey, services)
+        } else if self.programs_read() < ProgramNumber::COUNT {
+            self.try_submit(InterbusJob::Programs(ProgramNumber::all().collect()), services)
+        } else {
+            false
+        }
+    }
+}

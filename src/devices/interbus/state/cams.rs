@@ -1,0 +1,243 @@
+//! The cams of a program as a chart: a lane for each, over the measuring range or around a ring; what can be taken hold of
+//! in it, and where that would come to. It says what a cam becomes; it changes none.
+//!
+//! A position is a place with a width: a cam from 10 to 19 is drawn from 10 to 20, so that what is not on is not drawn.
+
+mod grid;
+mod moving;
+mod snap;
+pub mod table_words;
+#[cfg(test)]
+mod tests;
+pub mod words;
+
+pub use grid::{Tick, next_line, rounded, ticks};
+pub use moving::{Hold, drawn, moved, pulled};
+pub use snap::{Snap, snap};
+
+use super::staged::{Mark, Staged, Wanted};
+use crate::devices::interbus::profile::Edge;
+use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
+
+/// A program as a chart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chart {
+    /// Which program.
+    pub program: ProgramNumber,
+    /// Steps of the measuring range.
+    pub range: u32,
+    /// Its cams, the first at 0.
+    pub lanes: [Lane; Program::CAMS],
+}
+
+/// A cam in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lane {
+    /// Which one.
+    pub cam: CamNumber,
+    /// What it is called.
+    pub name: Option<String>,
+    /// It works.
+    pub on: bool,
+    /// Where it is; `None`: the profile does not say.
+    pub edges: Option<Cam>,
+    /// The encoder, or the profile, has it otherwise.
+    pub edited: bool,
+    /// It works and lies beyond the measuring range.
+    pub beyond: bool,
+    /// It works and meets another pulse of its track.
+    pub clashes: bool,
+}
+
+/// Positions without a gap, both ends with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// The first.
+    pub first: u32,
+    /// The last.
+    pub last: u32,
+}
+
+/// The part of the measuring range that is to be seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    first: f64,
+    span: f64,
+}
+
+/// An output at a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lamp {
+    /// As the program that is wanted gives it; `None`: nothing is known of the position or the program.
+    pub simulated: Option<bool>,
+    /// As the encoder gives it; `None`: it does not.
+    pub own: Option<bool>,
+}
+
+/// The least that a view shows, in steps.
+const LEAST_SPAN: f64 = 8.0;
+
+impl Chart {
+    /// A program of what is wanted; `None`: nothing is known of it.
+    pub fn of(staged: &Staged, program: ProgramNumber) -> Option<Self> {
+        let wanted = staged.wanted()?;
+        wanted.image.program(program)?;
+        Some(Chart::wanted(staged, wanted, program))
+    }
+
+    /// The same of something that is only tried.
+    pub fn wanted(staged: &Staged, wanted: &Wanted, program: ProgramNumber) -> Self {
+        let marks = wanted.marks();
+        let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.is_about(program, cam));
+        let lane = |cam| Lane {
+            cam,
+            name: wanted.name(program, cam).map(str::to_owned),
+            on: wanted.is_on(program, cam),
+            edges: wanted.cam(program, cam),
+            edited: staged.is_edited(program, cam),
+            beyond: about(cam, |mark| matches!(mark, Mark::Beyond { .. })),
+            clashes: about(cam, |mark| matches!(mark, Mark::Clash { .. })),
+        };
+        let lanes = CamNumber::EACH.map(lane);
+        Chart { program, range: wanted.range(), lanes }
+    }
+
+    /// The lane of a cam.
+    pub fn lane(&self, cam: CamNumber) -> Option<&Lane> {
+        self.lanes.get(usize::from(cam.get()))
+    }
+
+    /// The same with a cam somewhere else: what is shown while it is dragged.
+    #[must_use]
+    pub fn with(&self, cam: CamNumber, to: Cam) -> Self {
+        let mut chart = self.clone();
+        if let Some(lane) = chart.lanes.get_mut(usize::from(cam.get())) {
+            lane.edges = Some(to);
+            lane.beyond = false;
+        }
+        chart
+    }
+
+    /// A cam that does not work, for one that is to be drawn anew; `None`: all work.
+    pub fn free(&self) -> Option<CamNumber> {
+        self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
+    }
+
+    /// The last position.
+    pub const fn last(&self) -> u32 {
+        self.range.saturating_sub(1)
+    }
+
+    /// The outputs at a position: bit i for cam i, as far as their edges are known.
+    pub fn outputs(&self, position: u32) -> u8 {
+        let on = |lane: &&Lane| lane.on && lane.edges.is_some_and(|cam| cam.is_on(Value::of_word(position)));
+        self.lanes.iter().filter(on).fold(0, |outputs, lane| outputs | 1 << lane.cam.get())
+    }
+
+    /// The outputs as lamps: as this program gives them at a position, beside the encoder's own.
+    pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [Lamp; Program::CAMS] {
+        let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
+        let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);
+        CamNumber::EACH.map(|cam| Lamp { simulated: bit(simulated, cam), own: bit(own, cam) })
+    }
+
+    /// A cam's edge; `None` where the cam has none.
+    pub fn edge(&self, cam: CamNumber, edge: Edge) -> Option<u32> {
+        Some(of_edge(self.lane(cam)?.edges?, edge).get())
+    }
+}
+
+impl Lane {
+    /// Where it is on within the measuring range: two stretches where it goes over the end.
+    pub fn stretches(&self, range: u32) -> Vec<Stretch> {
+        self.edges.map(|cam| stretches(cam, range)).unwrap_or_default()
+    }
+}
+
+impl Lamp {
+    /// The encoder says something else than this program gives.
+    pub fn differs(self) -> bool {
+        self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
+    }
+
+    /// What is lit: the encoder's own where it says it.
+    pub const fn lit(self) -> Option<bool> {
+        match self.own {
+            Some(own) => Some(own),
+            None => self.simulated,
+        }
+    }
+}
+
+impl View {
+    /// The whole measuring range.
+    pub fn whole(range: u32) -> Self {
+        View { first: 0.0, span: f64::from(range.max(1)) }
+    }
+
+    /// The first position that is to be seen, with its fraction.
+    pub const fn first(&self) -> f64 {
+        self.first
+    }
+
+    /// How many positions are to be seen.
+    pub const fn span(&self) -> f64 {
+        self.span
+    }
+
+    /// It shows all.
+    pub fn is_whole(&self, range: u32) -> bool {
+        self.span >= f64::from(range)
+    }
+
+    /// Where a position is in it: 0 at its left end, 1 at its right end.
+    pub fn part(&self, position: f64) -> f64 {
+        (position - self.first) / self.span
+    }
+
+    /// The position there.
+    pub fn position(&self, part: f64) -> f64 {
+        self.first + part * self.span
+    }
+
+    /// So many times nearer, around a position that stays where it is.
+    #[must_use]
+    pub fn zoomed(&self, times: f64, around: f64, range: u32) -> Self {
+        let most = f64::from(range.max(1));
+        let span = if times.is_finite() && times > 0.0 { self.span / times } else { self.span };
+        let span = span.clamp(LEAST_SPAN.min(most), most);
+        let part = self.part(around);
+        View { first: around - part * span, span }.within(range)
+    }
+
+    /// Further along by so many positions.
+    #[must_use]
+    pub fn panned(&self, by: f64, range: u32) -> Self {
+        View { first: self.first + by, ..*self }.within(range)
+    }
+
+    /// The same for another range, which may be shorter by now.
+    #[must_use]
+    pub fn within(&self, range: u32) -> Self {
+        let most = f64::from(range.max(1));
+        let span = self.span.min(most);
+        View { first: self.first.clamp(0.0, most - span), span }
+    }
+}
+
+/// Where a cam is on within the measuring range.
+pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
+    let (start, stop) = (cam.start.get(), cam.stop.get());
+    let Some(last) = range.checked_sub(1) else { return Vec::new() };
+    let parts = if cam.wraps() { vec![(0, stop), (start, last)] } else { vec![(start, stop)] };
+    let within = parts.into_iter().filter(|(first, _)| *first <= last);
+    within.map(|(first, end)| Stretch { first, last: end.min(last) }).collect()
+}
+
+/// One of a cam's edges.
+pub const fn of_edge(cam: Cam, edge: Edge) -> Value {
+    match edge {
+        Edge::Start => cam.start,
+        Edge::Stop => cam.stop,
+    }
+}

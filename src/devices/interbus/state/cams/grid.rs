@@ -1,0 +1,92 @@
+//! The lines of a chart: round steps, and round units of the machine.
+
+use super::View;
+use crate::devices::interbus::profile::{Scale, Unit};
+
+/// A line across the chart, at the beginning of a position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// Where, in steps.
+    pub position: f64,
+    /// What it says, in units of the scale.
+    pub value: f64,
+    /// Decimals that it needs.
+    pub decimals: usize,
+}
+
+/// Degrees that divide a turn, and are read at a glance.
+const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
+/// More lines than a chart has room for.
+const MOST_TICKS: usize = 400;
+
+/// The least of 1, 2, 5, 10, 20, 50 … that is at least so much.
+pub fn rounded(at_least: f64) -> f64 {
+    if !at_least.is_finite() || at_least <= 0.0 {
+        return 1.0;
+    }
+    let power = 10_f64.powf(at_least.log10().floor());
+    let part = at_least / power;
+    let nice = [1.0, 2.0, 5.0].into_iter().find(|nice| *nice >= part - 1e-9).unwrap_or(10.0);
+    nice * power
+}
+
+/// Lines that are at least so many steps apart.
+pub fn ticks(scale: &Scale, view: &View, range: u32, apart: f64) -> Vec<Tick> {
+    let one = scale.steps_in_unit();
+    let unit = round_units(scale.unit(), apart / one);
+    let decimals = decimals(unit);
+    let zero = f64::from(scale.zero());
+    let (from, to) = (view.first(), (view.first() + view.span()).min(f64::from(range)));
+    let first = ((from - zero) / one / unit - 1e-9).ceil();
+    let span = scale.span(range);
+    let at = |line: usize| {
+        let value = (first + line as f64) * unit;
+        let shown = if scale.is_round(range) { turned(value, span) } else { value };
+        Tick { position: zero + value * one, value: shown, decimals }
+    };
+    (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
+}
+
+/// The next line of that grid from a position on, or the one before it, in steps; lines go on beyond the range.
+pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
+    let around = lines_around(scale, apart, f64::from(position), 2);
+    let position = i64::from(position);
+    let mut lines = around.into_iter().map(|line| line as i64);
+    if forward {
+        lines.find(|line| *line > position).unwrap_or(position)
+    } else {
+        lines.rfind(|line| *line < position).unwrap_or(position)
+    }
+}
+
+/// The lines around a position, so many on each side, on whole steps and rising.
+pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
+    let steps = scale.steps_in_unit() * round_units(scale.unit(), apart / scale.steps_in_unit());
+    let zero = f64::from(scale.zero());
+    let own = ((position - zero) / steps).floor();
+    (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()
+}
+
+/// The least round number of units that is at least so much.
+fn round_units(unit: Unit, at_least: f64) -> f64 {
+    match unit {
+        Unit::Steps => rounded(at_least).max(1.0),
+        Unit::Millimetres => rounded(at_least),
+        Unit::Degrees if at_least > 180.0 => rounded(at_least / 360.0).max(1.0) * 360.0,
+        Unit::Degrees if at_least > 0.5 => {
+            DEGREES.into_iter().find(|degrees| *degrees >= at_least - 1e-9).unwrap_or(360.0)
+        }
+        Unit::Degrees => rounded(at_least),
+    }
+}
+
+/// Within a range that goes round; its end is its beginning.
+fn turned(value: f64, span: f64) -> f64 {
+    let turned = value.rem_euclid(span);
+    if (span - turned).abs() < 1e-9 * span { 0.0 } else { turned }
+}
+
+/// Decimals of a round number.
+fn decimals(unit: f64) -> usize {
+    if unit >= 1.0 { 0 } else { (-unit.log10()).ceil().clamp(0.0, 6.0) as usize }
+}

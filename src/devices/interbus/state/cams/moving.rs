@@ -1,0 +1,72 @@
+//! What a cam becomes when an edge of it is pulled, when it is moved as a whole, or drawn anew. The measuring range goes
+//! round: what is pulled over its end comes in at the other.
+
+use super::of_edge;
+use crate::devices::interbus::profile::Edge;
+use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
+
+/// What is taken hold of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Hold {
+    /// An edge.
+    Edge(CamNumber, Edge),
+    /// A cam as a whole.
+    Whole(CamNumber),
+    /// The empty lane of a cam: one is drawn there.
+    New(CamNumber),
+}
+
+impl Hold {
+    /// Whose lane.
+    pub const fn cam(self) -> CamNumber {
+        match self {
+            Hold::Edge(cam, _) | Hold::Whole(cam) | Hold::New(cam) => cam,
+        }
+    }
+}
+
+/// With an edge further along by so many steps; back where that is below 0. A cam keeps at least one position, and at
+/// most all of them; what lies beyond the range is brought within it.
+pub fn pulled(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
+    let whole = i64::from(range.max(1));
+    let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
+    if start >= whole || stop >= whole {
+        let to = (i64::from(of_edge(cam, edge).get()) + by).clamp(0, whole - 1);
+        return with(cam, edge, to, whole);
+    }
+    let length = (stop - start).rem_euclid(whole) + 1;
+    let by = match edge {
+        Edge::Start => by.clamp(length - whole, length - 1),
+        Edge::Stop => by.clamp(1 - length, whole - length),
+    };
+    with(cam, edge, i64::from(of_edge(cam, edge).get()) + by, whole)
+}
+
+/// The whole of it further along by so many steps. What lies beyond the range stays.
+pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
+    let whole = i64::from(range.max(1));
+    if i64::from(cam.start.get()) >= whole || i64::from(cam.stop.get()) >= whole {
+        return cam;
+    }
+    let by = by.rem_euclid(whole);
+    let start = with(cam, Edge::Start, i64::from(cam.start.get()) + by, whole);
+    with(start, Edge::Stop, i64::from(cam.stop.get()) + by, whole)
+}
+
+/// From where the pointer was pressed to where it is, whichever comes first. It may go over the ends of the range.
+pub fn drawn(from: i64, to: i64, range: u32) -> Cam {
+    let whole = i64::from(range.max(1));
+    let (first, last) = (from.min(to), from.max(to));
+    let last = last.min(first + whole - 1);
+    let none = Cam { start: Value::default(), stop: Value::default() };
+    with(with(none, Edge::Start, first, whole), Edge::Stop, last, whole)
+}
+
+fn with(cam: Cam, edge: Edge, to: i64, whole: i64) -> Cam {
+    // Below the range, which has 25 bits.
+    let to = Value::of_word(to.rem_euclid(whole) as u32);
+    match edge {
+        Edge::Start => Cam { start: to, ..cam },
+        Edge::Stop => Cam { stop: to, ..cam },
+    }
+}

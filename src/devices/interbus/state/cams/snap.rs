@@ -1,0 +1,77 @@
+//! What draws the edge of a cam to itself while it is dragged: edges of other cams, and the lines of the grid.
+
+use super::{Chart, Hold, grid, of_edge};
+use crate::devices::interbus::profile::{Edge, Scale};
+use crate::devices::interbus::protocol::{Cam, CamNumber};
+
+/// What draws, and how near one has to come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Snap {
+    /// How near, in steps.
+    pub reach: f64,
+    /// The lines of a grid in round units, at least so many steps apart; `None`: they do not draw.
+    pub apart: Option<f64>,
+    /// Edges of other cams do.
+    pub edges: bool,
+}
+
+impl Snap {
+    /// Nothing draws.
+    pub const OFF: Snap = Snap { reach: 0.0, apart: None, edges: false };
+
+    /// Everything does, in a chart with so many steps a point: within six points, on a grid of at least ten.
+    pub const fn on(steps_in_point: f64) -> Self {
+        Snap { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
+    }
+}
+
+/// How near one has to come, in points.
+const REACH: f64 = 6.0;
+/// How far the lines of the grid are apart at least, in points.
+const GRID: f64 = 10.0;
+
+/// By how much something that would be moved by `by` steps is moved instead: an edge of the cam as it was comes to the
+/// nearest of what draws it, else to a whole step.
+pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &Snap) -> i64 {
+    let whole = by.round() as i64;
+    let edges: &[Edge] = match hold {
+        Hold::Edge(_, Edge::Start) => &[Edge::Start],
+        Hold::Edge(_, Edge::Stop) => &[Edge::Stop],
+        Hold::Whole(_) | Hold::New(_) => &[Edge::Start, Edge::Stop],
+    };
+    let mut best: Option<(f64, i64)> = None;
+    for edge in edges {
+        let from = f64::from(of_edge(cam, *edge).get());
+        for target in targets(chart, scale, hold.cam(), *edge, from + by, snap) {
+            let distance = (target - from - by).abs();
+            if distance <= snap.reach && best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, (target - from).round() as i64));
+            }
+        }
+    }
+    best.map_or(whole, |(_, by)| by)
+}
+
+/// What could draw an edge to itself, the strongest first.
+fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &Snap) -> Vec<f64> {
+    let range = f64::from(chart.range.max(1));
+    // The same place in the turn that the pointer has come to.
+    let turn = (at / range).floor() * range;
+    let mut targets = Vec::new();
+    if snap.edges {
+        let others = chart.lanes.iter().filter(|lane| lane.cam != own && lane.on);
+        for cam in others.filter_map(|lane| lane.edges) {
+            let (start, stop) = (f64::from(cam.start.get()), f64::from(cam.stop.get()));
+            // On and off together with it, or right behind and before it.
+            let (same, next) = match edge {
+                Edge::Start => (start, stop + 1.0),
+                Edge::Stop => (stop, start - 1.0),
+            };
+            targets.extend([same, next].into_iter().flat_map(|at| [turn + at, turn + at + range, turn + at - range]));
+        }
+    }
+    if let Some(apart) = snap.apart {
+        targets.extend(grid::lines_around(scale, apart, at - turn, 0).into_iter().map(|line| turn + line));
+    }
+    targets
+}

@@ -1,0 +1,161 @@
+//! What is told of a table of cams that was read.
+
+use crate::analysis::capture::Delimiter;
+use crate::app::Text;
+use crate::devices::interbus::profile::{
+    CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableRow, Unit, Wrong,
+};
+
+/// Decimals beyond which nobody reads.
+const MOST_DECIMALS: usize = 6;
+
+/// How it was read: what stands between the columns, and whether they have names.
+pub fn layout(table: &CamTable) -> Text {
+    let delimiter = match table.delimiter {
+        Some(Delimiter::Tab) => "camtable.tab",
+        Some(Delimiter::Semicolon) => "camtable.semicolon",
+        Some(Delimiter::Comma) | None => "camtable.comma",
+    };
+    let id = if table.header { "camtable.with_header" } else { "camtable.without_header" };
+    Text::new(id).with("count", table.rows.len()).with_text("delimiter", Text::new(delimiter))
+}
+
+/// Something that could not be taken, with where it stands.
+pub fn problem(problem: &TableProblem) -> Text {
+    let text = Text::new("camtable.problem").with("line", problem.line).with("column", problem.column);
+    text.with_text("what", wrong(&problem.what))
+}
+
+fn wrong(wrong: &Wrong) -> Text {
+    match wrong {
+        Wrong::Empty => Text::new("camtable.empty"),
+        Wrong::NoColumn(own) => Text::new("camtable.no_column").with_text("column", column(*own)),
+        Wrong::Missing(own) => Text::new("camtable.missing").with_text("column", column(*own)),
+        Wrong::Number { text } => Text::new("camtable.number").with("text", text),
+        Wrong::Program { text } => Text::new("camtable.program").with("text", text),
+        Wrong::Cam { text } => Text::new("camtable.cam").with("text", text),
+        Wrong::Outside { column: own, outside } => {
+            let decimals = |value: f64| if value.fract() == 0.0 { 0 } else { 3 };
+            let text = Text::new("camtable.outside").with_text("column", column(*own));
+            let text = text.with_number("value", outside.value, decimals(outside.value));
+            let text = text.with_number("least", outside.least, decimals(outside.least));
+            text.with_number("most", outside.most, decimals(outside.most))
+        }
+        Wrong::Full(program) => Text::new("camtable.full").with("program", program.get()),
+        Wrong::Twice { program, cam, first } => {
+            let text = Text::new("camtable.twice").with("program", program.get()).with("cam", cam.get());
+            text.with("first", first)
+        }
+        Wrong::Name { most } => Text::new("camtable.name").with("most", most),
+    }
+}
+
+/// Something about what was taken.
+pub fn note(note: &TableNote) -> Text {
+    match note {
+        TableNote::Pulses { program, name, cams } => {
+            let cams: Vec<String> = cams.iter().map(|cam| cam.get().to_string()).collect();
+            let text = Text::new("camtable.pulses").with("program", program.get()).with("name", name);
+            text.with("count", cams.len()).with("cams", cams.join(", "))
+        }
+        TableNote::OtherHeader => Text::new("camtable.other_header"),
+        TableNote::OtherUnit { header, used } => {
+            let text = Text::new("camtable.other_unit").with_text("header", unit(*header));
+            text.with_text("used", unit(*used))
+        }
+    }
+}
+
+/// A row whose edges are not where they were asked for.
+pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
+    let text = Text::new("camtable.rounded").with("line", row.line).with("program", row.program.get());
+    let text = text.with("cam", row.cam.get());
+    text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
+}
+
+/// An edge as it was asked for, what it became, and by how much that differs.
+pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
+    let decimals = scale.decimals() + 1;
+    let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
+    // As it stands in the table: rounded here too, nobody would see what became of it.
+    let asked = decimals.max(written_decimals(edge.asked));
+    let text = Text::new(id).with_number("asked", edge.asked, asked).with("unit", scale.unit().symbol());
+    let off = Text::new(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
+    let off = off.with_number("off", edge.off.abs(), decimals + 1).with("unit", scale.unit().symbol());
+    text.with("step", edge.step).with_text("off", off)
+}
+
+/// Decimals with which a number is written down.
+fn written_decimals(number: f64) -> usize {
+    let written = number.to_string();
+    written.split_once('.').map_or(0, |(_, decimals)| decimals.len()).min(MOST_DECIMALS)
+}
+
+fn column(column: Column) -> Text {
+    Text::new(match column {
+        Column::Program => "camtable.column_program",
+        Column::Cam => "camtable.column_cam",
+        Column::Name => "camtable.column_name",
+        Column::Start => "camtable.column_start",
+        Column::Stop => "camtable.column_stop",
+    })
+}
+
+/// A unit by its name.
+pub fn unit(unit: Unit) -> Text {
+    Text::new(match unit {
+        Unit::Steps => "camtable.steps",
+        Unit::Degrees => "camtable.degrees",
+        Unit::Millimetres => "camtable.millimetres",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::devices::interbus::profile::TableOptions;
+    use crate::devices::interbus::protocol::ProgramNumber;
+
+    #[test]
+    fn a_table_is_told_in_sentences() {
+        let scale = Scale::degrees(8192.0, 1000).unwrap();
+        let options = TableOptions { scale, range: 8192, program: ProgramNumber::new(2).unwrap() };
+        let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
+        let says = |text: Text| text.words(Language::English);
+        assert_eq!(says(layout(&table)), "Pulses read: 3. Columns separated by semicolons, named in the first line.");
+        assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is no number.");
+        let pulses = "Program 2: Glue has 2 pulses, which take cams 1, 2.";
+        assert_eq!(table.notes.iter().map(note).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);
+        // 228 steps are 10.01953°.
+        let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° less), stop 10.000° → step 1228 (0.0195° more)";
+        assert_eq!(says(rounding(&table.rows[0], &scale)), rounded);
+        let german = rounding(&table.rows[0], &scale).words(Language::German);
+        assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
+    }
+
+    /// 10.05 steps lie 0.05 beyond step 10.
+    #[test]
+    fn what_was_asked_for_stands_as_it_was_written() {
+        let scale = Scale::default();
+        let options = TableOptions { scale, range: 3600, program: ProgramNumber::FIRST };
+        let table = options.read("name;start;stop\nglue;10,05;20\n");
+        let says = rounding(&table.rows[0], &scale).words(Language::English);
+        assert!(says.contains("start 10.05 → step 10 (0.05 less)"), "{says}");
+    }
+
+    #[test]
+    fn what_is_wrong_is_one_sentence() {
+        let options = TableOptions { scale: Scale::default(), range: 1000, program: ProgramNumber::new(1).unwrap() };
+        let table = options.read("program;cam;start;stop\n9;0;1;2\n1;8;1;2\n1;0;1000;2\n1;1;1\n1;2;1;2\n1;2;3;4\n");
+        let told: Vec<String> = table.problems.iter().map(|own| problem(own).words(Language::English)).collect();
+        let expected = [
+            "Line 2, column 1: Cam program \"9\" does not exist: there are 1 to 8.",
+            "Line 3, column 2: Cam \"8\" does not exist: there are 0 to 7.",
+            "Line 4, column 3: The start at 1000 is beyond the measuring range, which is 0 to 999.",
+            "Line 5, column 4: The stop is missing.",
+            "Line 7, column 2: Cam 2 of program 1 stands in line 6 already, which counts.",
+        ];
+        assert_eq!(told, expected);
+    }
+}

@@ -1,0 +1,166 @@
+//! The chart in words.
+
+use super::{Chart, Lamp, Lane};
+use crate::app::Text;
+use crate::devices::interbus::profile::{Edge, LONGEST_NAME, Scale, Unit};
+use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, ProgramNumber, TURNS};
+use crate::devices::interbus::state::staged::{EditError, Mark};
+
+/// A cam by its number, and its name where it has one.
+pub fn cam(lane: &Lane) -> Text {
+    match &lane.name {
+        Some(name) => Text::new("cams.named").with("cam", lane.cam.get()).with("name", name),
+        None => bare(lane.cam),
+    }
+}
+
+/// A cam by its number.
+pub fn bare(cam: CamNumber) -> Text {
+    Text::new("cams.cam").with("cam", cam.get())
+}
+
+/// An edge of a cam.
+pub fn edge(lane: &Lane, edge: Edge) -> Text {
+    Text::new(match edge {
+        Edge::Start => "cams.start_of",
+        Edge::Stop => "cams.stop_of",
+    })
+    .with_text("cam", bare(lane.cam))
+}
+
+/// A position: in steps, and in units of the machine where it has others.
+pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
+    match scale.unit() {
+        Unit::Steps if scale.zero() == 0 => Text::new("cams.steps").with("step", step),
+        unit => {
+            let text = Text::new("cams.scaled").with("step", step).with("unit", unit.symbol());
+            text.with_number("value", scale.value(step, range), scale.decimals())
+        }
+    }
+}
+
+/// A number of units, as a ruler says it.
+pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
+    Text::new("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
+}
+
+/// Where a cam is, and how long.
+pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
+    let (start, stop) = (cam.start.get(), cam.stop.get());
+    let text = Text::new(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
+    let text = text.with_text("start", position(start, scale, range)).with_text("stop", position(stop, scale, range));
+    let whole = i64::from(range.max(1));
+    text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
+}
+
+/// A lane in a sentence: where its cam is and whether it works.
+pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
+    let Some(edges) = own.edges else { return Text::new("cams.no_edges") };
+    let id = if own.on { "cams.works" } else { "cams.works_not" };
+    Text::new(id).with_text("where", stretch(edges, scale, range))
+}
+
+/// What is not right about a lane.
+pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
+    let beyond = lane.beyond.then(|| Text::new("cams.beyond").with("last", chart.last()));
+    let clash = lane.clashes.then(|| Text::new("cams.clash").with("name", lane.name.as_deref().unwrap_or_default()));
+    beyond.into_iter().chain(clash).collect()
+}
+
+/// A lamp: whether the output is on, and what the encoder says otherwise.
+pub fn lamp(lamp: Lamp) -> Text {
+    let says = |on| Text::new(if on { "cams.lamp_on" } else { "cams.lamp_off" });
+    match (lamp.own, lamp.simulated) {
+        (None, None) => Text::new("cams.lamp_unknown"),
+        (Some(own), Some(simulated)) if own != simulated => {
+            Text::new("cams.lamp_differs").with_text("own", says(own)).with_text("simulated", says(simulated))
+        }
+        (Some(own), _) => Text::new("cams.lamp_own").with_text("own", says(own)),
+        (None, Some(simulated)) => Text::new("cams.lamp_simulated").with_text("simulated", says(simulated)),
+    }
+}
+
+/// What a person should look at; the cams of a program that are beyond the measuring range in one.
+pub fn marks(marks: &[Mark]) -> Vec<Text> {
+    let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
+    let mut told = Vec::new();
+    let mut texts = Vec::new();
+    for own in marks {
+        let Some(program) = beyond_in(own) else {
+            texts.push(mark(own));
+            continue;
+        };
+        if told.contains(&program) {
+            continue;
+        }
+        told.push(program);
+        let cams = marks.iter().filter_map(|other| match *other {
+            Mark::Beyond { program: its, cam, .. } if its == program => Some(cam.get().to_string()),
+            _ => None,
+        });
+        let cams: Vec<String> = cams.collect();
+        texts.push(match *own {
+            Mark::Beyond { last, .. } if cams.len() > 1 => {
+                let text = Text::new("cams.mark_beyond_several").with("program", program.get());
+                text.with("cams", cams.join(", ")).with("last", last)
+            }
+            _ => mark(own),
+        });
+    }
+    texts
+}
+
+fn mark(mark: &Mark) -> Text {
+    let program = |id, program: ProgramNumber| Text::new(id).with("program", program.get());
+    match *mark {
+        Mark::Gear(error) => gear(&error),
+        Mark::Preset { last } => Text::new("cams.mark_preset").with("last", last),
+        Mark::Beyond { program: own, cam, last, .. } => {
+            program("cams.mark_beyond", own).with("cam", cam.get()).with("last", last)
+        }
+        Mark::Clash { program: own, first, second, at } => {
+            let text = program("cams.mark_clash", own).with("first", first.get()).with("second", second.get());
+            text.with("at", at)
+        }
+    }
+}
+
+/// Why something could not be changed, and what to do.
+pub fn refused(error: &EditError) -> Text {
+    let program = |id, program: ProgramNumber| Text::new(id).with("program", program.get());
+    match error {
+        EditError::NothingRead => Text::new("cams.nothing_read"),
+        EditError::NotRead(own) => program("cams.not_read", *own),
+        EditError::ShiftNotRead => Text::new("cams.shift_not_read"),
+        EditError::NoCam { program: own, cam } => program("cams.no_cam", *own).with("cam", cam.get()),
+        EditError::Gear(error) => gear(error),
+        EditError::Parameter(error) => {
+            let id = match error.parameter {
+                Parameter::Preset => "cams.preset_limit",
+                _ => "cams.parameter_limit",
+            };
+            Text::new(id).with("value", error.value).with("low", error.low).with("high", error.high)
+        }
+        EditError::Edge { edge, to, last } => {
+            let id = match edge {
+                Edge::Start => "cams.edge_start",
+                Edge::Stop => "cams.edge_stop",
+            };
+            Text::new(id).with("to", to).with("last", last)
+        }
+        EditError::Beyond { program: own, cam, last } => {
+            program("cams.beyond_moved", *own).with("cam", cam.get()).with("last", last)
+        }
+        EditError::Name => Text::new("cams.long_name").with("most", LONGEST_NAME),
+    }
+}
+
+/// Why steps and turns do not go together.
+pub fn gear(error: &GearError) -> Text {
+    match *error {
+        GearError::Turns { turns } => Text::new("cams.gear_turns").with("turns", turns).with("most", TURNS),
+        GearError::Steps { steps, turns, most } => {
+            Text::new("cams.gear_steps").with("steps", steps).with("turns", turns).with("most", most)
+        }
+    }
+}

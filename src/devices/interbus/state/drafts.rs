@@ -1,0 +1,47 @@
+//! Edits of an encoder's parameters and cams, kept over a crash.
+
+use super::encoder::Encoder;
+use super::staged::Kept;
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
+use crate::devices::interbus::jobs::Interbus;
+use crate::devices::interbus::profile::InterbusProfile;
+use crate::profile::Document;
+
+/// What is edited, each with its place.
+pub(crate) type Edits = Vec<Kept>;
+
+impl OnDesk for Encoder {
+    type Device = Interbus;
+
+    fn session(&self) -> &Session<Interbus> {
+        &self.session
+    }
+
+    fn session_mut(&mut self) -> &mut Session<Interbus> {
+        &mut self.session
+    }
+}
+
+impl Drafted for Encoder {
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        self.key().map(|key| (key.device_type, key.serial_number))
+    }
+
+    fn edited(&self) -> Edits {
+        self.staged.edits()
+    }
+
+    fn take_edits(&mut self, edits: Edits) {
+        self.staged.take_draft(edits);
+    }
+
+    fn revert_edits(&mut self) {
+        self.staged.revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
+        let Some(profile) = document.body.get::<InterbusProfile>() else { return };
+        self.staged.saved(profile.image.clone(), profile.names.clone());
+        self.session.take_document(file, document);
+    }
+}

@@ -1,0 +1,307 @@
+//! An INTERBUS encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its
+//! line.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use super::cams;
+use super::preview::Preview;
+use super::record::Record;
+use super::review::Review;
+use super::staged::{Mark, Place, Staged, Wanted};
+use super::table::Import;
+use super::trace::Meaning;
+use super::words;
+use crate::app::check::CheckLine;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, Phase, ProfileFile, Saved, Session, Source, some};
+use crate::app::studio::SessionId;
+use crate::app::{Severity, Text};
+use crate::devices::interbus::jobs::Interbus;
+use crate::devices::interbus::procedures::{Handshake, Identity, Reading, Survey};
+use crate::devices::interbus::profile::{InterbusProfile, ProfileIdentity, Scale};
+use crate::devices::interbus::protocol::{Mode, ProgramNumber, ReadOut, StartupMode, Value, WindowShift, WordOrder};
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::sim::Motor;
+
+use super::said::Known;
+
+/// Steps of the handshake that are shown.
+const STEPS: usize = 200;
+
+/// An INTERBUS encoder, or a profile of one.
+pub struct Encoder {
+    /// What every session has.
+    pub session: Session<Interbus>,
+    /// Who it is and how it is set, as it was read.
+    pub survey: Option<Survey>,
+    /// The last device check.
+    pub check: Option<Vec<CheckLine>>,
+    /// Parameters and cams beside the edits of them.
+    pub staged: Staged,
+    /// What was read out, by its number.
+    pub read_outs: BTreeMap<u16, Value>,
+    /// What was recorded while it was polled.
+    pub record: Record,
+    /// Whether its cam outputs are those of the programs that it holds.
+    pub preview: Preview,
+    /// A write on its way.
+    pub review: Option<Review>,
+    /// Words of the last handshakes, the newest last.
+    pub handshake: VecDeque<Handshake>,
+    /// What turns the virtual encoder's shaft.
+    pub motor: Option<Motor>,
+    /// A table of cams that was read and is not taken yet.
+    pub import: Option<Import>,
+    /// What its machine counts in.
+    pub scale: Scale,
+    /// Why the last edit was not taken.
+    pub refusal: Option<Text>,
+    /// A person has said that the machine stands.
+    stopped: bool,
+    /// Rows of the table that is being opened which name no program are for this one.
+    pub(super) table_program: ProgramNumber,
+    /// Programs that were written, to be read again.
+    pub(super) read_after: Vec<ProgramNumber>,
+    /// What the frames of the trace say.
+    pub(super) trace: Meaning,
+}
+
+impl Encoder {
+    /// An encoder at a link that is being opened.
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+        Encoder::with(Session::at_link(id, url), Staged::default())
+    }
+
+    fn with(session: Session<Interbus>, staged: Staged) -> Self {
+        Encoder {
+            session,
+            survey: None,
+            check: None,
+            staged,
+            read_outs: BTreeMap::new(),
+            record: Record::default(),
+            preview: Preview::default(),
+            review: None,
+            handshake: VecDeque::new(),
+            motor: None,
+            import: None,
+            table_program: ProgramNumber::FIRST,
+            scale: Scale::default(),
+            refusal: None,
+            stopped: false,
+            read_after: Vec::new(),
+            trace: Meaning::new(WordOrder::default()),
+        }
+    }
+
+    /// A profile of an encoder.
+    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
+        let staged = match document.body.get::<InterbusProfile>() {
+            Some(profile) => Staged::of_profile(profile.image.clone(), profile.names.clone()),
+            None => Staged::default(),
+        };
+        let mut encoder = Encoder::with(Session::in_file(id, file, document), staged);
+        encoder.load_draft(services);
+        encoder
+    }
+
+    /// What is not right in what is wanted.
+    pub fn marks(&self) -> Vec<Mark> {
+        self.staged.wanted().map(Wanted::marks).unwrap_or_default()
+    }
+
+    /// The same for the eye, on every page but where a program is shown with its own.
+    pub fn marks_beside(&self, program: Option<ProgramNumber>) -> Vec<Text> {
+        let other = |mark: &Mark| program.is_none() || mark.program() != program;
+        let marks: Vec<Mark> = self.marks().into_iter().filter(other).collect();
+        some(&cams::words::marks(&marks), Text::clone)
+    }
+
+    /// The profile, where this is one.
+    pub fn profile(&self) -> Option<&InterbusProfile> {
+        let Source::File { document, .. } = &self.session.source else { return None };
+        document.body.get::<InterbusProfile>()
+    }
+
+    /// The profile as the user wants it, where this is one.
+    pub(crate) fn wanted_profile(&self) -> Option<InterbusProfile> {
+        let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
+        Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
+    }
+
+    /// Who it is, as far as that is known.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.survey.as_ref().map(|survey| &survey.identity)
+    }
+
+    /// Who it was, where this is a profile.
+    pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
+        self.profile().map(|profile| &profile.identity)
+    }
+
+    /// Its serial number; `None` where nothing has been read.
+    pub fn serial_number(&self) -> Option<&str> {
+        let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
+        self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
+    }
+
+    /// What it does when it is left alone, as it was last heard of.
+    pub fn mode(&self) -> Option<StartupMode> {
+        let read = || self.identity().map(|own| own.mode);
+        self.record.last().and_then(|reading| reading.mode).or_else(read)
+    }
+
+    /// With what its IN words are read.
+    pub fn known(&self) -> Known {
+        let mode = match self.mode() {
+            Some(StartupMode::Velocity) => Mode::Velocity,
+            Some(StartupMode::Cams(_)) => Mode::Cam,
+            _ => Mode::Position,
+        };
+        Known { mode, read_out: None, shift: self.shift() }
+    }
+
+    /// The shift of the window that the encoder has.
+    pub fn shift(&self) -> Option<WindowShift> {
+        self.staged.device().and_then(|image| image.shift)
+    }
+
+    /// The position that came last, in steps; `None` where the word does not tell it.
+    pub fn position(&self) -> Option<u32> {
+        self.record.last().and_then(Reading::position)
+    }
+
+    /// Which of the two words of a register pair comes first.
+    pub(super) fn order(&self) -> WordOrder {
+        let Source::Link(url) = &self.session.source else { return WordOrder::default() };
+        url.query.get("order").and_then(WordOrder::read).unwrap_or_default()
+    }
+
+    /// A person has said that the machine stands; nothing moves behind a virtual encoder.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped || self.session.is_virtual()
+    }
+
+    /// Somebody has to say first that the machine stands.
+    pub fn asks_for_standstill(&self) -> bool {
+        self.session.phase != Phase::Offline && !self.session.is_virtual()
+    }
+
+    pub(super) fn say_stopped(&mut self, stopped: bool) {
+        self.stopped = stopped;
+    }
+
+    /// Steps of the measuring range, as it is wanted.
+    pub fn range(&self) -> u32 {
+        self.staged.wanted().map_or(0, Wanted::range)
+    }
+
+    /// What was read out.
+    pub fn read_out(&self, what: ReadOut) -> Option<Value> {
+        self.read_outs.get(&what.number()).copied()
+    }
+
+    /// The programs that were read.
+    pub(super) fn known_programs(&self) -> Vec<ProgramNumber> {
+        self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
+    }
+
+    /// Programs that were read, of eight.
+    pub fn programs_read(&self) -> usize {
+        self.staged.device().map_or(0, |image| image.known().count())
+    }
+
+    /// Write cycles of its memory that this computer has seen, beside those that cannot be counted.
+    pub fn stores(&self) -> Option<u64> {
+        self.session.cycles
+    }
+
+    /// Things that are edited.
+    pub(crate) fn edits(&self) -> usize {
+        self.staged.differences().len()
+    }
+
+    /// Some parameter is edited.
+    pub fn edits_parameters(&self) -> bool {
+        self.staged.differences().iter().any(|own| matches!(own.place, Place::Parameter(_)))
+    }
+
+    /// Something about cams is edited.
+    pub fn edits_cams(&self) -> bool {
+        self.staged.differences().iter().any(|own| !matches!(own.place, Place::Parameter(_)))
+    }
+
+    pub(crate) fn can_undo(&self) -> bool {
+        self.staged.can_undo()
+    }
+
+    pub(crate) fn can_redo(&self) -> bool {
+        self.staged.can_redo()
+    }
+
+    /// There are edits that are not written.
+    pub fn is_dirty(&self) -> bool {
+        self.staged.is_dirty()
+    }
+
+    /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
+    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+        if self.is_another(&survey.identity) {
+            if self.staged.is_dirty() {
+                self.session.tell_of_another(&survey.identity.serial_number, services);
+            }
+            self.forget_encoder(services);
+        }
+        let first = self.survey.is_none();
+        self.session.title = Some(title(&survey.identity));
+        self.staged.refresh_parameters(survey.parameters);
+        for (read_out, value) in survey.read_outs() {
+            self.read_outs.insert(read_out.number(), value);
+        }
+        self.survey = Some(survey);
+        let mode = self.known().mode;
+        self.trace.found(mode);
+        if first {
+            self.load_draft(services);
+            self.log_answer(services);
+        }
+        self.list_backups(services);
+    }
+
+    /// Another encoder than the one that was read before.
+    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+        self.identity().is_some_and(|known| known.serial_number != identity.serial_number)
+    }
+
+    fn log_answer(&self, services: &mut Services) {
+        let Some(identity) = self.identity() else { return };
+        let fact = Text::new("log.interbus")
+            .with("serial", &identity.serial_number)
+            .with("version", identity.software_version)
+            .with_text("range", words::range(identity.steps, identity.revolutions));
+        services.note(Severity::Note, vec![fact], Some(&self.session.name()));
+    }
+
+    fn forget_encoder(&mut self, services: &mut Services) {
+        self.leave_draft(services);
+        (self.survey, self.check, self.review, self.refusal) = (None, None, None, None);
+        self.session.title = None;
+        self.staged.clear();
+        self.read_outs.clear();
+        self.record.forget();
+        (self.session.backups, self.session.writes) = (None, None);
+    }
+
+    /// A word of a handshake passed.
+    pub(super) fn shake(&mut self, step: Handshake) {
+        self.handshake.push_back(step);
+        let surplus = self.handshake.len().saturating_sub(STEPS);
+        self.handshake.drain(..surplus);
+    }
+}
+
+/// The name by which the log and the jobs call an encoder.
+fn title(identity: &Identity) -> String {
+    format!("K3 · {}", identity.serial_number)
+}

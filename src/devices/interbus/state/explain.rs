@@ -1,0 +1,171 @@
+//! An INTERBUS encoder in words: the errors of jobs with it, and what is said on the way.
+
+mod check;
+mod gateway;
+mod item;
+mod write;
+
+pub use check::check;
+pub use gateway::{damage, exception};
+pub use item::{direction, parameter, read_out, startup};
+pub use write::{change, op, other_type, plan, wear, weight, written};
+
+use crate::app::Text;
+use crate::app::explain::{link, plain};
+use crate::devices::interbus::jobs::{Doing, JobError};
+use crate::devices::interbus::procedures::{Awaited, Error, Implausible, Standing};
+use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
+use crate::link::LinkError;
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    match error {
+        JobError::Device(error) => vec![encoder(error)],
+        JobError::Plan(error) => vec![plan(error)],
+        JobError::NotBegun(why) => vec![write::not_begun(why)],
+        JobError::Interrupted { interrupted, backup, planned, kind } => {
+            write::interruption(interrupted, backup, *planned, *kind)
+        }
+    }
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    lost(error.device()?).map(link)
+}
+
+/// The link is open, and nobody answers over it.
+pub fn is_silence(error: &JobError) -> bool {
+    matches!(error.device(), Some(Error::NoReply { .. }))
+}
+
+fn lost(error: &Error) -> Option<&LinkError> {
+    match error {
+        Error::Link(error) => Some(error),
+        Error::NotLedBack { cause, .. } => lost(cause),
+        _ => None,
+    }
+}
+
+/// What an encoder behind its gateway did not do.
+pub fn encoder(error: &Error) -> Text {
+    match error {
+        Error::Link(error) => link(error),
+        Error::NoReply { asked, tries } => {
+            Text::new("interbus.no_reply").with_text("asked", gateway::asked(*asked)).with("tries", tries)
+        }
+        Error::Damaged { asked, tries, cause } => Text::new("interbus.damaged")
+            .with_text("asked", gateway::asked(*asked))
+            .with("tries", tries)
+            .with_text("why", gateway::damage(*cause)),
+        Error::NeverSilent => Text::new("interbus.never_silent"),
+        Error::Exception { asked, exception } => Text::new("interbus.exception")
+            .with_text("asked", gateway::asked(*asked))
+            .with("code", format!("0x{:02X}", exception.code()))
+            .with("name", exception.name())
+            .with_text("cause", gateway::exception(*exception)),
+        Error::Cancelled => Text::new("encoder.cancelled"),
+        Error::Illegal(refused) => Text::new("interbus.illegal").with("word", word(refused.command.emit())),
+        Error::Refused { sent, error } => Text::new("interbus.refused")
+            .with("word", word(sent.emit()))
+            .with("error", word(Reply::Error(*error).emit()))
+            .with_text("why", refusal(*error)),
+        Error::UnknownReadOut { command } => Text::new("interbus.no_read_out").with("word", word(command.emit())),
+        Error::TimeOut { awaited, sent, input, milliseconds } => {
+            let text = match Reply::parse(*input) {
+                Reply::Busy { .. } => Text::new("interbus.still_busy"),
+                Reply::Echo { .. } => Text::new("interbus.other_echo"),
+                _ => time_out(*awaited),
+            };
+            text.with("sent", word(*sent)).with("input", word(*input)).with("milliseconds", milliseconds)
+        }
+        Error::OtherMaster { sent, output } => {
+            Text::new("interbus.other_master_out").with("sent", word(*sent)).with("seen", word(*output))
+        }
+        Error::NotRunning { input } => Text::new("interbus.not_running").with("input", word(*input)),
+        Error::WordOrder { input, swapped } => {
+            Text::new("interbus.word_order").with("input", word(*input)).with("swapped", word(*swapped))
+        }
+        Error::Implausible(why) => implausible(*why),
+        Error::NoMode { wanted, is } => {
+            Text::new("interbus.no_mode").with_text("wanted", startup(*wanted)).with_text("is", startup(*is))
+        }
+        Error::NotSelectable { mode } => Text::new("interbus.not_selectable").with_text("mode", startup(*mode)),
+        Error::UnknownMode { mode } => Text::new("interbus.unknown_mode").with_text("mode", startup(*mode)),
+        Error::Moving { from, to } => Text::new("interbus.moving").with("from", from).with("to", to),
+        Error::NotTaken { item, wanted, reads } => {
+            Text::new("interbus.not_taken").with("item", item).with("wanted", wanted).with("reads", reads)
+        }
+        Error::Changed { item } => Text::new("interbus.changed").with("item", item),
+        Error::NotLedBack { cause, standing } => Text::new("interbus.not_led_back")
+            .with_text("cause", encoder(cause))
+            .with_text("standing", self::standing(standing)),
+        Error::OtherPlan => Text::new("interbus.other_plan"),
+    }
+}
+
+fn time_out(awaited: Awaited) -> Text {
+    Text::new(match awaited {
+        Awaited::Echo => "interbus.no_echo",
+        Awaited::Value => "interbus.no_value",
+        Awaited::Run => "interbus.no_run",
+        Awaited::Preset => "interbus.no_preset",
+    })
+}
+
+/// Why an encoder sends an error word, and what to do.
+pub fn refusal(error: ErrorWord) -> Text {
+    Text::new(match (error.code.get(), error.data.get()) {
+        (1, _) => "ib_refused.data",
+        (2, _) => "ib_refused.code",
+        (3, _) => "ib_refused.lost",
+        (0xC, ErrorWord::CAM_BEYOND_RANGE) => "ib_refused.cam",
+        (0xC, _) => "ib_refused.maker",
+        _ => "ib_refused.invalid",
+    })
+}
+
+/// What an encoder says of itself and cannot be.
+pub fn implausible(why: Implausible) -> Text {
+    match why {
+        Implausible::Gear(GearError::Turns { turns }) => Text::new("interbus.implausible_turns").with("turns", turns),
+        Implausible::Gear(GearError::Steps { steps, turns, most }) => {
+            Text::new("interbus.implausible_steps").with("steps", steps).with("turns", turns).with("most", most)
+        }
+        Implausible::Direction(code) => Text::new("interbus.implausible_direction").with("code", code),
+        Implausible::Value { read, value } => {
+            Text::new("interbus.implausible_value").with("read", word(read)).with("value", value)
+        }
+    }
+}
+
+/// In which state an encoder may be that could not be led back; the part of a sentence.
+fn standing(standing: &Standing) -> Text {
+    let id = if standing.parameterising { "ib_standing.set" } else { "ib_standing.out" };
+    let state = Text::new(id).with("out", word(standing.out));
+    match (standing.found, standing.is) {
+        (Some(found), Some(is)) if found != is => Text::new("ib_standing.other")
+            .with_text("state", state)
+            .with_text("found", startup(found))
+            .with_text("is", startup(is)),
+        (Some(found), _) => Text::new("ib_standing.found").with_text("state", state).with_text("found", startup(found)),
+        (None, _) => state,
+    }
+}
+
+/// What a job does at the moment.
+pub fn doing(doing: &Doing) -> Text {
+    match doing {
+        Doing::ReadOut(read_out) => item::read_out(*read_out),
+        Doing::Program(program) => Text::new("ib_startup.program").with("program", program.get()),
+        Doing::Operation(item) => plain(item),
+    }
+}
+
+/// A word as it is written everywhere.
+fn word(word: u32) -> String {
+    format!("0x{word:08X}")
+}
+
+#[cfg(test)]
+mod tests;

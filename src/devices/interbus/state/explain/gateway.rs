@@ -1,0 +1,43 @@
+//! What a gateway was asked, what it refuses, and what was wrong with its reply, in words.
+
+use crate::app::Text;
+use crate::devices::interbus::procedures::{Asked, Damage, Exception};
+
+/// What a gateway was asked; the part of a sentence.
+pub(super) fn asked(asked: Asked) -> Text {
+    let id = match asked {
+        Asked::Input { .. } => "ib_asked.input",
+        Asked::Output { .. } => "ib_asked.output",
+        Asked::Write { .. } => "ib_asked.write",
+    };
+    let text = Text::new(id).with("register", asked.register());
+    match asked {
+        Asked::Write { word, .. } => text.with("word", super::word(word)),
+        Asked::Input { .. } | Asked::Output { .. } => text,
+    }
+}
+
+/// What is the matter, most likely, and what to do.
+pub fn exception(exception: Exception) -> Text {
+    Text::new(match exception.code() {
+        0x01 => "ib_exception.function",
+        0x02 => "ib_exception.address",
+        0x03 => "ib_exception.value",
+        0x04 => "ib_exception.failure",
+        0x05 | 0x06 => "ib_exception.busy",
+        0x08 => "ib_exception.memory",
+        0x0A => "ib_exception.path",
+        0x0B => "ib_exception.target",
+        _ => "ib_exception.other",
+    })
+}
+
+/// What was wrong with a reply.
+pub fn damage(damage: Damage) -> Text {
+    match damage {
+        Damage::NoFrame { bytes } => Text::new("ib_damage.no_frame").with("bytes", bytes),
+        Damage::Unit { asked, got } => Text::new("ib_damage.unit").with("asked", asked).with("got", got),
+        Damage::Function { asked, got } => Text::new("ib_damage.function").with("asked", asked).with("got", got),
+        Damage::Registers => Text::new("ib_damage.registers"),
+    }
+}

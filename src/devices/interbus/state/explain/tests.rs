@@ -1,0 +1,234 @@
+//! Every error says what happened and what to do, in both languages and with the facts in it.
+
+use std::path::Path;
+
+use super::*;
+use crate::app::Language::{English, German};
+use crate::devices::interbus::jobs::ChangeKind;
+use crate::devices::interbus::procedures::write::{Interrupted, Left, Written};
+use crate::devices::interbus::procedures::{Asked, Damage, Exception};
+use crate::devices::interbus::profile::{Edge, Item, Op, OtherType, PlanError};
+use crate::devices::interbus::protocol::{
+    CamNumber, Code, Command, Flags, Mode, OutOfRange, Parameter, ProgramNumber, Refused,
+};
+use crate::devices::interbus::protocol::{StartupMode, Value, WindowShift};
+use crate::link::LinkErrorKind;
+use crate::worker::NotBegun;
+
+fn value(number: u32) -> Value {
+    Value::new(number).unwrap()
+}
+
+fn error_word(word: u32) -> ErrorWord {
+    ErrorWord { code: Code::of_word(word), data: Value::of_word(word) }
+}
+
+fn program(number: u8) -> StartupMode {
+    StartupMode::Cams(ProgramNumber::new(number).unwrap())
+}
+
+#[track_caller]
+fn says(text: &Text, facts: &[&str]) {
+    for language in [English, German] {
+        let words = text.words(language);
+        assert!(facts.iter().all(|fact| words.contains(fact)), "{facts:?}: {words}");
+        assert!(words.trim_end_matches('.').contains(['.', ';', ':']), "{words}");
+        assert!(!words.contains('{') && words.ends_with('.'), "{words}");
+    }
+    assert_ne!(text.words(English), text.words(German));
+}
+
+#[test]
+fn every_error_of_an_encoder_says_what_to_do() {
+    let asked = Asked::Input { register: 16 };
+    let standing = |found, is| Standing { out: 0x2080_0003, parameterising: true, found, is };
+    let set = Command::Set(Parameter::Steps, value(8193));
+    let time_out = |awaited| Error::TimeOut { awaited, sent: 0x0200_2000, input: 0x12, milliseconds: 2000 };
+    let cases = [
+        (Error::NoReply { asked, tries: 3 }, vec!["16", "3"]),
+        (Error::Damaged { asked, tries: 5, cause: Damage::Unit { asked: 1, got: 2 } }, vec!["5", "unit 2", "1"]),
+        (Error::Damaged { asked, tries: 5, cause: Damage::NoFrame { bytes: 7 } }, vec!["7"]),
+        (Error::Damaged { asked, tries: 5, cause: Damage::Function { asked: 4, got: 3 } }, vec!["3", "4"]),
+        (Error::Damaged { asked, tries: 5, cause: Damage::Registers }, vec![]),
+        (Error::NeverSilent, vec![]),
+        (Error::Illegal(Refused { command: Command::Preset, mode: Mode::Cam }), vec!["0x40000000"]),
+        (Error::Refused { sent: set, error: error_word(0x8200_0000) }, vec!["0x02002001", "0x82000000"]),
+        (Error::UnknownReadOut { command: Command::ReadShift }, vec!["0x20200040"]),
+        (time_out(Awaited::Echo), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(Awaited::Value), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(Awaited::Run), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(Awaited::Preset), vec!["0x02002000", "2000", "0x00000012"]),
+        (Error::OtherMaster { sent: 0, output: 0x4000_0000 }, vec!["0x40000000", "0x00000000"]),
+        (Error::NotRunning { input: 0xC200_00FF }, vec!["0xC20000FF"]),
+        (Error::WordOrder { input: 0x3456_0012, swapped: 0x0012_3456 }, vec!["0x34560012", "0x00123456", "order="]),
+        (Error::Implausible(Implausible::Gear(GearError::Turns { turns: 65_536 })), vec!["65536", "4096", "order="]),
+        (
+            Error::Implausible(Implausible::Gear(GearError::Steps { steps: 0, turns: 1, most: 8192 })),
+            vec!["8192", "order="],
+        ),
+        (Error::Implausible(Implausible::Direction(77)), vec!["77", "order="]),
+        (Error::Implausible(Implausible::Value { read: 0x2020_0040, value: 99 }), vec!["99", "0x20200040"]),
+        (Error::NoMode { wanted: program(3), is: StartupMode::K3 }, vec!["3", "K3"]),
+        (Error::NotSelectable { mode: StartupMode::K2 }, vec!["K2"]),
+        (Error::UnknownMode { mode: StartupMode::Unknown(value(85)) }, vec!["85"]),
+        (Error::Moving { from: 100, to: 180 }, vec!["100", "180"]),
+        (Error::NotTaken { item: "steps".to_owned(), wanted: 255, reads: 256 }, vec!["steps", "255", "256"]),
+        (Error::Changed { item: "shift".to_owned() }, vec!["shift"]),
+        (Error::OtherPlan, vec![]),
+        (
+            Error::NotLedBack {
+                cause: Box::new(Error::NoReply { asked, tries: 3 }),
+                standing: standing(Some(program(3)), Some(StartupMode::K3)),
+            },
+            vec!["16", "0x20800003", "3", "K3"],
+        ),
+        (Error::NotLedBack { cause: Box::new(Error::NeverSilent), standing: standing(None, None) }, vec!["0x20800003"]),
+    ];
+    for (error, facts) in cases {
+        says(&encoder(&error), &facts);
+    }
+}
+
+/// Modbus application protocol 1.1b3, chapter 7.
+#[test]
+fn every_exception_of_a_gateway_is_told_with_its_code() {
+    let asked = Asked::Write { register: 2048, word: 0x4000_0000 };
+    for code in [1, 2, 3, 4, 5, 6, 8, 0xA, 0xB, 0x7F] {
+        let exception = Exception::new(code);
+        let text = encoder(&Error::Exception { asked, exception });
+        says(&text, &[&format!("0x{code:02X}"), exception.name(), "2048", "0x40000000"]);
+    }
+}
+
+/// Reference 2.
+#[test]
+fn every_error_word_is_told() {
+    for word in [0x8200_0000, 0x8400_0000, 0x8600_0000, 0x9800_0004, 0x9800_0005, 0x8000_0000] {
+        let sent = Command::Shift(WindowShift::default());
+        says(&encoder(&Error::Refused { sent, error: error_word(word) }), &[&format!("0x{word:08X}"), "0x20100000"]);
+    }
+}
+
+#[test]
+fn every_refusal_of_a_plan_names_both_limits() {
+    let beyond = |edge| {
+        let item = Item::Cam(ProgramNumber::new(2).unwrap(), CamNumber::new(5).unwrap());
+        PlanError::CamBeyondRange { item, edge, position: 3600, last: 3599 }
+    };
+    let preset = OutOfRange { parameter: Parameter::Preset, value: 3600, low: 0, high: 3599 };
+    let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };
+    let types = OtherType { profile: Flags::new(value(2)), device: Flags::new(value(1)) };
+    let cases = [
+        (
+            PlanError::OtherDevice { profile: "123".to_owned(), device: "456".to_owned() },
+            vec!["123", "456"],
+            Some("--allow-other-device"),
+        ),
+        (PlanError::OtherType(types), vec!["ultiturn", "ingle"], Some("--allow-other-type")),
+        (PlanError::Gear(GearError::Turns { turns: 4097 }), vec!["4097", "1", "4096"], None),
+        (PlanError::Gear(GearError::Steps { steps: 8193, turns: 1, most: 8192 }), vec!["8193", "8192"], None),
+        (PlanError::OutOfRange(preset), vec!["3600", "0", "3599"], None),
+        (left, vec!["5000", "0", "3599"], Some("--with-mounting")),
+        (beyond(Edge::Start), vec!["5", "2", "3600", "0", "3599"], None),
+        (beyond(Edge::Stop), vec!["5", "2", "3600", "0", "3599"], None),
+        (PlanError::NotRead { item: Item::Shift }, vec!["shift"], None),
+    ];
+    for (error, facts, option) in cases {
+        let text = plan(&error);
+        says(&text, &facts);
+        assert!(option.is_none_or(|option| text.terminal().contains(option)), "{}", text.terminal());
+        assert!(option.is_none_or(|option| !text.words(English).contains(option)), "no options in the window");
+    }
+    let worn = job(&JobError::NotBegun(NotBegun::Worn { seen: 448, cost: 2, limit: 449 }));
+    says(&worn[0], &["448", "2"]);
+    assert!(worn[0].terminal().contains("450") && worn[0].terminal().contains("--force-wear"), "{worn:?}");
+}
+
+#[test]
+fn a_write_that_was_cut_off_says_what_is_left_to_do() {
+    let told = |write_cycles, left, kind| -> Vec<String> {
+        let done = Written { ops: 1, write_cycles, written: 1, verified: 1 };
+        let interrupted = Interrupted { done, unclear: vec![Item::Shift], cause: Error::NeverSilent, left };
+        let texts = write::interruption(&interrupted, Path::new("b.ron"), 3, kind);
+        assert!(texts.iter().all(|text| text.words(English) != text.words(German)), "{texts:?}");
+        texts.iter().map(Text::terminal).collect()
+    };
+    for (kind, what) in [
+        (ChangeKind::Restore, "restoring the profile again"),
+        (ChangeKind::Edits, "the command again"),
+        (ChangeKind::Preset, "old one or the preset"),
+        (ChangeKind::Default, "brings them back"),
+    ] {
+        let lines = told(2, Left::AsFound, kind);
+        assert!(lines.len() == 3 && lines[2].contains("b.ron") && lines[2].contains(what), "{lines:?}");
+        assert!(lines[0].contains("1 of 3") && lines[1].contains("runs again") && lines[1].contains("shift"));
+    }
+    let standing = Standing { out: 0, parameterising: true, found: None, is: None };
+    let lines = told(2, Left::Unknown(standing), ChangeKind::Restore);
+    assert!(lines[1].contains("lead-back"), "{lines:?}");
+}
+
+/// Issue 22.5: whatever completes it comes behind leading the encoder back.
+#[test]
+fn what_completes_a_write_comes_after_leading_back() {
+    let standing = Standing { out: 0, parameterising: true, found: None, is: None };
+    for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
+        let done = Written { ops: 1, write_cycles: 1, written: 1, verified: 1 };
+        let last = |left| {
+            let interrupted = Interrupted { done: done.clone(), unclear: vec![], cause: Error::NeverSilent, left };
+            write::interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
+        };
+        let (found, unknown) = (last(Left::AsFound), last(Left::Unknown(standing)));
+        assert_eq!(unknown.terminal(), format!("Lead the encoder back first. {}", found.terminal()));
+        assert!(unknown.words(German).starts_with("Zuerst den Geber zurückführen. "), "{unknown:?}");
+        assert_eq!(write::weight(&unknown), write::weight(&found));
+    }
+}
+
+/// Issue 22.4: a count that is not known is told with what opens it.
+#[test]
+fn a_write_that_cannot_be_counted_says_what_opens_it() {
+    let refused = job(&JobError::NotBegun(NotBegun::WearUnknown { cost: 2 }));
+    says(&refused[0], &["2"]);
+    assert!(refused[0].terminal().contains("--force-wear"), "{refused:?}");
+}
+
+#[test]
+fn operations_are_told_one_by_one() {
+    use crate::devices::interbus::profile::{CamChange, ParameterChange, ProgramChange};
+    let words = |op: &Op| {
+        let own = super::op(op);
+        let one = |change: &crate::app::review::ChangeWords| {
+            let part = change.part.as_ref().map(|part| part.words(English) + ": ").unwrap_or_default();
+            format!("{part}{} → {}", change.old.words(English), change.new.words(English))
+        };
+        (own.item.words(English), own.changes.iter().map(one).collect::<Vec<_>>())
+    };
+    let turned = ParameterChange { parameter: Parameter::Direction, from: 3, to: 4 };
+    let expected = vec!["direction: clockwise → counterclockwise".to_owned()];
+    assert_eq!(words(&Op::Parameterise(vec![turned])), ("Parameters, stored once".to_owned(), expected));
+    let change = ProgramChange {
+        program: ProgramNumber::new(2).unwrap(),
+        cams: vec![CamChange { cam: CamNumber::new(5).unwrap(), edge: Edge::Stop, from: value(10), to: value(20) }],
+        mask: Some((0, 0x93)),
+        shift: WindowShift::new(0).zip(WindowShift::new(8)),
+    };
+    let expected =
+        ["cam 5, stop: 10 → 20", "active cams: none → 0, 1, 4, 7", "window shift: 0 → 8"].map(str::to_owned).to_vec();
+    assert_eq!(words(&Op::Program(change)), ("Cam program 2, stored once".to_owned(), expected));
+    let fired = words(&Op::FirePreset { value: 500 });
+    assert_eq!(fired.1, ["as it stands at that moment → 500"]);
+    assert!(words(&Op::Default).1[0].contains("experimental"));
+}
+
+#[test]
+fn a_wire_that_is_gone_is_a_loss_and_silence_is_none() {
+    let gone = || Error::Link(LinkError::new("plc:502", LinkErrorKind::Lost));
+    let standing = Standing { out: 0, parameterising: false, found: None, is: None };
+    for error in [gone(), Error::NotLedBack { cause: Box::new(gone()), standing }] {
+        assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
+    }
+    let silent = JobError::Device(Error::NoReply { asked: Asked::Input { register: 0 }, tries: 3 });
+    assert!(loss(&silent).is_none() && is_silence(&silent));
+    assert!(!is_silence(&JobError::Device(Error::NeverSilent)));
+}

@@ -1,0 +1,193 @@
+//! Writes in words: what is wanted, the operations of a plan, why there is no plan, what was written, why it ended early and
+//! in which state the encoder was left.
+
+use std::path::Path;
+
+use super::encoder;
+use super::item::{cams, edge, number, parameter};
+use crate::app::explain::{self, plain};
+use crate::app::review::{ChangeWords, OpWords};
+use crate::app::{Severity, Text};
+use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
+use crate::devices::interbus::procedures::write::{Interrupted, Left, Written};
+use crate::devices::interbus::profile::{
+    CamChange, Edge, Item, Op, OtherType, ParameterChange, PlanError, ProgramChange,
+};
+use crate::devices::interbus::protocol::{Flags, GearError};
+use crate::worker::NotBegun;
+
+/// A change in words.
+pub fn change(change: &Change) -> Text {
+    match change {
+        Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
+            "" => Text::new("ib_change.restore"),
+            serial => Text::new("change.restore").with("serial", serial),
+        },
+        Change::Write(_) | Change::Item(..) => Text::new("ib_change.write"),
+        Change::Preset { value } => Text::new("ib_change.preset").with("value", value),
+        Change::Default => Text::new("ib_change.default"),
+    }
+}
+
+/// An operation in words; each parameter, mask and edge by itself.
+pub fn op(op: &Op) -> OpWords {
+    match op {
+        Op::Parameterise(changes) => OpWords {
+            item: Text::new("ib_op.parameters"),
+            changes: changes
+                .iter()
+                .map(|ParameterChange { parameter: own, from, to }| ChangeWords {
+                    part: Some(parameter(*own)),
+                    old: number(*own, *from),
+                    new: number(*own, *to),
+                })
+                .collect(),
+        },
+        Op::Program(change) => {
+            OpWords { item: Text::new("ib_op.program").with("program", change.program.get()), changes: program(change) }
+        }
+        Op::FirePreset { value } => OpWords::one(Text::new("ib_op.fire"), Text::new("ib_op.place"), plain(value)),
+        Op::Default => {
+            OpWords::one(Text::new("ib_op.default"), Text::new("ib_op.as_set"), Text::new("ib_op.as_delivered"))
+        }
+    }
+}
+
+fn program(change: &ProgramChange) -> Vec<ChangeWords> {
+    let words = |part: Text, old: Text, new: Text| ChangeWords { part: Some(part), old, new };
+    let of_cam = |own: &CamChange| words(edge(own.cam, own.edge), plain(own.from.get()), plain(own.to.get()));
+    let mask = change.mask.map(|(old, new)| words(Text::new("ib_item.mask"), cams(old), cams(new)));
+    let shift = change.shift.map(|(old, new)| words(Text::new("ib_item.shift"), plain(old.get()), plain(new.get())));
+    change.cams.iter().map(of_cam).chain(mask).chain(shift).collect()
+}
+
+/// A profile that goes onto another type of encoder.
+pub fn other_type(types: OtherType) -> Text {
+    of_types("ib_review.other_type", types)
+}
+
+fn of_types(id: &'static str, types: OtherType) -> Text {
+    let name = |flags: Flags| match (flags.multiturn(), flags.steps_minus_one()) {
+        (true, false) => "ib_type.multiturn",
+        (false, false) => "ib_type.single_turn",
+        (true, true) => "ib_type.multiturn_less_one",
+        (false, true) => "ib_type.single_turn_less_one",
+    };
+    let [profile, device] = [types.profile, types.device].map(|flags| Text::new(name(flags)));
+    Text::new(id).with_text("profile", profile).with_text("device", device)
+}
+
+/// Why something cannot be planned.
+pub fn plan(error: &PlanError) -> Text {
+    match error {
+        PlanError::OtherDevice { profile, device } => {
+            Text::new("plan.other_device").with("profile", profile).with("device", device)
+        }
+        PlanError::OtherType(types) => of_types("ib_plan.other_type", *types),
+        PlanError::Gear(GearError::Turns { turns }) => Text::new("ib_plan.turns").with("turns", turns),
+        PlanError::Gear(GearError::Steps { steps, turns, most }) => {
+            Text::new("ib_plan.steps").with("steps", steps).with("turns", turns).with("most", most)
+        }
+        PlanError::OutOfRange(error) => Text::new("ib_plan.range")
+            .with_text("item", parameter(error.parameter))
+            .with("value", error.value)
+            .with("low", error.low)
+            .with("high", error.high),
+        PlanError::MountingLeft { item, value, low, high } => Text::new("ib_plan.mounting_left")
+            .with_text("item", item.parameter().map_or_else(|| plain(item), parameter))
+            .with("value", value)
+            .with("low", low)
+            .with("high", high),
+        PlanError::CamBeyondRange { item: Item::Cam(program, cam), edge, position, last } => {
+            let id = match edge {
+                Edge::Start => "ib_plan.cam_start",
+                Edge::Stop => "ib_plan.cam_stop",
+            };
+            let text = Text::new(id).with("program", program.get()).with("cam", cam.get());
+            text.with("position", position).with("last", last)
+        }
+        PlanError::CamBeyondRange { item, position, last, .. } => {
+            let text = Text::new("ib_plan.range").with("item", item);
+            text.with("value", position).with("low", 0).with("high", last)
+        }
+        PlanError::NotRead { item } => Text::new("ib_plan.not_read").with("item", item),
+    }
+}
+
+/// That the stores of the EEPROM are numbered, where a plan comes near their end.
+pub fn wear(prepared: &Prepared) -> Option<Text> {
+    let (id, after) = match prepared.wear()? {
+        Wear::Known(after) => ("ib_stores.known", after),
+        Wear::Ask(after) => ("ib_stores.ask", after),
+        Wear::Worn(after) => ("ib_stores.worn", after),
+        Wear::Unknown => return Some(Text::new("ib_stores.unknown")),
+    };
+    Some(Text::new(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
+}
+
+/// Why a write was not begun.
+pub(super) fn not_begun(why: &NotBegun) -> Text {
+    match why {
+        NotBegun::Worn { seen, cost, .. } => {
+            Text::new("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
+        }
+        NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_begun(why),
+    }
+}
+
+/// A write that is done.
+pub fn written(written: &Written) -> Text {
+    // Of the default nobody knows what there is to be read back.
+    let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
+    Text::new(id).with("verified", written.verified).with("cycles", written.write_cycles)
+}
+
+/// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
+pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
+    let Interrupted { done, unclear, cause, left } = interrupted;
+    let mut texts = vec![if cause.is_cancelled() && *left == Left::AsFound {
+        Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
+    } else {
+        let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
+        text.with_text("cause", encoder(cause))
+    }];
+    let untouched = done.write_cycles == 0 && done.written == 0;
+    let state = match left {
+        Left::AsFound => Text::new("ib_left.as_found"),
+        Left::Unknown(_) => Text::new("ib_left.unknown"),
+    };
+    texts.push(if untouched || unclear.is_empty() {
+        state
+    } else {
+        let items = Text::new("ib_left.unclear").with_list("items", unclear.iter().map(plain));
+        Text::new("ib_left.both").with_text("state", state).with_text("unclear", items)
+    });
+    let what_next = match kind {
+        _ if untouched => Text::new("write.untouched"),
+        ChangeKind::Restore => Text::new("write.backup"),
+        ChangeKind::Edits => Text::new("ib_left.edits"),
+        ChangeKind::Preset => Text::new("ib_left.preset"),
+        ChangeKind::Default => Text::new("ib_left.default"),
+    };
+    let what_next = what_next.with("backup", backup.display());
+    texts.push(match left {
+        Left::AsFound => what_next,
+        Left::Unknown(_) => Text::new("write.after_lead_back").with_text("next", what_next),
+    });
+    texts
+}
+
+/// How much one of the sentences about a write that was cut off matters.
+pub fn weight(text: &Text) -> Severity {
+    match text.id() {
+        "ib_left.as_found" => Severity::Good,
+        "write.after_lead_back"
+        | "write.backup"
+        | "write.untouched"
+        | "ib_left.edits"
+        | "ib_left.preset"
+        | "ib_left.default" => Severity::Note,
+        "write.cancelled" | "ib_left.both" => Severity::Warning,
+        _ => Severity::Error,
+    }
+}

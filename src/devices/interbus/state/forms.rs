@@ -1,0 +1,165 @@
+//! Numbers that are typed, and what they are to change.
+
+use super::staged::Edit;
+use super::words;
+use crate::app::Text;
+use crate::app::number::number as decimal;
+use crate::devices::interbus::profile::{Parameters, Scale, Unit};
+use crate::devices::interbus::protocol::{Parameter, Value};
+
+/// A whole number, with blanks or apostrophes between its digits if need be.
+pub fn number(text: &str) -> Result<u32, Text> {
+    let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
+    let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
+        Some(hex) => u32::from_str_radix(hex, 16).ok(),
+        None => digits.parse().ok(),
+    };
+    number.ok_or_else(|| Text::new("ib_entry.number").with("entry", text.trim()))
+}
+
+/// The edit of a parameter that was typed. Whether it goes together with the others the edit says.
+///
+/// # Errors
+/// No number, in words.
+pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
+    let value = number(text)?;
+    Ok(match parameter {
+        Parameter::Steps => Edit::Gear { steps: within(parameter, value, now)?, revolutions: now.revolutions },
+        Parameter::Turns => Edit::Revolutions(within(parameter, value, now)?),
+        Parameter::Preset => Edit::Preset(within(parameter, value, now)?),
+        Parameter::ZeroShift => Edit::ZeroShift(within(parameter, value, now)?),
+        Parameter::Direction | Parameter::Default => {
+            return Err(Text::new("ib_entry.number").with("entry", text.trim()));
+        }
+    })
+}
+
+/// The preset that is to be set; where nothing is typed, the one that is stored.
+///
+/// # Errors
+/// No number, or beyond the measuring range, in words.
+pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
+    if text.trim().is_empty() {
+        return Ok(now.preset);
+    }
+    within(Parameter::Preset, number(text)?, now)
+}
+
+/// How far a program is shifted, later or earlier.
+///
+/// # Errors
+/// No number, in words.
+pub fn offset(text: &str) -> Result<i64, Text> {
+    let entry = text.trim().replace('\u{2212}', "-");
+    entry.parse::<i32>().map(i64::from).map_err(|_| Text::new("ib_entry.number").with("entry", text.trim()))
+}
+
+/// A position as it is typed: in the units of the machine.
+pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
+    match scale.unit() {
+        Unit::Steps if scale.zero() == 0 => step.to_string(),
+        _ => format!("{:.*}", scale.decimals(), scale.value(step, range)),
+    }
+}
+
+/// The step that is nearest to a position that was typed in the units of the machine.
+///
+/// # Errors
+/// No number, or beyond the measuring range, in words.
+pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
+    let refused = || Text::new("ib_entry.position").with("entry", text.trim());
+    let value = decimal(text).ok_or_else(refused)?;
+    let placed = scale.place(value, range).map_err(|error| {
+        Text::new("ib_entry.outside")
+            .with_number("value", error.value, scale.decimals())
+            .with_number("least", error.least, scale.decimals())
+            .with_number("most", error.most, scale.decimals())
+            .with("unit", scale.unit().symbol())
+    })?;
+    Ok(placed.step)
+}
+
+/// What a unit has for its steps until somebody says otherwise: a turn of the machine is the measuring range.
+pub fn usual_scale(unit: Unit, zero: u32, range: u32) -> Scale {
+    let steps = match unit {
+        Unit::Degrees => f64::from(range.max(1)),
+        Unit::Steps | Unit::Millimetres => 1.0,
+    };
+    Scale::new(unit, steps, zero).unwrap_or_default()
+}
+
+/// Steps in a turn of the machine, or in a millimetre; `None` where there is nothing to say.
+pub fn steps_of(scale: &Scale) -> Option<f64> {
+    match scale.unit() {
+        Unit::Steps => None,
+        Unit::Degrees => Some(scale.steps_in_unit() * 360.0),
+        Unit::Millimetres => Some(scale.steps_in_unit()),
+    }
+}
+
+/// A scale with other steps.
+///
+/// # Errors
+/// No number above 0, in words.
+pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
+    let refused = || Text::new("ib_entry.scale").with("entry", text.trim());
+    let steps = decimal(text).ok_or_else(refused)?;
+    Scale::new(unit, steps, zero).map_err(|_| refused())
+}
+
+/// A scale with its 0 at another position of the encoder.
+///
+/// # Errors
+/// No position of the measuring range, in words.
+pub fn with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
+    let zero = number(text)?;
+    let last = range.saturating_sub(1);
+    if zero > last {
+        let text = Text::new("ib_entry.range").with_text("what", Text::new("ib_scale.zero")).with("value", zero);
+        return Err(text.with("low", 0).with("high", last));
+    }
+    Scale::new(own.unit(), steps_of(own).unwrap_or(1.0), zero)
+        .map_err(|_| Text::new("ib_entry.scale").with("entry", text))
+}
+
+fn within(parameter: Parameter, value: u32, now: &Parameters) -> Result<u32, Text> {
+    let range = match now.gear() {
+        Ok(gear) => parameter.range(gear),
+        Err(_) => parameter.widest_range(),
+    };
+    if range.contains(&value) && Value::new(value).is_some() {
+        return Ok(value);
+    }
+    Err(Text::new("ib_entry.range")
+        .with_text("what", words::parameter(parameter))
+        .with("value", value)
+        .with("low", range.start())
+        .with("high", range.end()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::interbus::profile::Direction;
+
+    fn now() -> Parameters {
+        Parameters { steps: 4096, revolutions: 1, direction: Direction::Clockwise, preset: 7, zero_shift: 0 }
+    }
+
+    #[test]
+    fn numbers_are_taken_or_refused_with_their_limits() {
+        assert_eq!(number(" 33 554 431 "), Ok(33_554_431));
+        assert_eq!(number("0x1FF"), Ok(511));
+        assert!(number("-1").is_err() && number("1.5").is_err() && number("").is_err());
+        let edit = |parameter: Parameter, text: &str| super::parameter(parameter, text, &now());
+        assert_eq!(edit(Parameter::Turns, "4096"), Ok(Edit::Revolutions(4096)));
+        assert_eq!(edit(Parameter::Preset, "4095"), Ok(Edit::Preset(4095)));
+        // Reference 3: a preset is below the steps; steps are at most 8192 a turn.
+        let refused = edit(Parameter::Preset, "4096").unwrap_err().words(crate::app::Language::English);
+        assert_eq!(refused, "Preset value: 4096 is not within 0 to 4095.");
+        assert!(edit(Parameter::Steps, "8193").is_err() && edit(Parameter::Steps, "8192").is_ok());
+        assert!(edit(Parameter::Turns, "4097").is_err() && edit(Parameter::Turns, "0").is_err());
+        assert_eq!((preset("", &now()), preset("12", &now())), (Ok(7), Ok(12)));
+        assert!(preset("4096", &now()).is_err());
+    }
+}

@@ -1,0 +1,28 @@
+//! Jobs in words, and which of them a running machine would notice.
+
+use crate::app::Text;
+use crate::devices::interbus::jobs::InterbusJob;
+use crate::devices::interbus::state::explain as words;
+
+/// What it is called in the list of jobs.
+pub(super) fn words(job: &InterbusJob) -> Text {
+    match job {
+        InterbusJob::Hello | InterbusJob::Position => Text::new("ib_job.word"),
+        InterbusJob::Survey | InterbusJob::Identify => Text::new("ib_job.survey"),
+        InterbusJob::Programs(_) => Text::new("ib_job.programs"),
+        InterbusJob::Status => Text::new("job.status"),
+        InterbusJob::Check => Text::new("job.check"),
+        InterbusJob::Read(item) => Text::new("job.read").with("item", item),
+        InterbusJob::ReadOut(what) => Text::new("job.read").with_text("item", words::read_out(*what)),
+        InterbusJob::Select(mode) => Text::new("ib_job.select").with_text("mode", words::startup(*mode)),
+        InterbusJob::Save { .. } => Text::new("job.save"),
+        InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
+        InterbusJob::Commit(_) => Text::new("job.write"),
+        InterbusJob::LeadBack => Text::new("job.lead_back"),
+    }
+}
+
+/// It takes the position away or switches the outputs: the machine has to stand.
+pub(super) fn disturbs(job: &InterbusJob) -> bool {
+    !matches!(job, InterbusJob::Hello | InterbusJob::Position)
+}

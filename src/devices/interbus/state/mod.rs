@@ -1,0 +1,45 @@
+//! The INTERBUS tab: what is known of an encoder, what is wanted of it beside that, and its cams as a chart. Complete
+//! without a window.
+
+mod act;
+mod action;
+pub mod cams;
+mod connect_form;
+mod desk;
+mod drafts;
+mod encoder;
+pub mod explain;
+pub mod forms;
+mod job;
+mod news;
+mod preview;
+pub mod reader;
+mod record;
+mod review;
+pub mod said;
+pub mod staged;
+mod table;
+mod trace;
+pub mod words;
+mod write;
+
+pub use action::Action;
+pub use connect_form::{InterbusForm, InterbusWay};
+pub use encoder::Encoder;
+pub use preview::{Differing, Preview};
+pub use record::Record;
+pub use review::{Review, ReviewState};
+use std::path::PathBuf;
+
+use crate::store::FileError;
+
+pub use staged::{Edit, EditError, Mark, Place, Staged, Wanted};
+pub use table::Import;
+
+/// What tasks come back with.
+pub enum Done {
+    /// A table of cams was read, or not.
+    Read(PathBuf, Result<String, FileError>),
+    /// A table of cams was written, or not.
+    Written(PathBuf, Result<(), FileError>),
+}

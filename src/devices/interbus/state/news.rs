@@ -1,0 +1,186 @@
+//! What the line to an encoder tells: results of jobs, live words, and its loss.
+
+use super::drafts::Edits;
+use super::encoder::Encoder;
+use super::job;
+use super::trace::Meaning;
+use crate::app::action::{Attempt, Done, Opened};
+use crate::app::review::told;
+use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::session::{Cut, Kind, OnLine, Saved, WithMemory};
+use crate::app::{Severity, Text};
+use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark};
+use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::protocol::KIND;
+use crate::devices::interbus::state::explain as words;
+use crate::link::TraceEntry;
+use crate::sim::Motor;
+use crate::worker::Session;
+
+impl Kind for Interbus {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
+    type Aside = Option<Motor>;
+
+    fn aside(session: &Session<Self>) -> Option<Motor> {
+        session.motor()
+    }
+
+    fn opener(world: &World) -> &Opener<Self> {
+        &world.open_interbus
+    }
+
+    fn opened(attempt: Attempt<Self>) -> Done {
+        Done::OpenedInterbus(attempt)
+    }
+
+    fn job(job: &InterbusJob) -> Text {
+        job::words(job)
+    }
+
+    fn writes(job: &InterbusJob) -> bool {
+        matches!(job, InterbusJob::Commit(_))
+    }
+
+    fn survey() -> InterbusJob {
+        InterbusJob::Survey
+    }
+
+    fn doing(what: &Doing) -> Text {
+        words::doing(what)
+    }
+
+    fn told(output: &InterbusOutput) -> Option<(Severity, Vec<Text>)> {
+        match output {
+            InterbusOutput::Committed(committed) => Some(told::<Interbus>(committed)),
+            _ => None,
+        }
+    }
+
+    fn why(error: &JobError) -> Vec<Text> {
+        words::job(error)
+    }
+
+    fn loss(error: &JobError) -> Option<Text> {
+        words::loss(error)
+    }
+
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
+    }
+}
+
+impl Encoder {
+    /// The link is open: the word that comes is read, and nothing that a machine would notice is done.
+    pub(crate) fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.motor = opened.aside.clone();
+        self.trace = Meaning::new(self.order());
+        self.session.take_line(opened, services);
+        self.submit(InterbusJob::Hello, services);
+    }
+
+    /// What comes is to be seen with what is known by now, unless it comes anyway.
+    fn see_a_word(&mut self, services: &mut Services) {
+        if !self.session.is_polling() {
+            self.submit(InterbusJob::Position, services);
+        }
+    }
+}
+
+impl OnLine for Encoder {
+    fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
+        if let Some(image) = self.staged.device() {
+            self.preview.follow(&image.programs);
+        }
+        samples.iter().for_each(|reading| self.preview.compare(reading));
+        self.record.add(samples, dropped);
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        self.trace.shift = self.shift();
+        let trace = &mut self.trace;
+        self.session.trace.add(frames, missed, |entry| trace.of(entry));
+    }
+
+    fn remarked(&mut self, Remark::Handshake(step): Remark, _: &mut Services) {
+        self.shake(step);
+    }
+
+    fn finished(&mut self, output: InterbusOutput, services: &mut Services) {
+        match output {
+            InterbusOutput::Hello(reading) => {
+                if std::mem::take(&mut self.session.just_connected) {
+                    let word = Text::new("log.interbus_word").with("word", format!("0x{:08X}", reading.word));
+                    self.session.log_answer(vec![word], services);
+                }
+                self.record.glimpse(reading);
+                self.read_on(services);
+            }
+            InterbusOutput::Surveyed(survey) => {
+                self.take_survey(*survey, services);
+                let programs = std::mem::take(&mut self.read_after);
+                if !programs.is_empty() {
+                    self.submit(InterbusJob::Programs(programs), services);
+                } else if !self.read_on(services) {
+                    self.see_a_word(services);
+                }
+            }
+            InterbusOutput::Programs(programs, shift) => {
+                self.staged.refresh_programs(&programs, Some(shift));
+                // Reading them may have cost stores.
+                self.list_backups(services);
+                self.see_a_word(services);
+            }
+            InterbusOutput::Position(reading) => self.record.add(vec![reading], 0),
+            InterbusOutput::ReadOut(what, value) => {
+                self.read_outs.insert(what.number(), value);
+            }
+            InterbusOutput::Selected(mode) | InterbusOutput::LedBack(mode) => {
+                if let Some(survey) = &mut self.survey {
+                    survey.identity.mode = mode;
+                }
+                self.see_a_word(services);
+            }
+            InterbusOutput::Check(lines) => self.check = Some(words::check(&lines)),
+            InterbusOutput::Saved(profile) => self.saved(*profile, services),
+            InterbusOutput::Prepared(prepared) => self.planned(prepared, services),
+            InterbusOutput::Committed(committed) => self.committed(*committed, services),
+            // The command line asks for these.
+            InterbusOutput::Identity(_) | InterbusOutput::Status(_) | InterbusOutput::Item(_) => {}
+        }
+    }
+
+    fn is_silence(&self, error: &JobError) -> bool {
+        words::is_silence(error)
+    }
+
+    /// Nobody knows any more whether the machine still stands, either.
+    fn forget_asked(&mut self) {
+        self.say_stopped(false);
+        self.forget_plan();
+    }
+
+    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
+        self.cut_write(how, texts)
+    }
+
+    /// What takes the position away or switches outputs is done only where the machine stands.
+    fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
+        if job::disturbs(&job) && !self.is_stopped() {
+            services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
+            return false;
+        }
+        if job::disturbs(&job) && self.session.is_ready() {
+            self.handshake.clear();
+        }
+        self.session.submit(job, services)
+    }
+
+    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        self.motor = None;
+        self.forget_asked();
+        self.session.let_go(end, services);
+    }
+}

@@ -1,0 +1,102 @@
+//! The cams that an encoder holds, made ready to be asked for every word: whether its outputs are what they give.
+
+use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::protocol::{Compiled, Program, ProgramNumber, StartupMode, Value};
+
+/// Programs as they were read, and how the outputs of an encoder agree with them.
+#[derive(Clone, Debug)]
+pub struct Preview {
+    programs: [Option<Program>; ProgramNumber::COUNT],
+    compiled: Compiled,
+    /// Words whose outputs are what the program gives at their position.
+    pub same: u64,
+    /// Words whose outputs are others.
+    pub other: u64,
+    /// The last of those.
+    pub last: Option<Differing>,
+}
+
+/// Outputs that are not what a program gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Differing {
+    /// Where.
+    pub position: u32,
+    /// As the encoder says: bit i for cam i.
+    pub own: u8,
+    /// As the program gives them.
+    pub expected: u8,
+}
+
+impl Default for Preview {
+    fn default() -> Self {
+        Preview::of([None; ProgramNumber::COUNT])
+    }
+}
+
+impl Preview {
+    fn of(programs: [Option<Program>; ProgramNumber::COUNT]) -> Self {
+        let compiled = Compiled::new(&programs.map(Option::unwrap_or_default));
+        Preview { programs, compiled, same: 0, other: 0, last: None }
+    }
+
+    /// The encoder holds these; where they are others than before, nothing was compared yet.
+    pub(super) fn follow(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
+        if self.programs != *programs {
+            *self = Preview::of(*programs);
+        }
+    }
+
+    /// Compares the outputs in a word with those of its program, where both and the position are known.
+    pub(super) fn compare(&mut self, reading: &Reading) {
+        let Some(StartupMode::Cams(program)) = reading.mode else { return };
+        let at = usize::from(program.get() - 1);
+        let is_known = self.programs.get(at).is_some_and(Option::is_some);
+        let value = reading.position().and_then(Value::new).filter(|_| is_known);
+        let (Some(value), Some(own)) = (value, reading.cams()) else { return };
+        let all = self.compiled.outputs(value);
+        let Some(expected) = all.get(at).copied() else { return };
+        if own.outputs == expected {
+            self.same += 1;
+        } else {
+            self.other += 1;
+            self.last = Some(Differing { position: value.get(), own: own.outputs, expected });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::interbus::protocol::{Cam, Gear, WindowShift};
+    use crate::units::Moment;
+
+    /// Cam 3 from 15 to 213 (reference 7), in program 2.
+    #[test]
+    fn outputs_are_held_against_the_program_that_gives_them() {
+        let mut program = Program { mask: 8, ..Program::default() };
+        program.cams[3] = Some(Cam { start: Value::new(15).unwrap(), stop: Value::new(213).unwrap() });
+        let mut programs = [None; ProgramNumber::COUNT];
+        programs[1] = Some(program);
+        let mut preview = Preview::default();
+        preview.follow(&programs);
+        let reading = |number: u8, position: u32, outputs: u32| Reading {
+            at: Moment::START,
+            word: position << 8 | outputs,
+            mode: ProgramNumber::new(number).map(StartupMode::Cams),
+            gear: Gear::new(3600, 1).ok(),
+            shift: WindowShift::new(0),
+        };
+        for (position, outputs) in [(14, 0), (15, 8), (213, 8), (214, 0)] {
+            preview.compare(&reading(2, position, outputs));
+        }
+        // Of another program nothing is known.
+        preview.compare(&reading(1, 15, 0));
+        assert_eq!((preview.same, preview.other), (4, 0));
+        preview.compare(&reading(2, 214, 8));
+        assert_eq!(preview.last, Some(Differing { position: 214, own: 8, expected: 0 }));
+        preview.follow(&programs);
+        assert_eq!(preview.other, 1, "the same programs");
+        preview.follow(&[None; ProgramNumber::COUNT]);
+        assert_eq!((preview.same, preview.other), (0, 0));
+    }
+}

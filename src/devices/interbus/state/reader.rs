@@ -1,0 +1,134 @@
+//! Words that somebody types, from a controller's monitor or a note: what each says, without a device.
+
+use super::said::{self, Known};
+use crate::app::Text;
+use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
+
+/// Which way a word goes, and of which class of encoders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Way {
+    /// From a K3 encoder.
+    #[default]
+    In,
+    /// To a K3 encoder.
+    Out,
+    /// From a K1 encoder, 16 bits.
+    K1,
+    /// From a K2 encoder.
+    K2,
+}
+
+impl Way {
+    /// All of them.
+    pub const ALL: [Way; 4] = [Way::In, Way::Out, Way::K1, Way::K2];
+
+    /// Its word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Way::In => "ib_reader.in",
+            Way::Out => "ib_reader.out",
+            Way::K1 => "ib_reader.k1",
+            Way::K2 => "ib_reader.k2",
+        }
+    }
+
+    /// What it says depends on the mode.
+    pub const fn has_mode(self) -> bool {
+        matches!(self, Way::In | Way::Out)
+    }
+
+    const fn digits(self) -> usize {
+        match self {
+            Way::K1 => 4,
+            Way::In | Way::Out | Way::K2 => 8,
+        }
+    }
+}
+
+/// What typed words are read with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// Which way they go.
+    pub way: Way,
+    /// In which mode the encoder is.
+    pub mode: Mode,
+    /// What is read out, where that is asked for.
+    pub read_out: Option<ReadOut>,
+    /// How far the position is shifted under its window.
+    pub shift: WindowShift,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Reading { way: Way::In, mode: Mode::Position, read_out: None, shift: WindowShift::default() }
+    }
+}
+
+/// A word and what it says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// As it was typed.
+    pub word: String,
+    /// What it says, or why it is no word.
+    pub says: Result<Text, Text>,
+    /// What is not as it should be.
+    pub warning: Option<Text>,
+}
+
+impl Reading {
+    /// Reads words that stand between blanks and commas, each with `0x` or `h` where it has one.
+    pub fn lines(&self, text: &str) -> Vec<Line> {
+        let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
+        words.map(|word| self.line(word)).collect()
+    }
+
+    fn line(&self, typed: &str) -> Line {
+        let bare = typed.trim_start_matches("0x").trim_start_matches("0X").trim_end_matches(['h', 'H']);
+        let digits = self.way.digits();
+        let number = Some(bare).filter(|own| own.len() == digits).and_then(|own| u32::from_str_radix(own, 16).ok());
+        let Some(number) = number else {
+            let why = Text::new("ib_reader.no_word").with("word", typed).with("digits", digits);
+            return Line { word: typed.to_owned(), says: Err(why), warning: None };
+        };
+        let single = |own: Single| {
+            let position = Text::new("ib_word.position").with("position", own.position().get());
+            let bits = || Text::new("ib_word.stray").with("bits", format!("0x{:X}", own.stray()));
+            (position, (own.stray() != 0).then(bits))
+        };
+        let known = Known { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
+        let (says, warning) = match self.way {
+            Way::Out => (said::out(number, self.mode), None),
+            Way::In => (said::told(number, &known), said::stray(number)),
+            // Four digits.
+            Way::K1 => single(Single::parse_k1(number as u16)),
+            Way::K2 => single(Single::parse_k2(number)),
+        };
+        Line { word: bare.to_ascii_uppercase(), says: Ok(says), warning }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+
+    #[test]
+    fn typed_words_are_read_or_told_why_not() {
+        let says = |reading: Reading, text: &str| -> Vec<String> {
+            let lines = reading.lines(text).into_iter();
+            lines.map(|line| line.says.unwrap_or_else(|why| why).words(Language::English)).collect()
+        };
+        let of = |way| Reading { way, ..Reading::default() };
+        // Reference 7.
+        assert_eq!(says(of(Way::K1), "0FFF"), ["position 4095"]);
+        assert_eq!(says(of(Way::In), "0x00123456, C0000000"), ["position 1193046", "at work"]);
+        assert_eq!(says(of(Way::Out), "080003e8h"), ["Preset value := 1000"]);
+        assert_eq!(says(of(Way::K2), "00FFFFFF"), ["position 16777215"]);
+        // Bits 15 to 12 of a K1 word should be 0 (reference 1).
+        assert!(of(Way::K1).lines("1FFF").iter().all(|line| line.warning.is_some()));
+        for (way, text) in [(Way::In, "123"), (Way::K1, "00000FFF"), (Way::Out, "0200000G")] {
+            assert!(of(way).lines(text).iter().all(|line| line.says.is_err()), "{text}");
+        }
+        assert!(of(Way::In).lines(" \n").is_empty());
+    }
+}

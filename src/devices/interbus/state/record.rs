@@ -1,0 +1,147 @@
+//! What is recorded of an INTERBUS encoder while its IN word is read: positions by its gear, its own speed, and its cam
+//! outputs.
+
+use std::time::Duration;
+
+use jiff::Zoned;
+
+use crate::analysis::history::Value;
+use crate::app::Text;
+use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
+use crate::units::Moment;
+
+/// What an encoder sends instead of its position, or with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beside {
+    /// Its own speed, in velocity mode.
+    Speed,
+    /// The output of a cam.
+    Cam(CamNumber),
+}
+
+/// The recorder of an encoder, and the word that came last.
+#[derive(Debug, Default)]
+pub struct Record {
+    track: Track<Beside>,
+    last: Option<Reading>,
+}
+
+impl Record {
+    /// Position and speed as lines, with what the mode gives beside them.
+    pub fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    /// A session has begun; what was recorded before stays.
+    pub(super) fn begin(&mut self, began: &Zoned) {
+        self.last = None;
+        self.track.begin(began);
+    }
+
+    /// Words are wished at this interval from now on.
+    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+    }
+
+    /// Takes what has come; `dropped` were not taken in time.
+    pub(super) fn add(&mut self, readings: Vec<Reading>, dropped: u64) {
+        self.track.lose(dropped);
+        for reading in readings {
+            self.see(&reading);
+            self.last = Some(reading);
+        }
+    }
+
+    /// The word that came first: nobody knows yet whether it is a position, so that it is in no line.
+    pub(super) fn glimpse(&mut self, reading: Reading) {
+        self.last = Some(reading);
+    }
+
+    fn see(&mut self, reading: &Reading) {
+        let at = reading.at;
+        match reading.mode {
+            Some(StartupMode::Velocity) => {
+                self.track.watch(&[Beside::Speed]);
+                self.beside(at, Beside::Speed, reading.rpm().map(i64::from));
+            }
+            Some(StartupMode::Cams(_)) => {
+                let cams: Vec<Beside> = CamNumber::all().map(Beside::Cam).collect();
+                self.track.watch(&cams);
+                let output = reading.cams();
+                for cam in CamNumber::all() {
+                    let on = output.map(|own| i64::from(own.outputs >> cam.get() & 1));
+                    self.beside(at, Beside::Cam(cam), on);
+                }
+            }
+            _ => self.track.watch(&[]),
+        }
+        // Where a position is not sent, or not the whole of it, none is missing.
+        let is_sent = reading.mode != Some(StartupMode::Velocity);
+        let position = reading.position();
+        if is_sent && (position.is_some() || !reading.is_valid()) {
+            let is_beyond = reading.gear.zip(position).is_some_and(|(gear, own)| own >= gear.steps());
+            let sighting = Sighting {
+                at,
+                position: position.map(i64::from),
+                is_bad: position.is_none(),
+                is_warned: reading.stray() != 0 || is_beyond,
+            };
+            self.track.add(&[sighting], &meaning(reading.gear));
+        }
+    }
+
+    fn beside(&mut self, at: Moment, what: Beside, value: Option<i64>) {
+        let value = value.map(Value::Whole);
+        self.track.add_watched(&what, &Watching { at, value, is_warned: false, never: None });
+    }
+
+    /// The word that came last.
+    pub fn last(&self) -> Option<&Reading> {
+        self.last.as_ref()
+    }
+
+    /// Words that came too fast to be recorded.
+    pub fn dropped(&self) -> u64 {
+        self.track.dropped()
+    }
+
+    /// Another encoder: nothing of what was recorded is about it.
+    pub(super) fn forget(&mut self) {
+        self.track.forget();
+        self.last = None;
+    }
+}
+
+/// What positions mean.
+fn meaning(gear: Option<Gear>) -> Meaning {
+    match gear {
+        Some(gear) => Meaning::of_turns(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns())),
+        None => Meaning::of_steps(None),
+    }
+}
+
+impl Watchable for Beside {
+    fn is_whole(&self) -> bool {
+        true
+    }
+
+    fn line(&self, group: GroupId) -> Line {
+        match self {
+            Beside::Speed => {
+                let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 0)];
+                Line::of(group, 0, Text::new("ib_live.speed"), "encoder speed".to_owned(), scales)
+            }
+            Beside::Cam(cam) => {
+                let name = Text::new("ib_live.cam").with("cam", cam.get());
+                Line::of(group, 0, name, format!("cam {}", cam.get()), vec![Scale::new("unit.counts", 1.0, 0)])
+            }
+        }
+    }
+}

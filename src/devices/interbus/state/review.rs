@@ -1,0 +1,100 @@
+//! The review of a write into an INTERBUS encoder: what its plan needs, warns of and costs.
+
+use crate::app::review::{self, OpWords, Permit, Reviewed};
+use crate::app::{Text, explain};
+use crate::devices::interbus::jobs::{Change, Interbus, Prepared, Wear};
+use crate::devices::interbus::procedures::write::Written;
+use crate::devices::interbus::profile::{Base, Op};
+use crate::devices::interbus::state::explain as words;
+use crate::profile::Plan;
+
+/// A write on its way.
+pub type Review = review::Review<Interbus>;
+/// How far it is.
+pub type ReviewState = review::ReviewState<Interbus>;
+
+impl Reviewed for Interbus {
+    type Change = Change;
+    type Base = Base;
+    type Op = Op;
+    type Prepared = Prepared;
+    type Written = Written;
+
+    fn change(change: &Change) -> Text {
+        words::change(change)
+    }
+
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        let Change::Restore { options, .. } = change else { return None };
+        match permit {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate | Permit::Copy(_) => None,
+        }
+    }
+
+    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
+        &prepared.plan
+    }
+
+    fn op(_: &Prepared, op: &Op) -> OpWords {
+        words::op(op)
+    }
+
+    fn leaves_mounting(prepared: &Prepared) -> bool {
+        !prepared.mounting_left.is_empty()
+    }
+
+    fn redo(prepared: &Prepared) -> Vec<Text> {
+        prepared.mounting_written.iter().map(explain::plain).collect()
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
+        let mut warnings = Vec::new();
+        warnings.extend(prepared.other_type.map(words::other_type));
+        warnings.extend(words::wear(prepared));
+        if prepared.plan.ops.contains(&Op::Default) {
+            warnings.push(Text::new("ib_review.experimental"));
+        }
+        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        warnings.extend(review::left_alone("ib_review.missing", &prepared.missing, mounting));
+        warnings
+    }
+
+    fn needs(_: &Change, prepared: &Prepared) -> Vec<Text> {
+        let ops = &prepared.plan.ops;
+        let mut needs = vec![Text::new("ib_review.needs_stop")];
+        if ops.iter().any(|op| matches!(op, Op::Program(_))) {
+            needs.push(Text::new("ib_review.switches"));
+        }
+        if ops.iter().any(|op| matches!(op, Op::FirePreset { .. })) {
+            needs.push(Text::new("ib_review.needs_standstill"));
+        }
+        needs
+    }
+
+    fn cost(prepared: &Prepared) -> Text {
+        let stores = prepared.plan.write_cycles();
+        if stores == 0 {
+            return Text::new("ib_review.cost_nothing");
+        }
+        match prepared.cycles_seen {
+            Some(seen) => Text::new("ib_review.cost").with("stores", stores).with("seen", seen),
+            None => Text::new("ib_review.cost_unknown").with("stores", stores),
+        }
+    }
+
+    fn is_worn(prepared: &Prepared) -> bool {
+        // Beyond what the maker names, somebody has to say once more that it is wanted; so where it is refused otherwise.
+        matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
+    }
+
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.cycles_seen
+    }
+
+    fn written(written: &Written) -> Text {
+        words::written(written)
+    }
+}

@@ -1,0 +1,192 @@
+//! What the words on the process data say, as somebody reads them: OUT words as commands, IN words in the mode that they
+//! come in.
+
+use super::words;
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::devices::interbus::protocol::{
+    CamOutput, Command, ErrorWord, Mode, Parameter, ReadOut, ReadOutValue, Reply, Value, WindowShift,
+};
+use crate::devices::interbus::state::explain as explained;
+
+/// What has to be known of an encoder to read its IN words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Known {
+    /// In which mode it is.
+    pub mode: Mode,
+    /// What is read out.
+    pub read_out: Option<ReadOut>,
+    /// How far the position is shifted under its window.
+    pub shift: Option<WindowShift>,
+}
+
+impl Known {
+    /// What an encoder is that a command is meant for.
+    pub fn of(command: Command, shift: Option<WindowShift>) -> Self {
+        let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
+        Known { mode: mode_of(command), read_out, shift }
+    }
+}
+
+/// What an OUT word asks for in a mode, or that it must not be sent.
+pub fn out(word: u32, mode: Mode) -> Text {
+    match Command::in_mode(word, mode) {
+        Ok(command) => asked(command),
+        Err(refused) if matches!(refused.command, Command::Unknown(_)) => Text::new("ib_word.unknown"),
+        Err(refused) => Text::new("ib_word.illegal")
+            .with_text("mode", words::mode(refused.mode))
+            .with_text("elsewhere", asked(refused.command)),
+    }
+}
+
+/// A command.
+pub fn asked(command: Command) -> Text {
+    let cam = |id, number: u8| Text::new(id).with("cam", number);
+    match command {
+        Command::Normal => Text::new("ib_word.normal"),
+        Command::Run => Text::new("ib_word.run"),
+        Command::Preset => Text::new("ib_word.preset"),
+        Command::FrabaPreset => Text::new("ib_word.fraba"),
+        Command::Set(Parameter::Default, _) => Text::new("ib_word.default"),
+        Command::Set(parameter, value) => Text::new("ib_word.set")
+            .with_text("parameter", words::parameter(parameter))
+            .with_text("value", words::setting(parameter, value.get())),
+        Command::Velocity(true) => Text::new("ib_word.velocity_on"),
+        Command::Velocity(false) => Text::new("ib_word.velocity_off"),
+        Command::ReadOut(read_out) => Text::new("ib_word.read_out").with_text("what", explained::read_out(read_out)),
+        Command::Cams(Some(program)) => Text::new("ib_word.program").with("program", program.get()),
+        Command::Cams(None) => Text::new("ib_word.position_mode"),
+        Command::Activate(mask) => Text::new("ib_word.mask").with_text("cams", cams(mask)),
+        Command::Shift(shift) => Text::new("ib_word.shift").with("shift", shift.get()),
+        Command::CamStart(number, at) => cam("ib_word.start", number.get()).with("at", at.get()),
+        Command::CamStop(number, at) => cam("ib_word.stop", number.get()).with("at", at.get()),
+        Command::ReadActivation => Text::new("ib_word.read_mask"),
+        Command::ReadCamStart(number) => cam("ib_word.read_start", number.get()),
+        Command::ReadCamStop(number) => cam("ib_word.read_stop", number.get()),
+        Command::ReadShift => Text::new("ib_word.read_shift"),
+        Command::Unknown(_) => Text::new("ib_word.unknown"),
+    }
+}
+
+/// The mode that an encoder is in to take a command for what it is; of those that are taken in several, not the cams'.
+pub fn mode_of(command: Command) -> Mode {
+    if command.is_legal_in(Mode::Position) || !command.is_legal_in(Mode::Cam) { Mode::Position } else { Mode::Cam }
+}
+
+/// What an IN word says.
+pub fn told(word: u32, known: &Known) -> Text {
+    let reply = Reply::parse(word);
+    match reply {
+        Reply::Run { value, .. } => match known.mode {
+            Mode::Velocity => Text::new("ib_word.speed").with("rpm", value.signed()),
+            Mode::Cam => outputs(word, known.shift),
+            Mode::Position | Mode::Parameterisation | Mode::ReadOut => {
+                Text::new("ib_word.position").with("position", value.get())
+            }
+        },
+        Reply::Busy { .. } | Reply::Echo { .. } => echo(reply, known.mode),
+        Reply::ReadOut(value) => match known.read_out {
+            Some(read_out) => Text::new("ib_word.value")
+                .with_text("what", explained::read_out(read_out))
+                .with_text("value", words::read_out_value(read_out.value(value))),
+            None => Text::new("ib_word.some_value")
+                .with_text("value", words::read_out_value(ReadOutValue::Plain(value.get()))),
+        },
+        Reply::UnknownReadOut(_) => Text::new("ib_word.no_read_out"),
+        Reply::Unknown { code, .. } => Text::new("ib_word.unknown_reply").with("code", code.get()),
+        Reply::Error(own) => error(own),
+    }
+}
+
+/// Bits that should be 0, where some are set: a warning beside what a word says.
+pub fn stray(word: u32) -> Option<Text> {
+    match Reply::parse(word) {
+        Reply::Run { stray, .. } if stray != 0 => {
+            Some(Text::new("ib_word.stray").with("bits", format!("0x{:08X}", u32::from(stray) << Value::BITS)))
+        }
+        _ => None,
+    }
+}
+
+/// What an error word says.
+fn error(error: ErrorWord) -> Text {
+    let id = match (error.code.get(), error.data.get()) {
+        (1, _) => "ib_error.data",
+        (2, _) => "ib_error.code",
+        (3, _) => "ib_error.lost",
+        (0xC, ErrorWord::CAM_BEYOND_RANGE) => "ib_error.cam",
+        (0xC, _) => "ib_error.maker",
+        _ => "ib_error.invalid",
+    };
+    Text::new(id).with("word", format!("0x{:08X}", Reply::Error(error).emit()))
+}
+
+fn echo(reply: Reply, mode: Mode) -> Text {
+    let in_mode = if mode == Mode::Cam { Mode::Cam } else { Mode::Parameterisation };
+    match reply.echoed(in_mode) {
+        Some(command) => Text::new("ib_word.echo").with_text("command", asked(command)),
+        None if matches!(reply, Reply::Busy { .. }) => Text::new("ib_word.busy"),
+        None => Text::new("ib_word.other_echo"),
+    }
+}
+
+/// Which cams are in a mask.
+fn cams(mask: u16) -> Text {
+    let numbers: Vec<String> = (0..16).filter(|bit| mask >> bit & 1 != 0).map(|bit| bit.to_string()).collect();
+    if numbers.is_empty() { Text::new("ib_item.no_cam") } else { plain(numbers.join(", ")) }
+}
+
+fn outputs(word: u32, shift: Option<WindowShift>) -> Text {
+    let Ok(output) = CamOutput::parse(word) else { return Text::new("ib_word.outputs_invalid") };
+    let on = cams(output.outputs.into());
+    match shift {
+        Some(shift) if shift.mask() != 0 => Text::new("ib_word.outputs")
+            .with_text("cams", on)
+            .with("position", format!("0x{:07X}", output.position_bits(shift))),
+        _ => Text::new("ib_word.outputs_only").with_text("cams", on),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+
+    fn known(mode: Mode) -> Known {
+        Known { mode, read_out: None, shift: WindowShift::new(0) }
+    }
+
+    /// Words of reference 3, 5 and 7.
+    #[test]
+    fn words_are_read_in_their_mode() {
+        let english = |text: Text| text.words(Language::English);
+        for (word, mode, says) in [
+            (0x0200_00FF, Mode::Position, "Steps := 255"),
+            (0x0600_0004, Mode::Parameterisation, "Direction := counterclockwise"),
+            (0x2040_0001, Mode::Position, "Speed instead of the position"),
+            (0x2040_0001, Mode::Cam, "Active cams: 0"),
+            (0x2040_0093, Mode::Cam, "Active cams: 0, 1, 4, 7"),
+            (0x4600_0015, Mode::Cam, "Cam 3 starts at 21"),
+            (0x2021_000C, Mode::Position, "Read out: temperature"),
+            (0x4600_0015, Mode::Position, "Not legal in position mode; it would be: Cam 3 starts at 21"),
+        ] {
+            assert_eq!(english(out(word, mode)), says, "{word:08X}");
+        }
+        for (word, mode, says) in [
+            (0x0012_3456, Mode::Position, "position 1193046"),
+            (0xC000_0000, Mode::Position, "at work"),
+            // −60 in 25 bits.
+            (0x01FF_FFC4, Mode::Velocity, "speed -60 rpm"),
+            (0xC200_00FF, Mode::Parameterisation, "echo of: Steps := 255"),
+            (0x01CD_EF20, Mode::Cam, "cams on: 5; window 0x001CDEF"),
+            (0x8000_0000, Mode::Cam, "position or cam outputs not valid (0x80000000)"),
+            (0x9800_0004, Mode::Cam, "a cam starts or stops beyond the measuring range (0x98000004)"),
+        ] {
+            assert_eq!(english(told(word, &known(mode))), says, "{word:08X}");
+        }
+        let temperature = Known { read_out: Some(ReadOut::TEMPERATURE), ..known(Mode::ReadOut) };
+        assert_eq!(english(told(0xA1FF_FF9C, &temperature)), "temperature: -10.0 °C");
+        assert_eq!(told(0xA1FF_FF9C, &temperature).words(Language::German), "Temperatur: -10,0 °C");
+        assert!(stray(0x0412_3456).is_some() && stray(0x0012_3456).is_none() && stray(0xC200_00FF).is_none());
+    }
+}

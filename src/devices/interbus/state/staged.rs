@@ -1,0 +1,237 @@
+//! What a K3 encoder (or a profile) says, and beside it what the user wants. Nothing here is written to an encoder; a plan
+//! is made of the difference.
+//!
+//! Every edit makes another whole, which is what an undone step brings back. Edits survive a fresh reading: what the user
+//! changed stays as he wants it, whatever the encoder has now, and all else follows the encoder, in the steps before too.
+//! A cam program that was not read cannot be edited, since nobody knows what a change of it would cost; edits of an
+//! earlier time wait until it is read. In a profile, what is not said can be said.
+//!
+//! Positions are steps, from 0 to one below the measuring range.
+
+mod difference;
+mod draft;
+mod edit;
+mod mark;
+mod merge;
+#[cfg(test)]
+mod tests;
+
+pub use difference::{Differs, Place};
+pub use draft::Kept;
+pub use edit::{Edit, EditError};
+pub use mark::Mark;
+
+use crate::app::history::History;
+use crate::devices::interbus::profile::{Image, Names, Parameters};
+use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
+
+/// All that can be edited, as it is wanted.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Wanted {
+    /// What is written into an encoder.
+    pub image: Image,
+    /// What programs and cams are called, which no encoder keeps. Two cams of a program with the same name are pulses on
+    /// one track.
+    pub names: Names,
+}
+
+/// What the edits stand beside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Ground {
+    /// An encoder: what was not read is not known.
+    #[default]
+    Encoder,
+    /// A profile: what is not in it is not said.
+    Profile,
+}
+
+/// What is, what is wanted, and the way there and back.
+#[derive(Clone, Debug, Default)]
+pub struct Staged {
+    ground: Ground,
+    /// What the encoder or the profile says; both or none.
+    base: Option<Wanted>,
+    wanted: Option<Wanted>,
+    history: History<Wanted>,
+    /// Edits of an earlier time whose place was not read yet.
+    waiting: Vec<Kept>,
+}
+
+impl Wanted {
+    /// With nothing named.
+    pub fn of(image: Image) -> Self {
+        Wanted { image, names: Names::default() }
+    }
+
+    /// Steps of the measuring range; positions are below.
+    pub const fn range(&self) -> u32 {
+        self.image.parameters.steps
+    }
+
+    /// A cam's edges; `None`: nothing is known of them.
+    pub fn cam(&self, program: ProgramNumber, cam: CamNumber) -> Option<Cam> {
+        self.image.program(program)?.cams.get(usize::from(cam.get())).copied().flatten()
+    }
+
+    /// Whether a cam works.
+    pub fn is_on(&self, program: ProgramNumber, cam: CamNumber) -> bool {
+        self.image.program(program).is_some_and(|own| own.is_on(cam))
+    }
+
+    /// What a cam is called.
+    pub fn name(&self, program: ProgramNumber, cam: CamNumber) -> Option<&str> {
+        Some(self.names.cam(program, cam)).filter(|name| !name.is_empty())
+    }
+}
+
+impl Staged {
+    /// Of a profile, which can be made to say what it does not say yet.
+    pub fn of_profile(image: Image, names: Names) -> Self {
+        let base = Wanted { image, names };
+        Staged { ground: Ground::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
+    }
+
+    /// The profile says this now. Where that is what is wanted, it was saved, and the steps that led to it stay; else others
+    /// wrote it, and only what was edited here stays as it is wanted.
+    pub fn saved(&mut self, image: Image, names: Names) {
+        let now = Wanted { image, names };
+        if self.wanted.as_ref() == Some(&now) {
+            self.base = Some(now);
+            return;
+        }
+        let edits = self.edits();
+        self.waiting.clear();
+        self.history.forget();
+        (self.base, self.wanted) = (Some(now.clone()), Some(now));
+        self.take_draft(edits);
+    }
+
+    /// Takes what was read from the encoder. What it does not have stays as it was known; edits stay, and so does the way
+    /// back through them.
+    pub fn refresh(&mut self, read: Image) {
+        let known = self.base.take();
+        let (names, image) = match &known {
+            Some(known) => (known.names.clone(), merge::over(&known.image, read)),
+            None => (Names::default(), read),
+        };
+        self.base = known;
+        self.rebase(Wanted { image, names });
+    }
+
+    /// The parameters were read.
+    pub fn refresh_parameters(&mut self, parameters: Parameters) {
+        self.refresh(Image::of(parameters));
+    }
+
+    /// Cam programs were read, and the shift of the window with them. Nothing happens before the parameters were.
+    pub fn refresh_programs(&mut self, programs: &[(ProgramNumber, Program)], shift: Option<WindowShift>) {
+        let Some(base) = &self.base else { return };
+        let mut image = Image { shift, ..Image::of(base.image.parameters) };
+        for (number, program) in programs {
+            if let Some(own) = image.program_mut(*number) {
+                *own = Some(*program);
+            }
+        }
+        self.refresh(image);
+    }
+
+    const fn is_encoder(&self) -> bool {
+        matches!(self.ground, Ground::Encoder)
+    }
+
+    /// What the encoder or the profile says now.
+    fn rebase(&mut self, now: Wanted) {
+        match (&self.base, &mut self.wanted) {
+            (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| merge::rebase(own, before, &now)),
+            _ => self.wanted = Some(now.clone()),
+        }
+        self.base = Some(now);
+        let waiting = std::mem::take(&mut self.waiting);
+        self.take_draft(waiting);
+    }
+
+    /// The edits were written: what led to them cannot be undone any more.
+    pub fn forget_steps(&mut self) {
+        self.history.forget();
+    }
+
+    /// Forgets everything: another encoder.
+    pub fn clear(&mut self) {
+        *self = Staged { ground: self.ground, ..Staged::default() };
+    }
+
+    /// As the encoder or the profile says; `None`: nothing was read.
+    pub fn base(&self) -> Option<&Wanted> {
+        self.base.as_ref()
+    }
+
+    /// What the encoder or the profile holds; `None`: nothing was read.
+    pub fn device(&self) -> Option<&Image> {
+        self.base.as_ref().map(|base| &base.image)
+    }
+
+    /// What is wanted; `None`: nothing was read.
+    pub fn wanted(&self) -> Option<&Wanted> {
+        self.wanted.as_ref()
+    }
+
+    /// A program as it is wanted; `None`: it was not read, or the profile does not say it.
+    pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
+        self.wanted.as_ref()?.image.program(number)
+    }
+
+    /// There is something to write: into the encoder, which keeps no names, or into the profile.
+    pub fn is_dirty(&self) -> bool {
+        let (Some(base), Some(wanted)) = (&self.base, &self.wanted) else { return false };
+        base.image != wanted.image || self.ground == Ground::Profile && base.names != wanted.names
+    }
+
+    /// Changes something, as one step that can be undone. Whether anything is other than before.
+    ///
+    /// # Errors
+    /// Why it cannot be; then nothing is changed.
+    pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
+        let after = self.tried(edit)?;
+        Ok(self.step(after))
+    }
+
+    /// What would be wanted after a change, which is not made: for a picture while something is dragged.
+    ///
+    /// # Errors
+    /// Why it cannot be.
+    pub fn tried(&self, edit: &Edit) -> Result<Wanted, EditError> {
+        let wanted = self.wanted.as_ref().ok_or(EditError::NothingRead)?;
+        edit::edited(wanted, edit, self.ground)
+    }
+
+    /// Takes all edits back, as one step that can be undone.
+    pub fn revert(&mut self) {
+        if let Some(base) = self.base.clone() {
+            self.step(base);
+        }
+    }
+
+    /// There is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    /// There is a step to do again.
+    pub fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+
+    /// Undoes the last step. False when there is none.
+    pub fn undo(&mut self) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
+    }
+
+    /// Does the last undone step again. False when there is none.
+    pub fn redo(&mut self) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
+    }
+
+    fn step(&mut self, after: Wanted) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
+    }
+}

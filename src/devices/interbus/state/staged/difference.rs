@@ -1,0 +1,92 @@
+//! What is wanted otherwise than the encoder, or the profile, has it.
+
+use super::{Staged, Wanted};
+use crate::devices::interbus::profile::Edge;
+use crate::devices::interbus::protocol::{CamNumber, Parameter, ProgramNumber};
+
+/// Something that has one value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// A parameter.
+    Parameter(Parameter),
+    /// The shift of the window.
+    Shift,
+    /// An edge of a cam.
+    Edge(ProgramNumber, CamNumber, Edge),
+    /// Whether a cam works: 1 or 0.
+    On(ProgramNumber, CamNumber),
+}
+
+/// A value that is wanted otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Differs {
+    /// What it is of.
+    pub place: Place,
+    /// Now; `None`: a profile does not say it.
+    pub from: Option<u32>,
+    /// As it is wanted; `None`: it is not to be said any more.
+    pub to: Option<u32>,
+}
+
+/// The parameters that are set, in the manual's order.
+const SET: [Parameter; 5] =
+    [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
+
+impl Place {
+    /// All of them: the parameters, the shift, and by program and cam.
+    pub fn all() -> impl Iterator<Item = Place> {
+        let cams = ProgramNumber::all().flat_map(|program| CamNumber::all().map(move |cam| (program, cam)));
+        let cams = cams.flat_map(|(program, cam)| {
+            [Place::Edge(program, cam, Edge::Start), Place::Edge(program, cam, Edge::Stop), Place::On(program, cam)]
+        });
+        SET.into_iter().map(Place::Parameter).chain([Place::Shift]).chain(cams)
+    }
+}
+
+impl Wanted {
+    /// The value of something; `None`: nothing is known of it.
+    pub fn value(&self, place: Place) -> Option<u32> {
+        match place {
+            Place::Parameter(parameter) => self.image.parameters.value(parameter),
+            Place::Shift => self.image.shift.map(|shift| u32::from(shift.get())),
+            Place::Edge(program, cam, edge) => self.cam(program, cam).map(|own| match edge {
+                Edge::Start => own.start.get(),
+                Edge::Stop => own.stop.get(),
+            }),
+            Place::On(program, cam) => self.image.program(program).map(|_| u32::from(self.is_on(program, cam))),
+        }
+    }
+}
+
+impl Staged {
+    /// How something is wanted otherwise than it is; `None` where it is not.
+    pub fn differs(&self, place: Place) -> Option<Differs> {
+        let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
+        let (from, to) = (base.value(place), wanted.value(place));
+        (from != to).then_some(Differs { place, from, to })
+    }
+
+    /// All that is wanted otherwise, but names.
+    pub fn differences(&self) -> Vec<Differs> {
+        Place::all().filter_map(|place| self.differs(place)).collect()
+    }
+
+    /// A cam is wanted otherwise; not its name. One that a profile did not mention and that does not work is not.
+    pub fn is_edited(&self, program: ProgramNumber, cam: CamNumber) -> bool {
+        let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
+        base.cam(program, cam) != wanted.cam(program, cam) || base.is_on(program, cam) != wanted.is_on(program, cam)
+    }
+
+    /// Anything of a program is wanted otherwise; a profile's names too.
+    pub fn is_program_edited(&self, program: ProgramNumber) -> bool {
+        let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
+        let is_renamed = base.names.program(program) != wanted.names.program(program)
+            || CamNumber::all().any(|cam| base.name(program, cam) != wanted.name(program, cam));
+        base.image.program(program) != wanted.image.program(program) || is_renamed && !self.is_encoder()
+    }
+
+    /// How many values are wanted otherwise.
+    pub fn count(&self) -> usize {
+        self.differences().len()
+    }
+}

@@ -1,0 +1,186 @@
+//! Edits as they are kept over a crash, and taken again.
+
+use serde::{Deserialize, Serialize};
+
+use super::edit;
+use super::{Ground, Staged, Wanted};
+use crate::devices::interbus::profile::Direction;
+use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
+
+/// An edit that is kept: what is wanted, whatever led to it. Numbers as the manual has them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Kept {
+    /// Steps and turns, which are one gear.
+    Gear(u32, u32),
+    /// 3 clockwise, 4 counterclockwise.
+    Direction(u32),
+    /// Steps.
+    Preset(u32),
+    /// Steps.
+    ZeroShift(u32),
+    /// 0 to 25.
+    Shift(u8),
+    /// Program, cam, and its edges.
+    Cam(u8, u8, u32, u32),
+    /// Program and cam, which the profile is not to say any more.
+    NoCam(u8, u8),
+    /// Program, cam, and whether it works.
+    On(u8, u8, bool),
+    /// Program, cam, and its name, which may be empty.
+    Name(u8, u8, String),
+    /// Program and its name, which may be empty.
+    ProgramName(u8, String),
+}
+
+impl Staged {
+    /// The edits, for a draft on disk; also those that wait for their program to be read.
+    pub fn edits(&self) -> Vec<Kept> {
+        let mut kept = Vec::new();
+        if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
+            keep_parameters(base, wanted, &mut kept);
+            for program in ProgramNumber::all() {
+                keep_program(base, wanted, program, &mut kept);
+            }
+        }
+        kept.extend(self.waiting.iter().cloned());
+        kept
+    }
+
+    /// Takes edits from a draft, as one step. Those whose program was not read wait for it; those that are none
+    /// fall away.
+    pub fn take_draft(&mut self, draft: impl IntoIterator<Item = Kept>) {
+        let Some(mut wanted) = self.wanted.clone() else {
+            self.waiting.extend(draft);
+            return;
+        };
+        for kept in draft {
+            if kept.is_of_unread(&wanted, self.ground) {
+                self.waiting.push(kept);
+            } else {
+                kept.put(&mut wanted, self.ground);
+            }
+        }
+        self.step(wanted);
+    }
+
+    /// Programs for which edits of an earlier time wait.
+    pub fn waiting(&self) -> Vec<ProgramNumber> {
+        let waits = |number: &ProgramNumber| self.waiting.iter().any(|kept| kept.program() == Some(*number));
+        ProgramNumber::all().filter(waits).collect()
+    }
+}
+
+fn keep_parameters(base: &Wanted, wanted: &Wanted, kept: &mut Vec<Kept>) {
+    let (was, is) = (&base.image.parameters, &wanted.image.parameters);
+    if (was.steps, was.revolutions) != (is.steps, is.revolutions) {
+        kept.push(Kept::Gear(is.steps, is.revolutions));
+    }
+    let changed = |parameter| is.value(parameter).filter(|value| was.value(parameter) != Some(*value));
+    kept.extend(changed(Parameter::Direction).map(Kept::Direction));
+    kept.extend(changed(Parameter::Preset).map(Kept::Preset));
+    kept.extend(changed(Parameter::ZeroShift).map(Kept::ZeroShift));
+    let shift = wanted.image.shift.filter(|_| wanted.image.shift != base.image.shift);
+    kept.extend(shift.map(|shift| Kept::Shift(shift.get())));
+}
+
+fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &mut Vec<Kept>) {
+    let number = program.get();
+    let name = |names: &Wanted| names.names.program(program).to_owned();
+    if name(base) != name(wanted) {
+        kept.push(Kept::ProgramName(number, name(wanted)));
+    }
+    for cam in CamNumber::all() {
+        let now = wanted.cam(program, cam);
+        if now != base.cam(program, cam) {
+            kept.push(match now {
+                Some(Cam { start, stop }) => Kept::Cam(number, cam.get(), start.get(), stop.get()),
+                None => Kept::NoCam(number, cam.get()),
+            });
+        }
+        let on = wanted.is_on(program, cam);
+        if on != base.is_on(program, cam) {
+            kept.push(Kept::On(number, cam.get(), on));
+        }
+        if base.name(program, cam) != wanted.name(program, cam) {
+            let name = wanted.name(program, cam).unwrap_or_default();
+            kept.push(Kept::Name(number, cam.get(), name.to_owned()));
+        }
+    }
+}
+
+impl Kept {
+    /// Puts it into what is wanted; not where a number of it is none. What lies beyond the measuring range is put there all
+    /// the same, as it was left.
+    fn put(self, wanted: &mut Wanted, ground: Ground) {
+        let parameters = &mut wanted.image.parameters;
+        match self {
+            Kept::Gear(steps, revolutions) => {
+                if let Ok(gear) = Gear::new(steps, revolutions) {
+                    (parameters.steps, parameters.revolutions) = (gear.steps(), gear.turns());
+                }
+            }
+            Kept::Direction(code) => {
+                parameters.direction = Direction::of_code(code).unwrap_or(parameters.direction);
+            }
+            Kept::Preset(preset) => parameters.preset = Value::new(preset).map_or(parameters.preset, Value::get),
+            Kept::ZeroShift(shift) => {
+                parameters.zero_shift = Value::new(shift).map_or(parameters.zero_shift, Value::get)
+            }
+            Kept::Shift(shift) => wanted.image.shift = WindowShift::new(shift).or(wanted.image.shift),
+            Kept::Cam(_, cam, start, stop) => {
+                let edges = Value::new(start).zip(Value::new(stop)).map(|(start, stop)| Cam { start, stop });
+                let own = self.program().and_then(|number| edit::program_mut(wanted, number, ground).ok());
+                if let Some((own, edges)) = own.and_then(|own| own.cams.get_mut(usize::from(cam))).zip(edges) {
+                    *own = Some(edges);
+                }
+            }
+            Kept::NoCam(_, cam) => {
+                let own = self.program().and_then(|number| edit::program_mut(wanted, number, ground).ok());
+                if let Some(own) = own.and_then(|own| own.cams.get_mut(usize::from(cam))) {
+                    *own = None;
+                }
+            }
+            Kept::On(_, cam, on) => {
+                let own = self.program().and_then(|number| edit::program_mut(wanted, number, ground).ok());
+                if let Some((own, cam)) = own.zip(CamNumber::new(cam)) {
+                    own.set_on(cam, on);
+                }
+            }
+            Kept::Name(_, cam, ref name) => {
+                let place = self.program().zip(CamNumber::new(cam));
+                if let Some(((program, cam), name)) = place.zip(edit::checked_name(name).ok()) {
+                    wanted.names.set_cam(program, cam, name);
+                }
+            }
+            Kept::ProgramName(_, ref name) => {
+                if let Some((program, name)) = self.program().zip(edit::checked_name(name).ok()) {
+                    wanted.names.set_program(program, name);
+                }
+            }
+        }
+    }
+
+    fn program(&self) -> Option<ProgramNumber> {
+        match self {
+            Kept::Cam(program, ..)
+            | Kept::NoCam(program, _)
+            | Kept::On(program, ..)
+            | Kept::Name(program, ..)
+            | Kept::ProgramName(program, _) => ProgramNumber::new(*program),
+            Kept::Gear(..) | Kept::Direction(_) | Kept::Preset(_) | Kept::ZeroShift(_) | Kept::Shift(_) => None,
+        }
+    }
+
+    /// What it changes was not read. A name needs nothing to be read.
+    fn is_of_unread(&self, wanted: &Wanted, ground: Ground) -> bool {
+        ground == Ground::Encoder
+            && match self {
+                Kept::Shift(_) => wanted.image.shift.is_none(),
+                Kept::Cam(..) | Kept::NoCam(..) | Kept::On(..) => {
+                    self.program().is_some_and(|program| wanted.image.program(program).is_none())
+                }
+                Kept::Gear(..) | Kept::Direction(_) | Kept::Preset(_) | Kept::ZeroShift(_) => false,
+                Kept::Name(..) | Kept::ProgramName(..) => false,
+            }
+    }
+}

@@ -1,0 +1,303 @@
+//! The edits: what each makes of what is wanted, and why it may not be.
+
+use super::{Ground, Wanted};
+use crate::devices::interbus::profile::{Direction, Edge, Filled, LONGEST_NAME};
+use crate::devices::interbus::protocol::{
+    Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
+};
+
+/// A change. Each is one step, however much it changes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Edit {
+    /// Steps of the measuring range.
+    Steps(u32),
+    /// Turns until the position begins anew.
+    Revolutions(u32),
+    /// Both at once, where one after the other would not go.
+    Gear {
+        /// Steps.
+        steps: u32,
+        /// Turns.
+        revolutions: u32,
+    },
+    /// Which way the position counts.
+    Direction(Direction),
+    /// The preset, in steps. Nothing is fired by it.
+    Preset(u32),
+    /// The zero point shifting, in steps.
+    ZeroShift(u32),
+    /// The shift of the window in cam mode.
+    Shift(WindowShift),
+    /// An edge of a cam, typed or dragged.
+    Edge {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+        /// Which of its edges.
+        edge: Edge,
+        /// Its position.
+        to: u32,
+    },
+    /// Both edges of a cam, typed, moved as a whole, or drawn anew.
+    Cam {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+        /// Its first position.
+        start: u32,
+        /// Its last one; before the start: over the end of the measuring range.
+        stop: u32,
+        /// It works from then on, if it did not yet.
+        on: bool,
+    },
+    /// Whether a cam works.
+    Switch {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+        /// It does.
+        on: bool,
+    },
+    /// What a cam is called; nothing where that is empty.
+    Name {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+        /// At most [`LONGEST_NAME`] characters.
+        name: String,
+    },
+    /// What a program is called; nothing where that is empty.
+    ProgramName {
+        /// Which one.
+        program: ProgramNumber,
+        /// At most [`LONGEST_NAME`] characters.
+        name: String,
+    },
+    /// A program becomes as another is, with the names of its cams.
+    Copy {
+        /// What is copied.
+        from: ProgramNumber,
+        /// What it replaces.
+        to: ProgramNumber,
+    },
+    /// A program runs the other way: what is on at a position is then on as far from the other end of the range. Cams
+    /// that do not work are mirrored too, unless they lie beyond the range.
+    Mirror(ProgramNumber),
+    /// A program later or earlier by so many steps; what leaves the range at one end comes in at the other. Cams that do
+    /// not work go along, unless they lie beyond the range.
+    Rotate {
+        /// Which one.
+        program: ProgramNumber,
+        /// Later by so many steps; below 0 earlier.
+        by: i64,
+    },
+    /// Programs as a table has them.
+    Table(Vec<Filled>),
+}
+
+/// Why something cannot be changed. Nothing is, then.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EditError {
+    /// Nothing is known of the encoder.
+    #[error("nothing has been read yet")]
+    NothingRead,
+    /// Nothing is known of this program.
+    #[error("cam program {} has not been read", .0.get())]
+    NotRead(ProgramNumber),
+    /// Nothing is known of the window's shift, which is read with a program.
+    #[error("the shift of the window has not been read")]
+    ShiftNotRead,
+    /// The profile does not say where this cam is.
+    #[error("cam {} of program {} has no edges", cam.get(), program.get())]
+    NoCam {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+    },
+    /// Steps and turns are not one.
+    #[error(transparent)]
+    Gear(#[from] GearError),
+    /// Another parameter is beyond its limits.
+    #[error(transparent)]
+    Parameter(#[from] OutOfRange),
+    /// An edge beyond the measuring range.
+    #[error("{to} is beyond the measuring range, which ends at {last}")]
+    Edge {
+        /// Which one was to go there.
+        edge: Edge,
+        /// As given.
+        to: u32,
+        /// The last position.
+        last: u32,
+    },
+    /// A cam that works is beyond the measuring range, so that its program can be neither mirrored nor shifted.
+    #[error("cam {} of program {} is beyond the measuring range, which ends at {last}", cam.get(), program.get())]
+    Beyond {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+        /// The last position.
+        last: u32,
+    },
+    /// A name is too long, or no line of text.
+    #[error("a name is one line of at most {LONGEST_NAME} characters")]
+    Name,
+}
+
+/// What is wanted after a change.
+pub(super) fn edited(wanted: &Wanted, edit: &Edit, ground: Ground) -> Result<Wanted, EditError> {
+    let mut after = wanted.clone();
+    let parameters = &mut after.image.parameters;
+    match *edit {
+        Edit::Steps(steps) => set_gear(&mut after, steps, wanted.image.parameters.revolutions)?,
+        Edit::Revolutions(revolutions) => set_gear(&mut after, wanted.range(), revolutions)?,
+        Edit::Gear { steps, revolutions } => set_gear(&mut after, steps, revolutions)?,
+        Edit::Direction(direction) => parameters.direction = direction,
+        Edit::Preset(to) => parameters.preset = within(Parameter::Preset, to, last(wanted))?,
+        Edit::ZeroShift(to) => parameters.zero_shift = within(Parameter::ZeroShift, to, last(wanted))?,
+        Edit::Shift(shift) => {
+            if ground == Ground::Encoder && wanted.image.shift.is_none() {
+                return Err(EditError::ShiftNotRead);
+            }
+            after.image.shift = Some(shift);
+        }
+        Edit::Edge { program, cam, edge, to } => {
+            let to = position(edge, to, wanted)?;
+            let own = program_mut(&mut after, program, ground)?;
+            let none = EditError::NoCam { program, cam };
+            let own = own.cams.get_mut(usize::from(cam.get())).and_then(Option::as_mut).ok_or(none)?;
+            match edge {
+                Edge::Start => own.start = to,
+                Edge::Stop => own.stop = to,
+            }
+        }
+        Edit::Cam { program, cam, start, stop, on } => {
+            let to = Cam { start: position(Edge::Start, start, wanted)?, stop: position(Edge::Stop, stop, wanted)? };
+            let own = program_mut(&mut after, program, ground)?;
+            if let Some(own) = own.cams.get_mut(usize::from(cam.get())) {
+                *own = Some(to);
+            }
+            own.mask |= u8::from(on) << cam.get();
+        }
+        Edit::Switch { program, cam, on } => {
+            let own = program_mut(&mut after, program, ground)?;
+            if on && own.cams.get(usize::from(cam.get())).is_none_or(Option::is_none) {
+                return Err(EditError::NoCam { program, cam });
+            }
+            own.set_on(cam, on);
+        }
+        Edit::Name { program, cam, ref name } => after.names.set_cam(program, cam, checked_name(name)?),
+        Edit::ProgramName { program, ref name } => after.names.set_program(program, checked_name(name)?),
+        Edit::Copy { from, to } => {
+            let copied = *wanted.image.program(from).ok_or(EditError::NotRead(from))?;
+            *program_mut(&mut after, to, ground)? = copied;
+            for cam in CamNumber::all() {
+                after.names.set_cam(to, cam, wanted.names.cam(from, cam).to_owned());
+            }
+        }
+        Edit::Mirror(program) => {
+            let last = last(wanted);
+            move_cams(&mut after, program, |cam| Cam {
+                start: Value::of_word(last.saturating_sub(cam.stop.get())),
+                stop: Value::of_word(last.saturating_sub(cam.start.get())),
+            })?;
+        }
+        Edit::Rotate { program, by } => {
+            let range = i64::from(wanted.range().max(1));
+            // Below the range, which has 25 bits.
+            let by = by.rem_euclid(range);
+            let moved = |edge: Value| Value::of_word(((i64::from(edge.get()) + by) % range) as u32);
+            move_cams(&mut after, program, |cam| Cam { start: moved(cam.start), stop: moved(cam.stop) })?;
+        }
+        Edit::Table(ref table) => {
+            for filled in table {
+                fill(&mut after, filled, ground)?;
+            }
+        }
+    }
+    Ok(after)
+}
+
+fn set_gear(after: &mut Wanted, steps: u32, revolutions: u32) -> Result<(), EditError> {
+    let gear = Gear::new(steps, revolutions)?;
+    after.image.parameters.steps = gear.steps();
+    after.image.parameters.revolutions = gear.turns();
+    Ok(())
+}
+
+fn within(parameter: Parameter, value: u32, high: u32) -> Result<u32, EditError> {
+    if value <= high { Ok(value) } else { Err(OutOfRange { parameter, value, low: 0, high }.into()) }
+}
+
+/// The last position of the measuring range.
+const fn last(wanted: &Wanted) -> u32 {
+    wanted.range().saturating_sub(1)
+}
+
+fn position(edge: Edge, to: u32, wanted: &Wanted) -> Result<Value, EditError> {
+    let last = last(wanted);
+    Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
+}
+
+/// A program to be changed. A profile begins to say one with its first edit.
+pub(super) fn program_mut(
+    after: &mut Wanted,
+    number: ProgramNumber,
+    ground: Ground,
+) -> Result<&mut Program, EditError> {
+    let own = after.image.program_mut(number).ok_or(EditError::NotRead(number))?;
+    match ground {
+        Ground::Encoder => own.as_mut().ok_or(EditError::NotRead(number)),
+        Ground::Profile => Ok(own.get_or_insert_default()),
+    }
+}
+
+/// Every cam of a program somewhere else.
+fn move_cams(after: &mut Wanted, program: ProgramNumber, to: impl Fn(Cam) -> Cam) -> Result<(), EditError> {
+    let last = last(after);
+    let own = after.image.program_mut(program).and_then(Option::as_mut).ok_or(EditError::NotRead(program))?;
+    let mask = own.mask;
+    for (number, cam) in CamNumber::all().zip(&mut own.cams) {
+        let Some(cam) = cam else { continue };
+        if cam.start.get() <= last && cam.stop.get() <= last {
+            *cam = to(*cam);
+        } else if mask & 1 << number.get() != 0 {
+            return Err(EditError::Beyond { program, cam: number, last });
+        }
+    }
+    Ok(())
+}
+
+fn fill(after: &mut Wanted, filled: &Filled, ground: Ground) -> Result<(), EditError> {
+    for cam in filled.cams.iter().flatten() {
+        position(Edge::Start, cam.start.get(), after)?;
+        position(Edge::Stop, cam.stop.get(), after)?;
+    }
+    for (cam, name) in CamNumber::all().zip(&filled.names) {
+        after.names.set_cam(filled.program, cam, checked_name(name)?);
+    }
+    let own = program_mut(after, filled.program, ground)?;
+    own.mask = 0;
+    for ((number, own_cam), cam) in CamNumber::all().zip(&mut own.cams).zip(&filled.cams) {
+        if cam.is_some() {
+            *own_cam = *cam;
+            own.mask |= 1 << number.get();
+        }
+    }
+    Ok(())
+}
+
+/// A name without blanks around it.
+pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
+    let name = name.trim();
+    if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
+        return Err(EditError::Name);
+    }
+    Ok(name.to_owned())
+}

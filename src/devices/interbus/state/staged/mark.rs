@@ -1,0 +1,106 @@
+//! What is not right in what is wanted, where it stands.
+
+use super::Wanted;
+use crate::devices::interbus::profile::Edge;
+use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumber};
+
+/// Something that a person should look at. An edit may lead here: fewer steps leave cams behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// Steps and turns are no gear.
+    Gear(GearError),
+    /// The preset is beyond the measuring range.
+    Preset {
+        /// The last position.
+        last: u32,
+    },
+    /// A cam that works has an edge beyond the measuring range.
+    Beyond {
+        /// Whose cam.
+        program: ProgramNumber,
+        /// Which one.
+        cam: CamNumber,
+        /// Which edge; the start where both are.
+        edge: Edge,
+        /// The last position.
+        last: u32,
+    },
+    /// Two cams of one name that work are on at the same positions: pulses of one track should not meet. The encoder has
+    /// no such rule.
+    Clash {
+        /// Whose cams.
+        program: ProgramNumber,
+        /// The one with the lower number.
+        first: CamNumber,
+        /// The other.
+        second: CamNumber,
+        /// The first position at which both are on.
+        at: u32,
+    },
+}
+
+impl Mark {
+    /// The cam of a program that it is about.
+    pub fn is_about(&self, number: ProgramNumber, own: CamNumber) -> bool {
+        match *self {
+            Mark::Beyond { program, cam, .. } => (program, cam) == (number, own),
+            Mark::Clash { program, first, second, .. } => program == number && (first == own || second == own),
+            Mark::Gear(_) | Mark::Preset { .. } => false,
+        }
+    }
+
+    /// The program that it is about.
+    pub const fn program(&self) -> Option<ProgramNumber> {
+        match self {
+            Mark::Beyond { program, .. } | Mark::Clash { program, .. } => Some(*program),
+            Mark::Gear(_) | Mark::Preset { .. } => None,
+        }
+    }
+}
+
+impl Wanted {
+    /// All that is not right in it.
+    pub fn marks(&self) -> Vec<Mark> {
+        let parameters = &self.image.parameters;
+        let mut marks: Vec<Mark> = parameters.gear().err().map(Mark::Gear).into_iter().collect();
+        let last = self.range().saturating_sub(1);
+        if parameters.preset > last {
+            marks.push(Mark::Preset { last });
+        }
+        for program in ProgramNumber::all() {
+            self.mark_program(program, last, &mut marks);
+        }
+        marks
+    }
+
+    fn mark_program(&self, program: ProgramNumber, last: u32, marks: &mut Vec<Mark>) {
+        let on = |cam: &CamNumber| self.is_on(program, *cam);
+        for number in CamNumber::all().filter(on) {
+            let Some(cam) = self.cam(program, number) else { continue };
+            let beyond = [(Edge::Start, cam.start), (Edge::Stop, cam.stop)];
+            if let Some((edge, _)) = beyond.into_iter().find(|(_, position)| position.get() > last) {
+                marks.push(Mark::Beyond { program, cam: number, edge, last });
+            }
+            let Some(track) = self.name(program, number) else { continue };
+            for other in CamNumber::all().filter(on).filter(|other| *other > number) {
+                let is_same = self.name(program, other).is_some_and(|name| is_one_track(name, track));
+                let both = self.cam(program, other).filter(|_| is_same).and_then(|other| first_common(cam, other));
+                if let Some(at) = both {
+                    marks.push(Mark::Clash { program, first: number, second: other, at });
+                }
+            }
+        }
+    }
+}
+
+/// Names of one track: a person does not see how they are spelled in capitals.
+pub(super) fn is_one_track(one: &str, other: &str) -> bool {
+    one.trim().to_lowercase() == other.trim().to_lowercase()
+}
+
+/// The first position at which both are on. Where two stretches meet, one of them begins.
+fn first_common(one: Cam, other: Cam) -> Option<u32> {
+    let wrapped = one.wraps() && other.wraps();
+    let begins = [one.start, other.start].into_iter().filter(|at| one.is_on(*at) && other.is_on(*at));
+    if wrapped { Some(0) } else { begins.map(|at| at.get()).min() }
+}

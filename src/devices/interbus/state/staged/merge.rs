@@ -1,0 +1,63 @@
+//! What becomes of edits when the encoder, or the profile, says something else.
+
+use super::Wanted;
+use crate::devices::interbus::profile::Image;
+use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
+
+/// What was read, over what was known: what it does not have stays.
+pub(super) fn over(known: &Image, read: Image) -> Image {
+    let mut programs = read.programs;
+    for (own, known) in programs.iter_mut().zip(&known.programs) {
+        *own = own.or(*known);
+    }
+    Image { parameters: read.parameters, shift: read.shift.or(known.shift), programs }
+}
+
+/// Keeps what was changed against what was said before; all else is as it is said now.
+pub(super) fn rebase(own: &mut Wanted, before: &Wanted, now: &Wanted) {
+    let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
+    follow(&mut parameters.steps, &was.steps, &is.steps);
+    follow(&mut parameters.revolutions, &was.revolutions, &is.revolutions);
+    follow(&mut parameters.direction, &was.direction, &is.direction);
+    follow(&mut parameters.preset, &was.preset, &is.preset);
+    follow(&mut parameters.zero_shift, &was.zero_shift, &is.zero_shift);
+    follow(&mut own.image.shift, &before.image.shift, &now.image.shift);
+    let programs = own.image.programs.iter_mut().zip(&before.image.programs).zip(&now.image.programs);
+    for ((program, was), is) in programs {
+        match (program.as_mut(), was, is) {
+            (Some(program), Some(was), Some(is)) => rebase_program(program, was, is),
+            _ => follow(program, was, is),
+        }
+    }
+    for program in ProgramNumber::all() {
+        if own.names.program(program) == before.names.program(program) {
+            own.names.set_program(program, now.names.program(program).to_owned());
+        }
+        for cam in CamNumber::all() {
+            if own.names.cam(program, cam) == before.names.cam(program, cam) {
+                own.names.set_cam(program, cam, now.names.cam(program, cam).to_owned());
+            }
+        }
+    }
+}
+
+fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
+    for ((cam, was), is) in program.cams.iter_mut().zip(&was.cams).zip(&is.cams) {
+        match (cam.as_mut(), was, is) {
+            (Some(Cam { start, stop }), Some(was), Some(is)) => {
+                follow(start, &was.start, &is.start);
+                follow(stop, &was.stop, &is.stop);
+            }
+            _ => follow(cam, was, is),
+        }
+    }
+    let edited = program.mask ^ was.mask;
+    program.mask = program.mask & edited | is.mask & !edited;
+}
+
+/// What was not changed is as it is now.
+fn follow<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
+    if own == was {
+        own.clone_from(is);
+    }
+}

@@ -1,0 +1,337 @@
+//! Edits, steps and drafts of a K3 encoder.
+
+use super::{Differs, Edit, EditError, Kept, Mark, Place, Staged, Wanted};
+use crate::devices::interbus::profile::{Direction, Edge, Filled, Image, Names, Parameters};
+use crate::devices::interbus::protocol::{
+    Cam, CamNumber, GearError, Parameter, Program, ProgramNumber, Value, WindowShift,
+};
+
+fn parameters(steps: u32, revolutions: u32) -> Parameters {
+    Parameters { steps, revolutions, direction: Direction::Clockwise, preset: 0, zero_shift: 0 }
+}
+
+fn number(program: u8) -> ProgramNumber {
+    ProgramNumber::new(program).unwrap()
+}
+
+fn cam(cam: u8) -> CamNumber {
+    CamNumber::new(cam).unwrap()
+}
+
+fn edges(start: u32, stop: u32) -> Cam {
+    Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
+}
+
+/// Cam i from 100·i to 100·i + 50; cams 0 and 3 work.
+fn program() -> Program {
+    let cams = [0, 1, 2, 3, 4, 5, 6, 7].map(|cam| Some(edges(100 * cam, 100 * cam + 50)));
+    Program { cams, mask: 0b1001 }
+}
+
+/// An encoder with 1000 steps whose program 1 was read.
+fn staged() -> Staged {
+    let mut staged = Staged::default();
+    staged.refresh_parameters(parameters(1000, 1));
+    staged.refresh_programs(&[(number(1), program())], WindowShift::new(8));
+    staged
+}
+
+fn edge(program: u8, own: u8, edge: Edge, to: u32) -> Edit {
+    Edit::Edge { program: number(program), cam: cam(own), edge, to }
+}
+
+fn name(own: u8, name: &str) -> Edit {
+    Edit::Name { program: number(1), cam: cam(own), name: name.to_owned() }
+}
+
+fn cam_of(staged: &Staged, own: u8) -> (u32, u32) {
+    let cam = staged.wanted().unwrap().cam(number(1), cam(own)).unwrap();
+    (cam.start.get(), cam.stop.get())
+}
+
+#[test]
+fn an_edit_stands_beside_the_encoder() {
+    let mut staged = staged();
+    assert!(!staged.is_dirty() && staged.differences().is_empty());
+    assert_eq!(staged.edit(&edge(1, 3, Edge::Stop, 399)), Ok(true));
+    assert_eq!(staged.edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }), Ok(true));
+    assert_eq!(staged.edit(&Edit::Direction(Direction::Counterclockwise)), Ok(true));
+    assert_eq!(staged.edit(&Edit::Direction(Direction::Counterclockwise)), Ok(false), "nothing is other than before");
+    let differs = |place, from, to| Differs { place, from: Some(from), to: Some(to) };
+    let expected = [
+        differs(Place::Parameter(Parameter::Direction), 3, 4),
+        differs(Place::Edge(number(1), cam(3), Edge::Stop), 350, 399),
+        differs(Place::On(number(1), cam(7)), 0, 1),
+    ];
+    assert_eq!(staged.differences(), expected);
+    assert!(staged.is_edited(number(1), cam(3)) && !staged.is_edited(number(1), cam(4)));
+    assert!(staged.is_program_edited(number(1)) && !staged.is_program_edited(number(2)));
+    assert_eq!(staged.device().unwrap().program(number(1)), Some(&program()));
+}
+
+#[test]
+fn what_cannot_be_says_why_with_its_limits_and_changes_nothing() {
+    let mut staged = Staged::default();
+    assert_eq!(staged.edit(&Edit::Preset(1)), Err(EditError::NothingRead));
+    staged = self::staged();
+    let beyond = |parameter, value, low, high| {
+        EditError::Parameter(crate::devices::interbus::protocol::OutOfRange { parameter, value, low, high })
+    };
+    let cases = [
+        (Edit::Steps(8193), EditError::Gear(GearError::Steps { steps: 8193, turns: 1, most: 8192 })),
+        (Edit::Steps(0), EditError::Gear(GearError::Steps { steps: 0, turns: 1, most: 8192 })),
+        (Edit::Revolutions(4097), EditError::Gear(GearError::Turns { turns: 4097 })),
+        (Edit::Preset(1000), beyond(Parameter::Preset, 1000, 0, 999)),
+        // Issue 22.6.
+        (Edit::ZeroShift(1000), beyond(Parameter::ZeroShift, 1000, 0, 999)),
+        (edge(1, 0, Edge::Start, 1000), EditError::Edge { edge: Edge::Start, to: 1000, last: 999 }),
+        (edge(1, 0, Edge::Stop, u32::MAX), EditError::Edge { edge: Edge::Stop, to: u32::MAX, last: 999 }),
+        (edge(2, 0, Edge::Start, 5), EditError::NotRead(number(2))),
+        (Edit::Mirror(number(2)), EditError::NotRead(number(2))),
+        (Edit::Copy { from: number(2), to: number(1) }, EditError::NotRead(number(2))),
+        (Edit::Copy { from: number(1), to: number(8) }, EditError::NotRead(number(8))),
+        (name(0, "a\nb"), EditError::Name),
+        (name(0, &"n".repeat(41)), EditError::Name),
+    ];
+    for (edit, why) in cases {
+        assert_eq!(staged.edit(&edit), Err(why), "{edit:?}");
+    }
+    assert!(!staged.is_dirty() && !staged.can_undo());
+    let mut unread = Staged::default();
+    unread.refresh_parameters(parameters(1000, 1));
+    assert_eq!(unread.edit(&Edit::Shift(WindowShift::default())), Err(EditError::ShiftNotRead));
+}
+
+#[test]
+fn a_gear_changes_at_once_where_it_would_not_go_one_after_the_other() {
+    let mut staged = staged();
+    assert_eq!(staged.edit(&Edit::Gear { steps: 40_960, revolutions: 10 }), Ok(true));
+    let refused = GearError::Steps { steps: 40_960, turns: 4, most: 32_768 };
+    assert_eq!(staged.edit(&Edit::Revolutions(4)), Err(EditError::Gear(refused)));
+    assert_eq!(staged.edit(&Edit::Gear { steps: 0x1FF_FFFF, revolutions: 4096 }), Ok(true));
+}
+
+#[test]
+fn programs_are_copied_mirrored_and_shifted() {
+    let mut staged = staged();
+    staged.refresh_programs(&[(number(5), Program { cams: [Some(edges(0, 0)); 8], mask: 0 })], None);
+    staged.edit(&name(3, " feed ")).unwrap();
+    // 999 - 350 = 649 and 999 - 300 = 699.
+    staged.edit(&Edit::Mirror(number(1))).unwrap();
+    assert_eq!((cam_of(&staged, 0), cam_of(&staged, 3)), ((949, 999), (649, 699)));
+    // 949 + 60 = 1009 and 999 + 60 = 1059, less 1000.
+    staged.edit(&Edit::Rotate { program: number(1), by: 60 }).unwrap();
+    assert_eq!((cam_of(&staged, 0), cam_of(&staged, 3)), ((9, 59), (709, 759)));
+    staged.edit(&Edit::Rotate { program: number(1), by: -1_000_020 }).unwrap();
+    assert_eq!(cam_of(&staged, 0), (989, 39), "over the end");
+    staged.edit(&Edit::Copy { from: number(1), to: number(5) }).unwrap();
+    let wanted = staged.wanted().unwrap();
+    assert_eq!(wanted.image.program(number(5)), wanted.image.program(number(1)));
+    assert_eq!(wanted.name(number(5), cam(3)), Some("feed"));
+}
+
+#[test]
+fn a_cam_beyond_the_range_keeps_its_program_from_being_mirrored_only_while_it_works() {
+    let mut staged = staged();
+    staged.edit(&Edit::Steps(340)).unwrap();
+    let refused = EditError::Beyond { program: number(1), cam: cam(3), last: 339 };
+    assert_eq!(staged.edit(&Edit::Mirror(number(1))), Err(refused.clone()));
+    assert_eq!(staged.edit(&Edit::Rotate { program: number(1), by: 1 }), Err(refused));
+    staged.edit(&Edit::Switch { program: number(1), cam: cam(3), on: false }).unwrap();
+    staged.edit(&Edit::Mirror(number(1))).unwrap();
+    assert_eq!((cam_of(&staged, 0), cam_of(&staged, 3)), ((289, 339), (300, 350)), "that one stays where it is");
+}
+
+#[test]
+fn a_table_is_one_step_and_says_which_cams_work() {
+    let mut staged = staged();
+    let mut filled = Filled { program: number(1), cams: [None; 8], names: Default::default() };
+    filled.cams[1] = Some(edges(900, 20));
+    filled.names[1] = "glue".to_owned();
+    staged.edit(&Edit::Table(vec![filled.clone()])).unwrap();
+    let wanted = staged.wanted().unwrap();
+    assert_eq!(wanted.image.program(number(1)).unwrap().mask, 0b10);
+    assert_eq!(cam_of(&staged, 1), (900, 20));
+    assert_eq!(cam_of(&staged, 0), (0, 50), "its edges cost nothing where they are");
+    filled.cams[4] = Some(edges(0, 1000));
+    let refused = EditError::Edge { edge: Edge::Stop, to: 1000, last: 999 };
+    assert_eq!(staged.edit(&Edit::Table(vec![filled])), Err(refused));
+    assert!(staged.undo() && !staged.is_dirty() && !staged.undo());
+}
+
+#[test]
+fn steps_are_undone_and_done_again() {
+    let mut staged = staged();
+    for to in [310, 320, 330] {
+        staged.edit(&edge(1, 3, Edge::Start, to)).unwrap();
+    }
+    assert!(staged.undo() && staged.undo());
+    assert_eq!(cam_of(&staged, 3), (310, 350));
+    assert!(staged.redo());
+    assert_eq!(cam_of(&staged, 3), (320, 350));
+    staged.edit(&edge(1, 3, Edge::Start, 0)).unwrap();
+    assert!(!staged.redo(), "another way was taken");
+    staged.revert();
+    assert!(!staged.is_dirty());
+    assert!(staged.undo());
+    assert_eq!(cam_of(&staged, 3), (0, 350));
+    for to in 0..500 {
+        staged.edit(&edge(1, 0, Edge::Stop, 100 + to)).unwrap();
+    }
+    let mut steps = 0;
+    while staged.undo() {
+        steps += 1;
+    }
+    assert_eq!(steps, 200);
+}
+
+#[test]
+fn edits_survive_a_fresh_reading_and_so_does_the_way_back() {
+    let mut staged = staged();
+    staged.edit(&edge(1, 3, Edge::Stop, 399)).unwrap();
+    staged.edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }).unwrap();
+    staged.edit(&Edit::Preset(7)).unwrap();
+    let mut now = program();
+    now.cams[3] = Some(edges(305, 350)); // by somebody else
+    now.mask = 0b1000_1011; // cam 1 too, and ours was written
+    staged.refresh_programs(&[(number(1), now)], None);
+    staged.refresh_parameters(Parameters { preset: 7, ..parameters(2000, 1) });
+    assert_eq!(cam_of(&staged, 3), (305, 399));
+    let wanted = staged.wanted().unwrap();
+    assert_eq!((wanted.image.program(number(1)).unwrap().mask, wanted.range()), (0b1000_1011, 2000));
+    assert_eq!(staged.count(), 1, "{:?}", staged.differences());
+    assert!(staged.undo(), "the edit of the stop is one step still");
+    assert_eq!(cam_of(&staged, 3), (305, 350));
+    assert!(!staged.is_dirty() && !staged.undo());
+}
+
+#[test]
+fn what_was_not_read_anew_stays_as_it_was_known() {
+    let mut staged = staged();
+    staged.refresh_programs(&[(number(2), Program { mask: 0x93, ..program() })], None);
+    staged.refresh_parameters(parameters(500, 1));
+    let known = staged.device().unwrap();
+    assert_eq!(known.known().map(|(program, own)| (program.get(), own.mask)).collect::<Vec<_>>(), [(1, 9), (2, 0x93)]);
+    assert_eq!(known.shift, WindowShift::new(8));
+    assert!(!staged.is_dirty());
+}
+
+#[test]
+fn a_draft_comes_back_and_waits_for_what_was_not_read() {
+    let mut staged = staged();
+    for edit in [
+        edge(1, 3, Edge::Stop, 399),
+        Edit::Switch { program: number(1), cam: cam(0), on: false },
+        name(3, "feed"),
+        Edit::Steps(360),
+        Edit::Shift(WindowShift::new(3).unwrap()),
+    ] {
+        staged.edit(&edit).unwrap();
+    }
+    let expected = [
+        Kept::Gear(360, 1),
+        Kept::Shift(3),
+        Kept::On(1, 0, false),
+        Kept::Cam(1, 3, 300, 399),
+        Kept::Name(1, 3, "feed".to_owned()),
+    ];
+    let kept = staged.edits();
+    assert_eq!(kept, expected);
+
+    let mut other = Staged::default();
+    let none =
+        [Kept::Cam(9, 0, 1, 2), Kept::Cam(1, 8, 1, 2), Kept::Direction(7), Kept::Preset(1 << 25), Kept::Shift(26)];
+    other.take_draft(kept.iter().cloned().chain(none));
+    assert_eq!(other.edits().len(), 10, "nothing is lost before anything was read");
+    other.refresh_parameters(parameters(1000, 1));
+    assert_eq!(other.wanted().unwrap().range(), 360);
+    assert_eq!(other.waiting(), [number(1)]);
+    other.refresh_programs(&[(number(1), program())], WindowShift::new(8));
+    assert_eq!(other.wanted(), staged.wanted(), "the cam beyond the range too");
+    assert_eq!((other.edits(), other.waiting()), (kept, Vec::new()));
+    let mask = other.wanted().unwrap().image.program(number(1)).unwrap().mask;
+    assert_eq!(mask, 0b1000);
+}
+
+#[test]
+fn drafts_are_text() {
+    let kept = vec![Kept::Gear(360, 1), Kept::NoCam(2, 7), Kept::Name(1, 3, "feed".to_owned())];
+    let text = ron::to_string(&kept).unwrap();
+    assert_eq!(text, "[Gear(360,1),NoCam(2,7),Name(1,3,\"feed\")]");
+    assert_eq!(ron::from_str::<Vec<Kept>>(&text).unwrap(), kept);
+}
+
+#[test]
+fn a_profile_can_be_made_to_say_what_it_does_not_say() {
+    let mut staged = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
+    let switch = Edit::Switch { program: number(2), cam: cam(4), on: true };
+    assert_eq!(staged.edit(&switch), Err(EditError::NoCam { program: number(2), cam: cam(4) }));
+    let drawn = Edit::Cam { program: number(2), cam: cam(4), start: 900, stop: 99, on: true };
+    assert_eq!(staged.edit(&drawn), Ok(true));
+    assert_eq!(staged.edit(&edge(2, 5, Edge::Stop, 3)), Err(EditError::NoCam { program: number(2), cam: cam(5) }));
+    assert_eq!(staged.program(number(2)).unwrap().cams.iter().flatten().count(), 1);
+    assert_eq!(staged.edit(&Edit::Shift(WindowShift::new(3).unwrap())), Ok(true));
+    let kept = staged.edits();
+    assert_eq!(kept, [Kept::Shift(3), Kept::Cam(2, 4, 900, 99), Kept::On(2, 4, true)]);
+    let mut other = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
+    other.take_draft(kept);
+    assert_eq!(other.wanted(), staged.wanted());
+    let Wanted { image, names } = staged.wanted().unwrap().clone();
+    staged.saved(image, names);
+    assert!(!staged.is_dirty() && staged.undo() && staged.is_dirty(), "what was saved can still be undone");
+}
+
+#[test]
+fn names_are_saved_and_not_written() {
+    let mut encoder = staged();
+    encoder.edit(&name(0, "feed")).unwrap();
+    encoder.edit(&Edit::ProgramName { program: number(1), name: "size 2".to_owned() }).unwrap();
+    assert!(!encoder.is_dirty() && !encoder.is_program_edited(number(1)) && encoder.can_undo());
+    let kept = encoder.edits();
+    assert_eq!(kept, [Kept::ProgramName(1, "size 2".to_owned()), Kept::Name(1, 0, "feed".to_owned())]);
+    let mut other = staged();
+    other.take_draft(kept);
+    assert_eq!(other.wanted(), encoder.wanted());
+    let mut profile = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
+    profile.edit(&name(0, "feed")).unwrap();
+    assert!(profile.is_dirty() && profile.is_program_edited(number(1)));
+    profile.edit(&name(0, "  ")).unwrap();
+    assert!(!profile.is_dirty());
+}
+
+#[test]
+fn marks_say_what_is_beyond_the_range_and_what_clashes() {
+    let mut staged = staged();
+    staged.edit(&Edit::Preset(400)).unwrap();
+    staged.edit(&Edit::Steps(340)).unwrap();
+    let beyond = Mark::Beyond { program: number(1), cam: cam(3), edge: Edge::Stop, last: 339 };
+    assert_eq!(staged.wanted().unwrap().marks(), [Mark::Preset { last: 339 }, beyond]);
+    assert!(beyond.is_about(number(1), cam(3)) && !beyond.is_about(number(1), cam(0)));
+    staged.undo();
+    staged.undo();
+    assert!(staged.wanted().unwrap().marks().is_empty());
+
+    // Pulses of one track: 300 to 350 and one that begins within it.
+    let drawn = |start, stop| Edit::Cam { program: number(1), cam: cam(5), start, stop, on: true };
+    staged.edit(&name(3, "Feed")).unwrap();
+    staged.edit(&name(5, "feed")).unwrap();
+    for (start, stop, at) in [
+        (350, 400, Some(350)),
+        (351, 400, None),
+        (100, 299, None),
+        (100, 300, Some(300)),
+        (310, 320, Some(310)),
+        (900, 305, Some(300)),
+        (900, 299, None),
+        (340, 10, Some(340)),
+    ] {
+        staged.edit(&drawn(start, stop)).unwrap();
+        let expected = at.map(|at| Mark::Clash { program: number(1), first: cam(3), second: cam(5), at });
+        assert_eq!(staged.wanted().unwrap().marks(), Vec::from_iter(expected), "{start} to {stop}");
+    }
+    staged.edit(&edge(1, 3, Edge::Start, 990)).unwrap();
+    let clash = Mark::Clash { program: number(1), first: cam(3), second: cam(5), at: 0 };
+    assert_eq!(staged.wanted().unwrap().marks(), [clash], "both go over the end");
+    staged.edit(&name(5, "other")).unwrap();
+    assert!(staged.wanted().unwrap().marks().is_empty());
+}

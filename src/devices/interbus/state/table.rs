@@ -1,0 +1,99 @@
+//! Tables of cams: read from a file or pasted, looked at, and only then taken into the edits; and written.
+
+use std::path::PathBuf;
+
+use super::Done;
+use super::encoder::Encoder;
+use super::staged::Edit;
+use crate::app::action::{Action as StudioAction, Done as StudioDone};
+use crate::app::services::Services;
+use crate::app::{Severity, Text, explain};
+use crate::devices::interbus::profile::{CamTable, TableOptions, emit_table};
+use crate::devices::interbus::protocol::ProgramNumber;
+use crate::store::{read_file, write_atomically};
+
+/// A table that was read and is not taken yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Import {
+    /// Where it comes from.
+    pub origin: Text,
+    /// What it says, in the units of the machine as they are.
+    pub table: CamTable,
+    text: String,
+    /// The program of rows that name none.
+    program: ProgramNumber,
+}
+
+impl Encoder {
+    pub(super) fn open_table(&mut self, path: PathBuf, services: &Services) {
+        let session = self.session.id;
+        services.tasks.run("table", move || {
+            let result = read_file(&path);
+            StudioAction::Done(StudioDone::Interbus(session, Done::Read(path, result)))
+        });
+    }
+
+    /// What a text says as a table.
+    pub(super) fn read_table(&mut self, origin: Text, text: String, program: ProgramNumber) {
+        self.refusal = None;
+        let table = self.options(program).read(&text);
+        self.import = Some(Import { origin, table, text, program });
+    }
+
+    fn options(&self, program: ProgramNumber) -> TableOptions {
+        TableOptions { scale: self.scale, range: self.range(), program }
+    }
+
+    /// The machine counts otherwise, or the measuring range is another: the table is read anew.
+    pub(super) fn read_table_anew(&mut self) {
+        let Some(program) = self.import.as_ref().map(|import| import.program) else { return };
+        let options = self.options(program);
+        if let Some(import) = &mut self.import {
+            import.table = options.read(&import.text);
+        }
+    }
+
+    /// Takes the table that was read into the edits, or leaves it. One that cannot be taken stays, with why: a line that
+    /// is left out would switch its cam off.
+    pub(super) fn take_table(&mut self, take: bool) {
+        let Some(import) = &self.import else { return };
+        if take && !import.table.problems.is_empty() {
+            return;
+        }
+        if take {
+            let edit = Edit::Table(import.table.filled());
+            self.edit(&edit);
+        }
+        if !take || self.refusal.is_none() {
+            self.import = None;
+        }
+    }
+
+    pub(super) fn save_table(&mut self, path: PathBuf, decimal_comma: bool, services: &Services) {
+        let Some(wanted) = self.staged.wanted() else { return };
+        let text = emit_table(&wanted.image, &wanted.names, &self.scale, decimal_comma);
+        let session = self.session.id;
+        services.tasks.run("export", move || {
+            let result = write_atomically(&path, text.as_bytes());
+            StudioAction::Done(StudioDone::Interbus(session, Done::Written(path, result)))
+        });
+    }
+
+    /// What a task comes back with.
+    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
+        match done {
+            Done::Read(path, Ok(text)) => {
+                let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+                self.read_table(explain::plain(name), text, self.table_program);
+            }
+            Done::Written(path, Ok(())) => {
+                services.log.settle_file(&path);
+                let text = Text::new("session.saved").with("path", path.display());
+                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+            }
+            Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => {
+                self.session.refuse(explain::file(&error), services)
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What the frames of the trace say: the words in them. A word means what the encoder's mode makes of it, which the OUT
+//! words before it have chosen.
+
+use super::said::{self, Known};
+use crate::app::{Explained, Text, TraceFault};
+use crate::devices::interbus::procedures::{Carried, Fault, carried, fault};
+use crate::devices::interbus::protocol::{Command, Mode, ReadOut, Reply, WindowShift, WordOrder};
+use crate::devices::interbus::state::explain as explained;
+use crate::link::{Direction, TraceEntry};
+
+/// Reads frames in the order in which they went over the wire.
+#[derive(Debug)]
+pub(super) struct Meaning {
+    /// Which half of a word comes first.
+    pub(super) order: WordOrder,
+    /// The shift of the window, where it was read.
+    pub(super) shift: Option<WindowShift>,
+    mode: Mode,
+    read_out: Option<ReadOut>,
+    /// The frame of the last request.
+    asked: Vec<u8>,
+}
+
+impl Meaning {
+    /// What a link leads to begins with a position.
+    pub(super) fn new(order: WordOrder) -> Self {
+        Meaning { order, shift: None, mode: Mode::Position, read_out: None, asked: Vec::new() }
+    }
+
+    /// The encoder is known to be in this mode.
+    pub(super) fn found(&mut self, mode: Mode) {
+        self.mode = mode;
+    }
+
+    /// What a frame says, and nothing for one that carries no word and is whole.
+    pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
+        let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
+        if entry.direction == Direction::Sent {
+            self.asked.clone_from(&bytes);
+            return self.said(entry.direction, &bytes).into();
+        }
+        match fault(&self.asked, &bytes, self.order) {
+            Some(Fault::Broken(damage)) => Explained::broken(explained::damage(damage)),
+            Some(Fault::Refused(exception)) => {
+                Explained { meaning: vec![explained::exception(exception)], fault: Some(TraceFault::Reported) }
+            }
+            None => self.received(&bytes),
+        }
+    }
+
+    /// A reply; an error word in it is one of the encoder's.
+    fn received(&mut self, bytes: &[u8]) -> Explained {
+        let meaning = self.said(Direction::Received, bytes);
+        let is_error = match carried(false, bytes, self.order) {
+            Some(Carried::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
+            _ => false,
+        };
+        Explained { meaning, fault: is_error.then_some(TraceFault::Reported) }
+    }
+
+    fn said(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
+        match carried(direction == Direction::Sent, bytes, self.order) {
+            Some(Carried::Out(word)) => {
+                let command = self.command(word);
+                self.follow(command);
+                vec![word_of("ib_trace.out", word), said::asked(command)]
+            }
+            Some(Carried::In(word)) => {
+                let known = Known { mode: self.mode, read_out: self.read_out, shift: self.shift };
+                vec![word_of("ib_trace.in", word), said::told(word, &known)]
+            }
+            None => Vec::new(),
+        }
+    }
+
+    /// What is sent is legal in the mode that the encoder is in: where that is another one than is known here, the word
+    /// tells so.
+    fn command(&self, word: u32) -> Command {
+        let readings = || Command::readings(word).into_iter().next();
+        Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))
+    }
+
+    fn follow(&mut self, command: Command) {
+        match command {
+            Command::Cams(Some(_)) => self.mode = Mode::Cam,
+            Command::Cams(None) | Command::Velocity(false) => self.mode = Mode::Position,
+            Command::Velocity(true) => self.mode = Mode::Velocity,
+            _ if said::mode_of(command) == Mode::Cam => self.mode = Mode::Cam,
+            _ => {}
+        }
+        self.read_out = if let Command::ReadOut(read_out) = command { Some(read_out) } else { None };
+    }
+}
+
+fn word_of(id: &'static str, word: u32) -> Text {
+    Text::new(id).with("word", format!("0x{word:08X}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::bits::{MaskedBytes, parse_hex};
+    use crate::units::Moment;
+
+    /// Issue 22.11: replies of a gateway (Modbus application protocol 1.1b3, 6.4 and 7) that are broken by hand, that refuse, and
+    /// that carry an error word of the encoder (reference 2), have a meaning and a mark.
+    #[test]
+    fn a_broken_reply_has_a_meaning_and_a_mark() {
+        let request = "00 07 00 00 00 06 01 04 00 00 00 02";
+        let cases = [
+            ("good", "00 07 00 00 00 07 01 04 04 00 00 03 E8", None),
+            ("late, to another request", "00 06 00 00 00 07 01 04 04 00 00 03 E8", None),
+            ("an error word", "00 07 00 00 00 07 01 04 04 86 00 00 00", Some(TraceFault::Reported)),
+            ("refused", "00 07 00 00 00 03 01 84 06", Some(TraceFault::Reported)),
+            ("another unit", "00 07 00 00 00 07 02 04 04 00 00 03 E8", Some(TraceFault::Broken)),
+            ("another function", "00 07 00 00 00 07 01 03 04 00 00 03 E8", Some(TraceFault::Broken)),
+            ("one register", "00 07 00 00 00 05 01 04 02 03 E8", Some(TraceFault::Broken)),
+            ("cut short", "00 07 00 00 00 07 01 04 04 00", Some(TraceFault::Broken)),
+            ("no frame", "55 AA 55", Some(TraceFault::Broken)),
+        ];
+        for (label, reply, fault) in cases {
+            let mut meaning = Meaning::new(WordOrder::HighFirst);
+            let mut said = |direction, text| {
+                let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
+                meaning.of(&TraceEntry { at: Moment::START, direction, bytes })
+            };
+            assert_eq!(said(Direction::Sent, request).fault, None);
+            let told = said(Direction::Received, reply);
+            let words: Vec<String> = told.meaning.iter().map(|text| text.words(Language::English)).collect();
+            assert_eq!(told.fault, fault, "{label}: {words:?}");
+            assert!(!words.concat().is_empty(), "{label}");
+        }
+    }
+}

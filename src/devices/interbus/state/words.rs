@@ -1,0 +1,106 @@
+//! What parameters, read-outs, modes, lamps and jobs of an INTERBUS encoder are called.
+
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::devices::interbus::profile::Direction;
+use crate::devices::interbus::protocol::{Flags, Interface, LedRow, Mode, Parameter, ReadOut, ReadOutValue, Value};
+use crate::devices::interbus::state::explain::{direction, startup};
+
+/// A parameter.
+pub fn parameter(parameter: Parameter) -> Text {
+    Text::new(match parameter {
+        Parameter::Steps => "ib_parameter.steps",
+        Parameter::Turns => "ib_parameter.turns",
+        Parameter::Direction => "ib_parameter.direction",
+        Parameter::Preset => "ib_parameter.preset",
+        Parameter::ZeroShift => "ib_parameter.zero_shift",
+        Parameter::Default => "ib_parameter.default",
+    })
+}
+
+/// A parameter's number.
+pub fn setting(parameter: Parameter, number: u32) -> Text {
+    match (parameter, Direction::of_code(number)) {
+        (Parameter::Direction, Some(own)) => direction(own),
+        _ => plain(number),
+    }
+}
+
+/// A mode, in a sentence.
+pub fn mode(mode: Mode) -> Text {
+    Text::new(match mode {
+        Mode::Position => "ib_mode.position",
+        Mode::Parameterisation => "ib_mode.parameterisation",
+        Mode::ReadOut => "ib_mode.read_out",
+        Mode::Velocity => "ib_mode.velocity",
+        Mode::Cam => "ib_mode.cam",
+    })
+}
+
+/// What was read out.
+pub fn read_out_value(value: ReadOutValue) -> Text {
+    match value {
+        ReadOutValue::Plain(number) => plain(format!("{number} (0x{number:X})")),
+        ReadOutValue::Minutes(minutes) => {
+            Text::new("ib_read_out.minutes").with("minutes", minutes).with_number("hours", f64::from(minutes) / 60.0, 1)
+        }
+        ReadOutValue::TenthsOfDegree(tenths) => celsius(tenths),
+        ReadOutValue::StartupMode(own) => startup(own),
+        ReadOutValue::Flags(own) => flags(own),
+    }
+}
+
+/// Tenths of a degree.
+pub fn celsius(tenths: i32) -> Text {
+    Text::new("ib_read_out.celsius").with_number("celsius", f64::from(tenths) / 10.0, 1)
+}
+
+/// What an encoder is.
+pub fn flags(flags: Flags) -> Text {
+    let turns = Text::new(if flags.multiturn() { "ib_flags.multiturn" } else { "ib_flags.single_turn" });
+    let mut all = vec![turns];
+    if flags.steps_minus_one() {
+        all.push(Text::new("ib_flags.steps_minus_one"));
+    }
+    if flags.unknown() != 0 {
+        all.push(Text::new("ib_flags.unknown").with("bits", format!("0x{:X}", flags.unknown())));
+    }
+    Text::new("ib_flags.all").with_list("flags", all)
+}
+
+/// What lamps say, and what to do.
+pub fn lamps(row: &LedRow) -> (Text, Text) {
+    use crate::devices::interbus::protocol::Lamp::{Blinking, On};
+    let (says, remedy) = match (row.leds.ba, row.leds.rbda) {
+        (On, _) => ("ib_leds.run", "ib_leds.run_remedy"),
+        (Blinking, _) => ("ib_leds.configured", "ib_leds.configured_remedy"),
+        (_, On) => ("ib_leds.bus_error", "ib_leds.bus_error_remedy"),
+        _ => ("ib_leds.no_run", "ib_leds.no_run_remedy"),
+    };
+    (Text::new(says), Text::new(remedy))
+}
+
+/// What carries the bus.
+pub fn interface(interface: Interface) -> Text {
+    Text::new(match interface {
+        Interface::Standard => "ib_id.standard",
+        Interface::OpticalFibre => "ib_id.fibre",
+        Interface::Loop2 => "ib_id.loop2",
+    })
+}
+
+/// A measuring range.
+pub fn range(steps: u32, turns: u32) -> Text {
+    let id = if turns == 1 { "ib_card.range_one" } else { "ib_card.range_of" };
+    Text::new(id).with("steps", steps).with("turns", turns)
+}
+
+/// What was read out, as it is written beside its name.
+pub fn read_value(what: ReadOut, value: Value) -> Text {
+    match (what.number(), Direction::of_code(value.get())) {
+        (0x3, Some(own)) => direction(own),
+        // A number that is counted or names something; what its bits are nobody needs.
+        (0x0..=0x7, _) => plain(value.get()),
+        _ => read_out_value(what.value(value)),
+    }
+}

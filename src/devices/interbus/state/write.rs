@@ -1,0 +1,138 @@
+//! What is written into an encoder: the edits or a profile as a wish, its jobs, and what is read again after it.
+
+use super::cams::words;
+use super::encoder::Encoder;
+use super::review::Review;
+use crate::app::services::Services;
+use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
+use crate::app::{Severity, Text};
+use crate::devices::interbus::jobs::{Change, Commit, Interbus, InterbusJob, Prepared, device_key};
+use crate::devices::interbus::profile::{
+    Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device, other_type,
+};
+use crate::devices::interbus::protocol::ProgramNumber;
+use crate::profile::{Body, ProfileError};
+use crate::store::DeviceKey;
+
+impl Encoder {
+    pub(super) fn review_edits(&mut self, services: &mut Services) {
+        let Some(edited) = self.edited_image().filter(|_| self.staged.is_dirty()) else {
+            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
+            return;
+        };
+        self.plan(Change::Write(Box::new(edited)), services);
+    }
+
+    /// What is wanted otherwise than it was read: of programs only those, since each that a plan speaks of is selected to
+    /// be read. Where the measuring range shrinks, all that are known, since their cams have to stay within it.
+    fn edited_image(&self) -> Option<Image> {
+        let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
+        let mut edited = Image::of(wanted.parameters);
+        edited.shift = wanted.shift.filter(|shift| device.shift != Some(*shift));
+        let shrinks = wanted.parameters.steps < device.parameters.steps;
+        for (number, program) in wanted.known() {
+            let differs = device.program(number) != Some(program);
+            if let Some(own) = edited.program_mut(number).filter(|_| differs || shrinks) {
+                *own = Some(*program);
+            }
+        }
+        Some(edited)
+    }
+
+    pub(crate) fn plan_restore(&mut self, profile: InterbusProfile, services: &mut Services) {
+        let options = RestoreOptions::default();
+        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
+    }
+}
+
+impl WithMemory for Encoder {
+    fn review(&self) -> Option<&Review> {
+        self.review.as_ref()
+    }
+
+    fn review_mut(&mut self) -> &mut Option<Review> {
+        &mut self.review
+    }
+
+    fn is_for_another(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        check_device(profile, &own.profile()).is_err()
+    }
+
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        other_type(&profile.identity, &own.profile()).is_some()
+    }
+
+    fn is_of_another(&self, prepared: &Prepared) -> bool {
+        self.is_another(&prepared.identity)
+    }
+
+    fn prepare(change: Change) -> InterbusJob {
+        InterbusJob::Prepare(change)
+    }
+
+    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Interbus>) -> InterbusJob {
+        InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
+    }
+
+    fn forget_steps(&mut self) {
+        self.staged.forget_steps();
+    }
+
+    fn tell_of_another(&self, prepared: &Prepared, services: &mut Services) {
+        if !self.is_dirty() {
+            self.session.tell_of_another(&prepared.identity.serial_number, services);
+        }
+    }
+
+    fn reads_again(&mut self) {
+        let programs = self.review.as_ref().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
+        self.read_after = programs.unwrap_or_else(|| self.known_programs());
+    }
+}
+
+impl Saved for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> InterbusJob {
+        InterbusJob::Save { programs: true }
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Some(Body::new(self.wanted_profile()?))
+    }
+
+    fn remarks(&self) -> Vec<Text> {
+        some(&words::marks(&self.marks()), Text::clone)
+    }
+
+    fn known_body(&self) -> Option<Known> {
+        let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
+        let is_missing = |number: &ProgramNumber| base.image.program(*number).is_none();
+        let missing: Vec<Text> = ProgramNumber::all()
+            .filter(is_missing)
+            .map(|number| Text::new("ib_startup.program").with("program", number.get()))
+            .collect();
+        if !missing.is_empty() {
+            return Some(Err(missing));
+        }
+        let profile = InterbusProfile::of(survey.identity.profile(), base.image.clone(), survey.recorded());
+        let profile = InterbusProfile { names: base.names.clone(), ..profile };
+        let remarks = without_edits(self.edits()).into_iter().collect();
+        Some(Ok((Body::new(profile), remarks)))
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_profile()?, services);
+        Ok(())
+    }
+}
+
+/// The programs that a plan changes; `None`: any of them.
+fn changed_by(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
+    let of_programs = plan.base.programs.iter().map(|(number, _)| *number).collect();
+    (!plan.ops.contains(&Op::Default)).then_some(of_programs)
+}

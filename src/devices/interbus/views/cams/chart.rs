@@ -1,0 +1,117 @@
+//! The open program as a picture: lanes over the measuring range, or a ring.
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::interbus::protocol::{CamNumber, StartupMode};
+use crate::devices::interbus::state::cams::{Chart, View as Stretch};
+use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, Preview};
+use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
+use crate::ui::controls::{card_with, icon_button, name, paragraph};
+use crate::ui::{Skin, icons};
+
+/// What is looked at, and how.
+pub(super) struct View {
+    ring: bool,
+    snaps: bool,
+    /// The part of the range that is seen; `None`: all of it.
+    stretch: Option<Stretch>,
+    selected: Option<CamNumber>,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        View { ring: false, snaps: true, stretch: None, selected: None }
+    }
+}
+
+/// The largest side of the ring.
+const RING: f32 = 420.0;
+
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    chart: &Chart,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let View { ring: is_ring, snaps, stretch, selected } = *view;
+    let aside = |ui: &mut Ui| {
+        for (own, id) in [(true, "ib_cams.ring"), (false, "ib_cams.lanes")] {
+            let word = skin.say(id);
+            if name(ui.add(egui::Button::selectable(is_ring == own, &word)), true, &word).clicked() {
+                view.ring = own;
+            }
+        }
+        ui.checkbox(&mut view.snaps, skin.say("ib_cams.snap")).on_hover_text(skin.say("ib_cams.snap_words"));
+        let word = skin.say("ib_cams.whole_range");
+        if !is_ring && icon_button(ui, stretch.is_some(), icons::CORNERS_OUT, &word).clicked() {
+            view.stretch = None;
+        }
+    };
+    let mut event = None;
+    let edit = |edit: Edit| Action::Interbus(encoder.session.id, Interbus::Edit(Box::new(edit)));
+    card_with(ui, skin, "ib_cams.title", aside, |ui| {
+        let label = skin.words(&Text::new("ib_startup.program").with("program", chart.program.get()));
+        let sends = encoder.record.last().filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
+        let model = CamChart {
+            label: &label,
+            chart,
+            scale: &encoder.scale,
+            position: encoder.position(),
+            own: sends.and_then(|own| own.cams()).map(|cams| cams.outputs),
+            selected,
+            movable: !encoder.session.is_writing(),
+            snaps,
+        };
+        ui.push_id(chart.program.get(), |ui| {
+            event = if is_ring {
+                let side = ui.available_width().min(RING);
+                ui.vertical_centered(|ui| cam_ring(ui, skin, &model, side)).inner
+            } else {
+                let stretch = stretch.unwrap_or_else(|| Stretch::whole(chart.range));
+                cam_lanes(ui, skin, &model, stretch)
+            };
+        });
+        if sends.is_some() {
+            agreement(ui, skin, &encoder.preview);
+        }
+        paragraph(ui, skin.caption(skin.say("ib_cams.chart_words")));
+    });
+    let program = chart.program;
+    match event {
+        Some(CamEvent::Moved { cam, to, drawn }) => {
+            view.selected = Some(cam);
+            let (start, stop) = (to.start.get(), to.stop.get());
+            actions.push(edit(Edit::Cam { program, cam, start, stop, on: drawn }));
+        }
+        Some(CamEvent::Switched(cam, on)) => actions.push(edit(Edit::Switch { program, cam, on })),
+        Some(CamEvent::Selected(cam)) => view.selected = Some(cam),
+        Some(CamEvent::Viewed(stretch)) => {
+            view.stretch = Some(stretch).filter(|own| !own.is_whole(chart.range));
+        }
+        // The picture shows it by itself.
+        Some(CamEvent::Preview(..)) | None => {}
+    }
+}
+
+/// How the outputs that came agree with the cams that the encoder holds.
+fn agreement(ui: &mut Ui, skin: &Skin, preview: &Preview) {
+    let Preview { same, other, last, .. } = preview;
+    let Some(last) = last else {
+        if *same > 0 {
+            let text = Text::new("ib_cams.agree").with("words", same);
+            paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.good));
+        }
+        return;
+    };
+    let bits = |outputs: u8| format!("{outputs:08b}");
+    let text = Text::new("ib_cams.differ")
+        .with("words", same + other)
+        .with("other", other)
+        .with("position", last.position)
+        .with("own", bits(last.own))
+        .with("expected", bits(last.expected));
+    paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
+}

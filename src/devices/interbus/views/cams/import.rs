@@ -1,0 +1,83 @@
+//! A table of cams that was read: what it says and what became of it, before it is taken.
+
+use egui::{Event, RichText, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::interbus::protocol::ProgramNumber;
+use crate::devices::interbus::state::cams::{table_words, words};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, Import};
+use crate::ui::controls::{button, card, paragraph, primary};
+use crate::ui::{Skin, icons};
+
+/// Height of the list of problems and roundings.
+const LIST: f32 = 200.0;
+
+/// A table that is pasted where nothing is typed.
+pub(super) fn pasted(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+    if ui.ctx().text_edit_focused() || encoder.staged.wanted().is_none() {
+        return;
+    }
+    let text = ui.input(|input| {
+        input.events.iter().find_map(|event| if let Event::Paste(text) = event { Some(text.clone()) } else { None })
+    });
+    if let Some(text) = text.filter(|text| !text.trim().is_empty()) {
+        actions.push(Action::Interbus(encoder.session.id, Interbus::PasteTable(program, text)));
+    }
+}
+
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, import: &Import, actions: &mut Vec<Action>) {
+    let Import { origin, table, .. } = import;
+    let id = encoder.session.id;
+    card(ui, skin, "ib_table.title", |ui| {
+        let programs = table.filled().len();
+        let text = Text::new("ib_table.read")
+            .with_text("origin", origin.clone())
+            .with("rows", table.rows.len())
+            .with("programs", programs);
+        paragraph(ui, skin.words(&text));
+        paragraph(ui, skin.caption(skin.words(&table_words::layout(table))));
+        egui::ScrollArea::vertical().id_salt("table").max_height(LIST).show(ui, |ui| {
+            for problem in &table.problems {
+                line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&table_words::problem(problem)));
+            }
+            for note in &table.notes {
+                line(ui, icons::INFO, skin.palette.accent, skin.words(&table_words::note(note)));
+            }
+            for row in table.rounded() {
+                let words = skin.words(&table_words::rounding(row, &encoder.scale));
+                line(ui, icons::RULER, skin.palette.muted, words);
+            }
+            if table.problems.is_empty() && table.rounded().next().is_none() {
+                paragraph(ui, skin.label(skin.say("ib_table.exact")));
+            }
+        });
+        for filled in table.filled() {
+            if encoder.staged.program(filled.program).is_none() && encoder.profile().is_none() {
+                let unread = crate::devices::interbus::state::EditError::NotRead(filled.program);
+                line(ui, icons::WARNING, skin.palette.warn, skin.words(&words::refused(&unread)));
+            }
+        }
+        // A line that is left out would switch its cam off.
+        let is_whole = table.problems.is_empty();
+        if !is_whole {
+            paragraph(ui, skin.label(skin.say("ib_table.mend")));
+        }
+        ui.add_space(skin.space.inside);
+        ui.horizontal(|ui| {
+            if primary(ui, skin, is_whole && !table.rows.is_empty(), icons::CHECK, &skin.say("ib_table.take")).clicked()
+            {
+                actions.push(Action::Interbus(id, Interbus::TakeTable(true)));
+            }
+            if button(ui, icons::X, &skin.say("ib_table.leave")).clicked() {
+                actions.push(Action::Interbus(id, Interbus::TakeTable(false)));
+            }
+        });
+    });
+}
+
+fn line(ui: &mut Ui, icon: &str, ink: crate::app::Rgb, words: String) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(ink));
+        paragraph(ui, words);
+    });
+}

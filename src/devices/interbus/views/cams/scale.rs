@@ -1,0 +1,60 @@
+//! What the machine counts in, and where its 0 is.
+
+use egui::Ui;
+
+use crate::app::{Action, Text};
+use crate::devices::interbus::profile::{Scale, Unit};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, forms};
+use crate::ui::Skin;
+use crate::ui::controls::{card, choice, entry, paragraph, problem, settled_entry};
+
+/// What is typed and does not count yet.
+#[derive(Default)]
+pub(super) struct View {
+    steps: Option<(String, Option<Text>)>,
+    zero: Option<(String, Option<Text>)>,
+}
+
+const NUMBER: f32 = 112.0;
+
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    card(ui, skin, "ib_scale.title", |ui| {
+        paragraph(ui, skin.label(skin.say("ib_scale.words")));
+        let (scale, range) = (&encoder.scale, encoder.range());
+        let id = encoder.session.id;
+        let mut set = |scale: Scale| actions.push(Action::Interbus(id, Interbus::SetScale(scale)));
+        let word = skin.say("ib_scale.unit");
+        let mut unit = scale.unit();
+        entry(ui, skin, &word, |ui| {
+            let units = [
+                (Unit::Steps, "ib_scale.steps"),
+                (Unit::Degrees, "ib_scale.degrees"),
+                (Unit::Millimetres, "ib_scale.millimetres"),
+            ];
+            if choice(ui, &word, &mut unit, units.map(|(unit, id)| (unit, skin.say(id)))) {
+                set(forms::usual_scale(unit, scale.zero(), range));
+            }
+        });
+        if let Some(steps) = forms::steps_of(scale) {
+            let word = skin.say(match scale.unit() {
+                Unit::Degrees => "ib_scale.steps_in_turn",
+                _ => "ib_scale.steps_in_millimetre",
+            });
+            entry(ui, skin, &word, |ui| {
+                settled_entry(ui, &mut view.steps, &skin.plain(steps), NUMBER, &word, |text| {
+                    set(forms::scale(scale.unit(), text, scale.zero())?);
+                    Ok(())
+                });
+            });
+            problem(ui, skin, view.steps.as_ref().and_then(|own| own.1.as_ref()));
+        }
+        let word = skin.say("ib_scale.zero");
+        entry(ui, skin, &word, |ui| {
+            settled_entry(ui, &mut view.zero, &scale.zero().to_string(), NUMBER, &word, |text| {
+                set(forms::with_zero(scale, text, range)?);
+                Ok(())
+            });
+        });
+        problem(ui, skin, view.zero.as_ref().and_then(|own| own.1.as_ref()));
+    });
+}

@@ -1,0 +1,130 @@
+//! The cams of a program as a table: typed, named, switched.
+
+use std::collections::BTreeMap;
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::interbus::profile::Edge;
+use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
+use crate::devices::interbus::state::cams::{Chart, Lane, words};
+use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, forms};
+use crate::ui::controls::{card, name, paragraph, problem, settled_entry};
+use crate::ui::{Skin, icons};
+
+/// What is typed and does not count yet.
+#[derive(Default)]
+pub(super) struct View {
+    drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
+}
+
+/// What is typed, and why it was refused.
+type Draft = Option<(String, Option<Text>)>;
+
+/// What is typed in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Column {
+    Name,
+    Start,
+    Stop,
+}
+
+/// Widths of the columns.
+const CAM: f32 = 48.0;
+const NAME: f32 = 160.0;
+const NUMBER: f32 = 104.0;
+/// What the frame of an entry takes of it.
+const MARGIN: f32 = 16.0;
+
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    chart: &Chart,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, skin, "ib_cams.table", |ui| {
+        let wide = ui.available_width() > 680.0;
+        ui.horizontal(|ui| {
+            let heads =
+                [(CAM, "ib_cams.cam"), (NAME, "ib_cams.name"), (NUMBER, "ib_cams.start"), (NUMBER, "ib_cams.stop")];
+            for (width, id) in heads {
+                cell(ui, width, |ui| ui.label(skin.caption(skin.say(id))));
+            }
+        });
+        for lane in &chart.lanes {
+            ui.horizontal(|ui| row(ui, skin, encoder, (chart, lane), wide, view, actions));
+        }
+        for lane in &chart.lanes {
+            for column in [Column::Name, Column::Start, Column::Stop] {
+                let draft = view.drafts.get(&(chart.program, lane.cam, column));
+                problem(ui, skin, draft.and_then(|draft| draft.as_ref()?.1.as_ref()));
+            }
+        }
+        paragraph(ui, skin.caption(skin.say("ib_cams.table_words")));
+    });
+}
+
+/// What stands in a column.
+fn cell<R>(ui: &mut Ui, width: f32, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let cell = ui.allocate_ui_with_layout(egui::vec2(width, ui.spacing().interact_size.y), layout, |ui| {
+        ui.set_min_width(width);
+        content(ui)
+    });
+    cell.inner
+}
+
+fn row(
+    ui: &mut Ui,
+    skin: &Skin,
+    encoder: &Encoder,
+    (chart, lane): (&Chart, &Lane),
+    wide: bool,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let (id, program, cam) = (encoder.session.id, chart.program, lane.cam);
+    let mut put = |edit: Edit| actions.push(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
+    let ink = if lane.edited { skin.palette.staged } else { skin.palette.text };
+    let mut on = lane.on;
+    let response = cell(ui, CAM, |ui| ui.checkbox(&mut on, RichText::new(cam.get().to_string()).color(ink)));
+    if name(response, true, &skin.words(&words::bare(cam))).clicked() {
+        put(Edit::Switch { program, cam, on });
+    }
+    let word = Text::new("ib_cams.name_of").with("cam", cam.get());
+    let draft = view.drafts.entry((program, cam, Column::Name)).or_default();
+    let shown = lane.name.as_deref().unwrap_or_default();
+    cell(ui, NAME, |ui| {
+        settled_entry(ui, draft, shown, NAME - MARGIN, &skin.words(&word), |text| {
+            put(Edit::Name { program, cam, name: text.to_owned() });
+            Ok(())
+        })
+    });
+    for (column, edge) in [(Column::Start, Edge::Start), (Column::Stop, Edge::Stop)] {
+        let draft = view.drafts.entry((program, cam, column)).or_default();
+        let shown =
+            chart.edge(cam, edge).map_or_else(String::new, |own| forms::typed(own, &encoder.scale, chart.range));
+        let word = skin.words(&words::edge(lane, edge));
+        cell(ui, NUMBER, |ui| {
+            settled_entry(ui, draft, &shown, NUMBER - MARGIN, &word, |text| {
+                let to = forms::position(text, &encoder.scale, chart.range)?;
+                put(match lane.edges {
+                    Some(_) => Edit::Edge { program, cam, edge, to },
+                    // The other edge is where this one is until it is typed too.
+                    None => Edit::Cam { program, cam, start: to, stop: to, on: false },
+                });
+                Ok(())
+            })
+        });
+    }
+    for trouble in words::troubles(chart, lane) {
+        ui.label(RichText::new(icons::WARNING).color(skin.palette.warn)).on_hover_text(skin.words(&trouble));
+    }
+    if wide && let Some(edges) = lane.edges {
+        let text = words::stretch(edges, &encoder.scale, chart.range);
+        let ink = if lane.on { skin.label(skin.words(&text)) } else { skin.caption(skin.words(&text)) };
+        ui.add(egui::Label::new(ink).truncate());
+    }
+}

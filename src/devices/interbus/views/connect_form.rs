@@ -1,0 +1,70 @@
+//! The connection form of an INTERBUS encoder: behind a gateway, or virtual.
+
+use egui::Ui;
+
+use crate::app::Action;
+use crate::devices::interbus::state::{InterbusForm, InterbusWay};
+use crate::ui::Skin;
+use crate::ui::controls::{choice, entry, paragraph, text_entry};
+use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
+
+/// Draws the form.
+pub(crate) fn form_ui(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm, more: &mut bool, actions: &mut Vec<Action>) {
+    let ways = [
+        (InterbusWay::Virtual, "connect.virtual"),
+        (InterbusWay::Gateway, "connect.gateway"),
+        (InterbusWay::Replay, "connect.replay"),
+    ];
+    segments(ui, skin, &mut form.way, ways);
+    if form.way == InterbusWay::Gateway {
+        paragraph(ui, skin.caption(skin.say("connect.gateway_words")));
+    }
+    ui.add_space(skin.space.between);
+    match form.way {
+        InterbusWay::Virtual => simulated(ui, skin, form),
+        InterbusWay::Gateway => {
+            place(ui, skin, "connect.device_address", (&mut form.host, "192.168.1.10"), (&mut form.tcp_port, "502"));
+            registers(ui, skin, form);
+        }
+        InterbusWay::Replay => {
+            recording(ui, skin, &mut form.file, actions);
+            order(ui, skin, form);
+        }
+    }
+    if form.way != InterbusWay::Replay && unfolded(ui, skin, more) {
+        if form.way == InterbusWay::Virtual {
+            registers(ui, skin, form);
+        }
+        let word = skin.say("connect.handshake");
+        entry(ui, skin, &word, |ui| {
+            text_entry(ui, &mut form.handshake, 96.0, &word, "2000");
+            ui.label(skin.label("ms"));
+        });
+    }
+}
+
+/// Where the words stand in the gateway.
+fn registers(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
+    let word = skin.say("connect.unit");
+    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.unit, 96.0, &word, "1"));
+    let word = skin.say("connect.input");
+    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.input, 96.0, &word, "0"));
+    let word = skin.say("connect.output");
+    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.output, 96.0, &word, "0"));
+    order(ui, skin, form);
+}
+
+fn order(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
+    let word = skin.say("connect.word_order");
+    entry(ui, skin, &word, |ui| {
+        let orders = [(false, "connect.high_first"), (true, "connect.low_first")];
+        choice(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, skin.say(id))));
+    });
+}
+
+fn simulated(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
+    entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
+    entry(ui, skin, &skin.say("connect.fault"), |ui| {
+        text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
+    });
+}

@@ -1,0 +1,92 @@
+//! What the lamps at the encoder say, and the identification codes of its interfaces.
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::interbus::protocol::{Class, Interface, Lamp, Leds, id_code};
+use crate::devices::interbus::state::words;
+use crate::ui::controls::{card, name, paragraph, row, two_columns};
+use crate::ui::{Skin, icons};
+
+/// What is lit, as somebody sees it.
+pub(super) struct View {
+    leds: Leds,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        View { leds: Leds { ul: Lamp::On, ba: Lamp::On, rc: Lamp::On, rbda: Lamp::On } }
+    }
+}
+
+/// Width of a lamp's button.
+const LAMP: f32 = 92.0;
+
+pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, view: &mut View) {
+    let none: Vec<Action> = Vec::new();
+    two_columns(ui, skin, (view, none), |ui, (view, _)| lamps(ui, skin, view), |ui, _| codes(ui, skin));
+}
+
+fn lamps(ui: &mut Ui, skin: &Skin, view: &mut View) {
+    card(ui, skin, "ib_leds.title", |ui| {
+        paragraph(ui, skin.label(skin.say("ib_leds.words")));
+        ui.horizontal_wrapped(|ui| {
+            let View { leds } = view;
+            for (word, lamp, blinks) in [
+                ("UL", &mut leds.ul, false),
+                ("RC", &mut leds.rc, false),
+                ("BA", &mut leds.ba, true),
+                ("RBDA", &mut leds.rbda, false),
+            ] {
+                lamp_ui(ui, skin, word, lamp, blinks);
+            }
+        });
+        ui.add_space(skin.space.inside);
+        let Some(own) = view.leds.row() else {
+            paragraph(ui, RichText::new(skin.say("ib_leds.unknown")).color(skin.palette.warn));
+            return;
+        };
+        let (says, remedy) = words::lamps(own);
+        ui.label(skin.value(skin.words(&says)));
+        paragraph(ui, skin.words(&remedy));
+    });
+}
+
+/// A lamp: pressed, it goes from dark to lit, and where it can to blinking.
+fn lamp_ui(ui: &mut Ui, skin: &Skin, word: &str, lamp: &mut Lamp, blinks: bool) {
+    let palette = skin.palette;
+    let (id, ink) = match lamp {
+        Lamp::Off => ("ib_leds.off", palette.muted),
+        Lamp::On => ("ib_leds.on", palette.good),
+        Lamp::Blinking => ("ib_leds.blinking", palette.warn),
+    };
+    let state = skin.say(id);
+    let icon = RichText::new(if *lamp == Lamp::Off { icons::STOP } else { icons::LIGHTNING }).color(ink);
+    let button = egui::Button::new((icon, RichText::new(format!("{word}  {state}")))).min_size([LAMP, 28.0].into());
+    if name(ui.add(button), true, &format!("{word}: {state}")).clicked() {
+        *lamp = match lamp {
+            Lamp::Off => Lamp::On,
+            Lamp::On if blinks => Lamp::Blinking,
+            Lamp::On | Lamp::Blinking => Lamp::Off,
+        };
+    }
+}
+
+fn codes(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "ib_id.title", |ui| {
+        paragraph(ui, skin.label(skin.say("ib_id.words")));
+        for class in Class::ALL {
+            let codes: Vec<String> = Interface::ALL
+                .into_iter()
+                .map(|interface| {
+                    let code = id_code(class, interface);
+                    format!("{} 0x{code:02X} ({code})", skin.words(&words::interface(interface)))
+                })
+                .collect();
+            let (bytes_in, bytes_out) = class.bytes();
+            let bytes = Text::new("ib_id.bytes").with("in", bytes_in).with("out", bytes_out);
+            row(ui, skin, &format!("{class:?}"), codes.join(" · "));
+            paragraph(ui, skin.caption(skin.words(&bytes)));
+        }
+    });
+}

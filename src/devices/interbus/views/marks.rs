@@ -1,0 +1,23 @@
+//! What is not right in what is wanted, above every page: a measuring range that is made smaller leaves cams beyond it, which
+//! are edited on another page.
+
+use egui::{RichText, Ui};
+
+use crate::devices::interbus::protocol::ProgramNumber;
+use crate::devices::interbus::state::Encoder;
+use crate::ui::controls::paragraph;
+use crate::ui::{Skin, icons};
+
+/// Draws it, but for the program that is shown with its own.
+pub(super) fn marks_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: Option<ProgramNumber>) {
+    let marks = encoder.marks_beside(shown);
+    for mark in &marks {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+            paragraph(ui, skin.words(mark));
+        });
+    }
+    if !marks.is_empty() {
+        ui.add_space(skin.space.between);
+    }
+}

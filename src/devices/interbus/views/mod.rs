@@ -1,0 +1,138 @@
+//! The INTERBUS tab: its pages, each about one thing that a person wants of an encoder.
+
+mod cams;
+pub(crate) mod connect_form;
+mod encoder;
+mod lamps;
+pub(crate) mod live;
+mod marks;
+mod parameters;
+mod read_outs;
+mod reader;
+mod standstill;
+mod widgets;
+
+use egui::Ui;
+
+use crate::app::{Action, AnyDevice, Studio};
+use crate::devices::interbus::state::Encoder;
+use crate::ui::{Skin, backups, foot, icons, page};
+
+/// A page of the tab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Page {
+    /// Who it is and what it sends.
+    #[default]
+    Encoder,
+    /// How it makes its position, and the words with which that is set.
+    Parameters,
+    /// Eight programs of eight cams.
+    Cams,
+    /// What can be read out, what lamps and words say.
+    Diagnosis,
+    /// Profiles, backups and what was written.
+    Backups,
+}
+
+impl Page {
+    pub(crate) const ALL: [Page; 5] = [Page::Encoder, Page::Parameters, Page::Cams, Page::Diagnosis, Page::Backups];
+
+    pub(crate) fn icon(self) -> &'static str {
+        match self {
+            Page::Encoder => icons::CPU,
+            Page::Parameters => icons::SLIDERS,
+            Page::Cams => icons::CHART_LINE,
+            Page::Diagnosis => icons::MAGNIFYING_GLASS,
+            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
+        }
+    }
+
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Page::Encoder => "page.encoder",
+            Page::Parameters => "page.parameters",
+            Page::Cams => "page.cams",
+            Page::Diagnosis => "page.diagnosis",
+            Page::Backups => "page.backups",
+        }
+    }
+
+    pub(crate) fn help(self) -> &'static str {
+        match self {
+            Page::Encoder => "help.ib_encoder",
+            Page::Parameters => "help.ib_parameters",
+            Page::Cams => "help.ib_cams",
+            Page::Diagnosis => "help.ib_diagnosis",
+            Page::Backups => "help.backups",
+        }
+    }
+
+    /// What is edited here is written from here.
+    fn has_foot(self) -> bool {
+        matches!(self, Page::Parameters | Page::Cams)
+    }
+}
+
+/// What the tab remembers of one session while the window is open: text buffers and selections.
+#[derive(Default)]
+pub(crate) struct View {
+    /// The open page.
+    pub page: Page,
+    /// The encoder that the rest is about.
+    serial_number: Option<String>,
+    parameters: parameters::View,
+    cams: cams::View,
+    reader: reader::View,
+    lamps: lamps::View,
+}
+
+impl View {
+    /// What was typed for another encoder is not for this one.
+    pub(crate) fn follow(&mut self, encoder: &Encoder) {
+        let Some(own) = encoder.serial_number() else { return };
+        if self.serial_number.as_deref().is_some_and(|before| before != own) {
+            *self = View { page: self.page, ..View::default() };
+        }
+        self.serial_number = Some(own.to_owned());
+    }
+}
+
+/// Draws the open page.
+pub(crate) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    encoder: &Encoder,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    if view.page.has_foot() {
+        // Stays where it is while the rest scrolls.
+        let around = page::sides(ui, skin);
+        let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
+        egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
+            .frame(egui::Frame::NONE.inner_margin(margin))
+            .show_separator_line(false)
+            .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+    }
+    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| {
+        if view.page != Page::Backups {
+            standstill::bar_ui(ui, skin, encoder, actions);
+        }
+        let shown = (view.page == Page::Cams).then(|| view.cams.shown());
+        marks::marks_ui(ui, skin, encoder, shown);
+        match view.page {
+            Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
+            Page::Parameters => parameters::page_ui(ui, skin, encoder, &mut view.parameters, actions),
+            Page::Cams => cams::page_ui(ui, skin, encoder, &mut view.cams, actions),
+            Page::Diagnosis => {
+                read_outs::cards_ui(ui, skin, encoder, actions);
+                ui.add_space(skin.space.groups);
+                reader::card_ui(ui, skin, &mut view.reader);
+                ui.add_space(skin.space.groups);
+                lamps::cards_ui(ui, skin, &mut view.lamps);
+            }
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
+        }
+    });
+}

@@ -1,0 +1,199 @@
+//! The parameters beside what is wanted of them, the preset, the memory's wear, and the words of the handshake.
+
+use std::collections::BTreeMap;
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Text};
+use crate::devices::interbus::jobs::{Change, WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING};
+use crate::devices::interbus::profile::Direction;
+use crate::devices::interbus::protocol::Parameter;
+use crate::devices::interbus::state::explain;
+use crate::devices::interbus::state::staged::Edit;
+use crate::devices::interbus::state::{Action as Interbus, Encoder, cams, forms, said, words};
+use crate::ui::controls::{
+    card, choice, empty, enabled_button, entry, paragraph, problem, row, settled_entry, two_columns,
+};
+use crate::ui::{Skin, icons};
+
+/// What is typed and does not count yet.
+#[derive(Default)]
+pub(super) struct View {
+    drafts: BTreeMap<&'static str, Option<(String, Option<Text>)>>,
+    preset: String,
+    preset_problem: Option<Text>,
+}
+
+/// Width of the entry of a number.
+const NUMBER: f32 = 112.0;
+/// Height of the list of words.
+const WORDS: f32 = 240.0;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    let is_profile = encoder.profile().is_some();
+    two_columns(
+        ui,
+        skin,
+        (actions, view),
+        |ui, (actions, view)| {
+            table(ui, skin, encoder, view, actions);
+        },
+        |ui, (actions, view)| {
+            if is_profile {
+                return;
+            }
+            preset(ui, skin, encoder, view, actions);
+            ui.add_space(skin.space.groups);
+            wear(ui, skin, encoder);
+        },
+    );
+    if !is_profile {
+        ui.add_space(skin.space.groups);
+        handshake(ui, skin, encoder);
+    }
+}
+
+fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    card(ui, skin, "ib_set.title", |ui| {
+        let (Some(device), Some(wanted)) = (encoder.staged.device(), encoder.staged.wanted()) else {
+            empty(ui, skin, &skin.say("ib_set.nothing"), None);
+            return;
+        };
+        let id = encoder.session.id;
+        let (old, new) = (&device.parameters, &wanted.image.parameters);
+        for parameter in
+            [Parameter::Turns, Parameter::Steps, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift]
+        {
+            let word = skin.words(&words::parameter(parameter));
+            let (Some(before), Some(now)) = (old.value(parameter), new.value(parameter)) else { continue };
+            entry(ui, skin, &word, |ui| {
+                if parameter == Parameter::Direction {
+                    let mut direction = new.direction;
+                    let both = [Direction::Clockwise, Direction::Counterclockwise];
+                    let both = both.map(|own| (own, skin.words(&explain::direction(own))));
+                    if choice(ui, &word, &mut direction, both) {
+                        actions.push(Action::Interbus(id, Interbus::Edit(Box::new(Edit::Direction(direction)))));
+                    }
+                } else {
+                    let draft = view.drafts.entry(parameter.name()).or_default();
+                    settled_entry(ui, draft, &now.to_string(), NUMBER, &word, |text| {
+                        let edit = forms::parameter(parameter, text, new)?;
+                        actions.push(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
+                        Ok(())
+                    });
+                }
+                if before != now {
+                    let was = Text::new("ib_set.was").with_text("value", words::setting(parameter, before));
+                    ui.add(egui::Label::new(RichText::new(skin.words(&was)).color(skin.palette.staged)).truncate());
+                } else if let Ok(gear) = new.gear()
+                    && parameter != Parameter::Direction
+                {
+                    let range = parameter.range(gear);
+                    let range = skin.caption(format!("{} … {}", range.start(), range.end()));
+                    ui.add(egui::Label::new(range).truncate());
+                }
+            });
+            let refused = view.drafts.get(parameter.name()).and_then(|draft| draft.as_ref()?.1.as_ref());
+            problem(ui, skin, refused);
+        }
+        problem(ui, skin, encoder.refusal.as_ref());
+        ui.add_space(skin.space.inside);
+        match new.gear() {
+            Ok(gear) => {
+                let per_turn = f64::from(gear.steps()) / f64::from(gear.turns());
+                let text = Text::new("ib_set.gear")
+                    .with_number("steps", per_turn, if gear.steps() % gear.turns() == 0 { 0 } else { 4 })
+                    .with_number("degrees", 360.0 / per_turn, 5);
+                paragraph(ui, skin.label(skin.words(&text)));
+                if gear.steps() % gear.turns() != 0 {
+                    paragraph(ui, skin.caption(skin.say("ib_set.uneven")));
+                }
+            }
+            Err(error) => {
+                problem(ui, skin, Some(&cams::words::gear(&error)));
+            }
+        }
+        if encoder.identity().is_some_and(|own| own.flags.steps_minus_one()) {
+            paragraph(ui, skin.caption(skin.say("ib_set.steps_minus_one")));
+        }
+        paragraph(ui, skin.caption(skin.say("ib_set.mounting")));
+    });
+}
+
+fn preset(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+    card(ui, skin, "ib_preset.title", |ui| {
+        paragraph(ui, skin.label(skin.say("ib_preset.words")));
+        let id = encoder.session.id;
+        let Some(parameters) = encoder.staged.device().map(|image| image.parameters) else { return };
+        let ready = encoder.session.is_ready() && encoder.is_stopped();
+        let word = skin.say("ib_preset.value");
+        entry(ui, skin, &word, |ui| {
+            let hint = parameters.preset.to_string();
+            crate::ui::controls::text_entry(ui, &mut view.preset, NUMBER, &word, &hint);
+            if enabled_button(ui, ready, icons::TARGET, &skin.say("ib_preset.set")).clicked() {
+                match forms::preset(&view.preset, &parameters) {
+                    Ok(value) => {
+                        view.preset_problem = None;
+                        actions.push(Action::Interbus(id, Interbus::Plan(Box::new(Change::Preset { value }))));
+                    }
+                    Err(why) => view.preset_problem = Some(why),
+                }
+            }
+        });
+        problem(ui, skin, view.preset_problem.as_ref());
+        if let Some(position) = encoder.position() {
+            row(ui, skin, &skin.say("ib_preset.now"), skin.mono(position.to_string()));
+        }
+        ui.add_space(skin.space.inside);
+        if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ib_preset.default")).clicked() {
+            actions.push(Action::Interbus(id, Interbus::Plan(Box::new(Change::Default))));
+        }
+        paragraph(ui, skin.caption(skin.say("ib_preset.default_words")));
+    });
+}
+
+/// How often the memory has stored, as far as this computer has seen it.
+fn wear(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+    card(ui, skin, "ib_wear.title", |ui| {
+        let Some(stores) = encoder.stores() else {
+            paragraph(ui, skin.label(skin.say("ib_wear.unknown")));
+            return;
+        };
+        let palette = skin.palette;
+        let ink = match stores {
+            _ if stores >= WEAR_LIMIT => palette.bad,
+            _ if stores >= WEAR_WARNING => palette.warn,
+            _ => palette.accent,
+        };
+        let text = Text::new("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
+        ui.label(skin.words(&text));
+        let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
+        ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
+        let text =
+            Text::new("ib_wear.words").with("warning", WEAR_WARNING).with("ask", WEAR_ASK).with("limit", WEAR_LIMIT);
+        paragraph(ui, skin.caption(skin.words(&text)));
+    });
+}
+
+/// The words of the last handshakes.
+fn handshake(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+    card(ui, skin, "ib_handshake.title", |ui| {
+        if encoder.handshake.is_empty() {
+            paragraph(ui, skin.label(skin.say("ib_handshake.nothing")));
+            return;
+        }
+        let list = egui::ScrollArea::vertical().id_salt("handshake").max_height(WORDS).stick_to_bottom(true);
+        list.auto_shrink([false, true]).show(ui, |ui| {
+            egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
+                for step in &encoder.handshake {
+                    ui.label(skin.mono(format!("0x{:08X}", step.out)));
+                    ui.label(skin.label(skin.words(&said::asked(step.command))));
+                    ui.label(skin.mono(format!("0x{:08X}", step.input)));
+                    let known = said::Known::of(step.command, encoder.shift());
+                    ui.add(egui::Label::new(skin.label(skin.words(&said::told(step.input, &known)))).truncate());
+                    ui.end_row();
+                }
+            });
+        });
+    });
+}

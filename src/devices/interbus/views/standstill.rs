@@ -1,0 +1,36 @@
+//! What a running machine would notice is done only once somebody has said that it stands.
+
+use egui::{RichText, Ui};
+
+use crate::app::Action;
+use crate::devices::interbus::state::{Action as Interbus, Encoder};
+use crate::ui::controls::{enabled_button, paragraph};
+use crate::ui::{Skin, icons};
+
+/// Asks for it, and offers what it opens.
+pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+    if !encoder.asks_for_standstill() {
+        return;
+    }
+    let id = encoder.session.id;
+    let mut stopped = encoder.is_stopped();
+    skin.sunken().show(ui, |ui| {
+        ui.set_width(ui.available_width().max(0.0));
+        ui.horizontal_wrapped(|ui| {
+            let ink = if stopped { skin.palette.good } else { skin.palette.warn };
+            ui.label(RichText::new(if stopped { icons::CHECK_CIRCLE } else { icons::WARNING }).color(ink));
+            if ui.checkbox(&mut stopped, skin.say("ib_stop.stands")).changed() {
+                actions.push(Action::Interbus(id, Interbus::Stopped(stopped)));
+            }
+            if encoder.survey.is_none() {
+                let ready = encoder.is_stopped() && encoder.session.is_ready();
+                let word = skin.say("ib_stop.read");
+                if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &word).clicked() {
+                    actions.push(Action::Interbus(id, Interbus::Read));
+                }
+            }
+        });
+        paragraph(ui, skin.caption(skin.say("ib_stop.words")));
+    });
+    ui.add_space(skin.space.groups);
+}

@@ -1,0 +1,262 @@
+//! What the two pictures of a cam program have in common: what they are given, what a user wants, and how a cam is pulled
+//! with pointer, keyboard and by a screen reader.
+
+use egui::accesskit::{Action, ActionData, Role};
+use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Ui, Vec2, WidgetInfo};
+
+use crate::app::Text;
+use crate::devices::interbus::profile::{Edge, Scale};
+use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
+use crate::devices::interbus::state::cams::{self, Chart, Hold, Snap, View, words};
+use crate::ui::Skin;
+use crate::ui::widgets::series;
+
+/// A program.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CamChart<'a> {
+    /// Accessible name.
+    pub(crate) label: &'a str,
+    /// The program as it is wanted, also while something is dragged.
+    pub(crate) chart: &'a Chart,
+    /// The machine's units.
+    pub(crate) scale: &'a Scale,
+    /// Where the encoder is; `None`: not known.
+    pub(crate) position: Option<u32>,
+    /// The outputs as the encoder says, bit i for cam i; `None`: it does not.
+    pub(crate) own: Option<u8>,
+    /// Which cam is selected.
+    pub(crate) selected: Option<CamNumber>,
+    /// Cams can be changed.
+    pub(crate) movable: bool,
+    /// Edges are drawn to what is near; holding Alt lets go.
+    pub(crate) snaps: bool,
+}
+
+/// What the user wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum CamEvent {
+    /// While something is dragged: the cam would come to lie there. It comes at every drawing until the drag ends.
+    Preview(CamNumber, Cam),
+    /// The cam is to lie there, where it does not yet.
+    Moved {
+        /// Which one.
+        cam: CamNumber,
+        /// Where to.
+        to: Cam,
+        /// It was drawn anew and is to work.
+        drawn: bool,
+    },
+    /// The cam is to work, or not.
+    Switched(CamNumber, bool),
+    /// Another cam.
+    Selected(CamNumber),
+    /// Another part of the measuring range.
+    Viewed(View),
+}
+
+/// Something that is dragged, from one drawing to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Drag {
+    pub(super) hold: Hold,
+    /// The position under the pointer where it was pressed, and where it is; around the range more than once.
+    pub(super) from: f64,
+    pub(super) at: f64,
+    /// Where the cam would come to lie; `None`: it was given up.
+    pub(super) to: Option<Cam>,
+}
+
+/// The colour of a cam.
+pub(super) fn ink(skin: &Skin, cam: CamNumber) -> Color32 {
+    series(skin, usize::from(cam.get()))
+}
+
+impl CamChart<'_> {
+    /// Where a cam comes to lie that is pulled from one position to another.
+    pub(super) fn pulled(&self, hold: Hold, from: f64, at: f64, snap: &Snap) -> Option<Cam> {
+        let range = self.chart.range;
+        let own = self.chart.lane(hold.cam())?.edges;
+        let by = |hold, cam| cams::snap(self.chart, self.scale, hold, cam, at - from, snap);
+        match hold {
+            Hold::Edge(_, edge) => own.map(|cam| cams::pulled(cam, edge, by(hold, cam), range)),
+            Hold::Whole(_) => own.map(|cam| cams::moved(cam, by(hold, cam), range)),
+            Hold::New(number) => {
+                let first = from.floor() as i64;
+                let place = Value::of_word(first.rem_euclid(i64::from(range.max(1))) as u32);
+                let edge = if at < from { Edge::Start } else { Edge::Stop };
+                let one = Cam { start: place, stop: place };
+                Some(cams::drawn(first, first + by(Hold::Edge(number, edge), one), range))
+            }
+        }
+    }
+
+    /// What a drag does: what it would come to while the pointer is down, and what it has come to.
+    pub(super) fn dragged(&self, ui: &Ui, base: Id, response: &Response, drag: Drag, snap: &Snap) -> Option<CamEvent> {
+        let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_given_up(ui, base);
+        let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { Snap::OFF };
+        let to = self.pulled(drag.hold, drag.from, drag.at, &snap).filter(|_| !given_up);
+        let cam = drag.hold.cam();
+        if response.drag_stopped() {
+            ui.data_mut(|data| data.remove::<Drag>(base));
+            let is_new = matches!(drag.hold, Hold::New(_));
+            let other = to.filter(|to| is_new || self.chart.lane(cam).is_some_and(|lane| lane.edges != Some(*to)));
+            return Some(match other {
+                Some(to) => CamEvent::Moved { cam, to, drawn: is_new },
+                None => CamEvent::Selected(cam),
+            });
+        }
+        let now = Drag { to, ..drag };
+        if ui.data_mut(|data| data.get_temp(base)) != Some(now) {
+            ui.data_mut(|data| data.insert_temp(base, now));
+            ui.request_repaint();
+        }
+        to.map(|to| CamEvent::Preview(cam, to))
+    }
+
+    /// The program as it would be while something is dragged.
+    pub(super) fn shown(&self, drag: Option<Drag>) -> Option<Chart> {
+        let drag = drag?;
+        Some(self.chart.with(drag.hold.cam(), drag.to?))
+    }
+
+    /// The keyboard on something: by one step or to the next line, on and off.
+    pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: Hold, apart: f64) -> Option<CamEvent> {
+        if !response.has_focus() || !self.movable {
+            return None;
+        }
+        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
+        let cam = hold.cam();
+        let lane = self.chart.lane(cam)?;
+        let edge = match hold {
+            Hold::Edge(_, edge) => edge,
+            Hold::Whole(_) | Hold::New(_) => Edge::Start,
+        };
+        let at = self.chart.edge(cam, edge)?;
+        for (key, forward) in [(Key::ArrowLeft, false), (Key::ArrowRight, true)] {
+            let by = if pressed(Modifiers::SHIFT, key) {
+                cams::next_line(self.scale, apart, at, forward) - i64::from(at)
+            } else if pressed(Modifiers::NONE, key) {
+                if forward { 1 } else { -1 }
+            } else {
+                continue;
+            };
+            return self.by(hold, by);
+        }
+        if lane.on && (pressed(Modifiers::NONE, Key::Delete) || pressed(Modifiers::NONE, Key::Backspace)) {
+            return Some(CamEvent::Switched(cam, false));
+        }
+        pressed(Modifiers::NONE, Key::Space).then_some(CamEvent::Switched(cam, !lane.on))
+    }
+
+    fn by(&self, hold: Hold, by: i64) -> Option<CamEvent> {
+        let cam = hold.cam();
+        let own = self.chart.lane(cam)?.edges?;
+        let to = match hold {
+            Hold::Edge(_, edge) => cams::pulled(own, edge, by, self.chart.range),
+            Hold::Whole(_) | Hold::New(_) => cams::moved(own, by, self.chart.range),
+        };
+        (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
+    }
+
+    /// What a screen reader hears of an edge, and what it sets.
+    pub(super) fn tell_edge(
+        &self,
+        ui: &Ui,
+        skin: &Skin,
+        response: &Response,
+        hold: Hold,
+        label: &Text,
+    ) -> Option<CamEvent> {
+        let Hold::Edge(cam, edge) = hold else { return None };
+        let at = self.chart.edge(cam, edge)?;
+        let last = self.chart.last();
+        response.widget_info(|| {
+            let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), skin.words(label));
+            info.role = Role::Slider;
+            info.current_text_value = Some(skin.words(&words::position(at, self.scale, self.chart.range)));
+            info
+        });
+        if !self.movable {
+            return None;
+        }
+        ui.ctx().accesskit_node_builder(response.id, |node| {
+            node.set_min_numeric_value(0.0);
+            node.set_max_numeric_value(f64::from(last));
+            node.set_numeric_value_step(1.0);
+            for action in [Action::SetValue, Action::Increment, Action::Decrement] {
+                node.add_action(action);
+            }
+        });
+        let (set, more, less) = ui.input(|input| {
+            let count = |action| input.num_accesskit_action_requests(response.id, action) as i64;
+            let values = input.accesskit_action_requests(response.id, Action::SetValue);
+            let set = values.filter_map(|request| match request.data {
+                Some(ActionData::NumericValue(value)) if value.is_finite() => Some(value),
+                _ => None,
+            });
+            (set.last(), count(Action::Increment), count(Action::Decrement))
+        });
+        let own = self.chart.lane(cam)?.edges?;
+        if let Some(value) = set {
+            // Within the range, which has 25 bits.
+            let value = Value::of_word(value.round().clamp(0.0, f64::from(last)) as u32);
+            let to = match edge {
+                Edge::Start => Cam { start: value, ..own },
+                Edge::Stop => Cam { stop: value, ..own },
+            };
+            return (to != own).then_some(CamEvent::Moved { cam, to, drawn: false });
+        }
+        if more == less { None } else { self.by(hold, more - less) }
+    }
+
+    /// What stands under the pointer beside an edge or a cam.
+    pub(super) fn tip(&self, skin: &Skin, response: Response, hold: Hold) {
+        let Some(lane) = self.chart.lane(hold.cam()) else { return };
+        response.on_hover_ui(|ui| {
+            ui.set_max_width(300.0);
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
+            ui.label(skin.words(&words::cam(lane)));
+            ui.label(skin.words(&words::lane(lane, self.scale, self.chart.range)));
+            for trouble in words::troubles(self.chart, lane) {
+                ui.label(egui::RichText::new(skin.words(&trouble)).color(skin.palette.bad));
+            }
+            if self.movable {
+                let hint = match hold {
+                    Hold::Edge(..) => "cams.hint_edge",
+                    Hold::Whole(_) => "cams.hint_whole",
+                    Hold::New(_) => "cams.hint_new",
+                };
+                ui.label(skin.caption(skin.say(hint)));
+            }
+        });
+    }
+
+    /// Where something would come to, in words at a place; never outside the room there is.
+    pub(super) fn ghost(&self, skin: &Skin, painter: &Painter, drag: &Drag, near: Pos2) {
+        let Some(to) = drag.to else { return };
+        let range = self.chart.range;
+        let words = match drag.hold {
+            Hold::Edge(_, edge) => words::position(cams::of_edge(to, edge).get(), self.scale, range),
+            Hold::Whole(_) | Hold::New(_) => words::stretch(to, self.scale, range),
+        };
+        let font = FontId::proportional(skin.sizes.caption);
+        let galley = painter.layout_no_wrap(skin.words(&words), font, skin.palette.on_accent.into());
+        let size = galley.size() + Vec2::new(skin.space.between, 4.0);
+        let room = painter.clip_rect();
+        let left = (near.x - size.x / 2.0).min(room.right() - size.x).max(room.left());
+        let top = (near.y - size.y / 2.0).max(room.top());
+        let label = Rect::from_min_size(egui::pos2(left, top), size);
+        painter.rect_filled(label, skin.space.inside, skin.palette.accent);
+        painter.galley(label.center() - galley.size() / 2.0, galley, skin.palette.on_accent.into());
+    }
+}
+
+/// The drag that is going on.
+pub(super) fn drag(ui: &Ui, base: Id) -> Option<Drag> {
+    ui.data(|data| data.get_temp(base))
+}
+
+fn is_given_up(ui: &Ui, base: Id) -> bool {
+    drag(ui, base).is_some_and(|drag| drag.to.is_none())
+}

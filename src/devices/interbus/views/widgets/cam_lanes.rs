@@ -1,0 +1,86 @@
+//! The cams of a program over the measuring range: a lane for each.
+//!
+//! * **Size**: as wide as there is room; a line of rulers, eight lanes, a line of the machine's units where it has others.
+//! * **Keyboard**: Tab goes from lane to lane: whether the cam works, the cam as a whole, its start, its stop. The left and
+//!   right arrows move what has the keyboard by one step, with Shift to the next line of the grid; Delete switches the cam
+//!   off, Space on and off.
+//! * **Pointer**: an edge is dragged, or a cam as a whole; over the end of the range it comes in at the other. In the lane
+//!   of a cam that does not work, one is drawn. What would be is shown meanwhile, and Escape gives it up. Ctrl and the
+//!   wheel look nearer, the wheel held sideways goes along.
+//! * **Accessible**: an edge is a slider with its position, which can be set; a cam is a slider with where it is; a lamp
+//!   says whether its output is on, and who says so.
+//! * **Painting**: a cam in its colour, hollow where it does not work, hatched where it meets another pulse of its track;
+//!   the end of the range hatched in the lane of a cam beyond it; the encoder's position as a line through all lanes.
+
+mod grips;
+mod head;
+mod paint;
+mod place;
+
+use egui::accesskit::Role;
+use egui::{Id, Sense, Ui, WidgetInfo};
+
+use super::cam_chart::{self, CamChart, CamEvent, Drag};
+use crate::devices::interbus::profile::Unit;
+use crate::devices::interbus::state::cams::{Chart, Snap, View};
+use crate::ui::Skin;
+
+use place::Place;
+
+/// What everything here needs.
+struct Lanes<'a> {
+    ui: &'a Ui,
+    skin: &'a Skin,
+    model: &'a CamChart<'a>,
+    /// The program that is drawn.
+    shown: &'a Chart,
+    place: &'a Place,
+    base: Id,
+}
+
+/// Draws a part of the range and says what was done. One chart a `Ui`: another needs an id of its own (`push_id`).
+pub(crate) fn cam_lanes(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, view: View) -> Option<CamEvent> {
+    let base = ui.make_persistent_id("cam_lanes");
+    let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
+    let preview = model.shown(drag);
+    let shown = preview.as_ref().unwrap_or(model.chart);
+    let range = model.chart.range;
+    let view = view.within(range);
+    let size = Place::size(ui.available_width(), model.scale.unit() != Unit::Steps);
+    let (outer, response) = ui.allocate_exact_size(size, Sense::hover());
+    let place = Place::new(outer, view, skin.space.between);
+    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, model.label));
+
+    let lanes = Lanes { ui, skin, model, shown, place: &place, base };
+    let looked = lanes.look(range);
+    lanes.paint(drag);
+    let pulled = lanes.grips(drag);
+    let switched = lanes.heads();
+    if drag.is_some() && !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
+        ui.data_mut(|data| data.remove::<Drag>(base));
+    }
+    pulled.or(switched).or(looked)
+}
+
+impl Lanes<'_> {
+    /// What draws an edge to itself.
+    fn snap(&self) -> Snap {
+        Snap::on(self.place.steps_in_point())
+    }
+
+    /// The wheel over the chart: nearer and further, along the range.
+    fn look(&self, range: u32) -> Option<CamEvent> {
+        let pointer = self.ui.input(|input| input.pointer.hover_pos())?;
+        if !self.place.plot.contains(pointer) || !self.ui.rect_contains_pointer(self.place.plot) {
+            return None;
+        }
+        let view = self.place.view;
+        let (zoom, along) = self.ui.input(|input| (input.zoom_delta(), input.smooth_scroll_delta().x));
+        if (zoom - 1.0).abs() > f32::EPSILON {
+            let around = self.place.position(pointer.x);
+            return Some(view.zoomed(f64::from(zoom), around, range)).filter(|to| *to != view).map(CamEvent::Viewed);
+        }
+        let by = -f64::from(along) * self.place.steps_in_point();
+        Some(view.panned(by, range)).filter(|to| *to != view).map(CamEvent::Viewed)
+    }
+}

@@ -1,0 +1,188 @@
+//! What can be taken hold of in the lanes: edges, cams, and the room for new ones.
+
+use egui::accesskit::Role;
+use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
+
+use super::Lanes;
+use super::paint::Grip;
+use crate::devices::interbus::profile::Edge;
+use crate::devices::interbus::protocol::Cam;
+use crate::devices::interbus::state::cams::{Hold, Lane, Stretch, words};
+use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
+
+impl Lanes<'_> {
+    /// All of them: what they look like, and what was done to one. Where they are taken hold of is where they were before
+    /// the drag.
+    pub(super) fn grips(&self, drag: Option<Drag>) -> Option<CamEvent> {
+        let mut event = None;
+        for lane in &self.model.chart.lanes {
+            event = self.switch(lane).or(event);
+            event = self.room(lane, drag).or(event);
+            if let Some(cam) = lane.edges {
+                event = self.whole(lane, drag).or(event);
+                event = self.edge(lane, cam, Edge::Start, drag).or(event);
+                event = self.edge(lane, cam, Edge::Stop, drag).or(event);
+            }
+        }
+        event
+    }
+
+    /// The lane itself, below its cam.
+    fn room(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
+        let id = self.base.with("room").with(lane.cam);
+        let draws = self.model.movable && !lane.on;
+        let sense = if draws { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
+        let response = self.ui.interact(self.place.lane(lane.cam), id, sense);
+        let hold = Hold::New(lane.cam);
+        let event = self.pulled(&response, hold, drag).filter(|_| draws);
+        if draws && response.hovered() {
+            self.ui.set_cursor_icon(CursorIcon::Crosshair);
+        }
+        let clicked = response.clicked().then_some(CamEvent::Selected(lane.cam));
+        if draws && drag.is_none() {
+            self.model.tip(self.skin, response, hold);
+        }
+        event.or(clicked)
+    }
+
+    /// The cam as a whole: its widest stretch has the keyboard.
+    fn whole(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
+        let stretches = lane.stretches(self.model.chart.range);
+        let widest = stretches.iter().max_by_key(|stretch| stretch.last - stretch.first).copied();
+        let hold = Hold::Whole(lane.cam);
+        let mut event = None;
+        for stretch in &stretches {
+            let is_widest = Some(*stretch) == widest;
+            let Some(rect) = self.place.bar(lane.cam, *stretch).or(is_widest.then(|| self.place.head_of(lane.cam)))
+            else {
+                continue;
+            };
+            let shown = self.place.bar(lane.cam, *stretch).is_some();
+            let id = self.base.with("whole").with((lane.cam, is_widest));
+            let response = self.ui.interact(rect, id, self.sense(shown, is_widest));
+            if is_widest {
+                event = self.tell(lane, &response).or(event);
+                event = self.model.keys(self.ui, &response, hold, self.apart()).or(event);
+                event = self.follow(&response, *stretch).or(event);
+            }
+            event = self.pulled(&response, hold, drag).or(event);
+            if response.clicked() {
+                self.ui.memory_mut(|memory| memory.request_focus(self.base.with("whole").with((lane.cam, true))));
+                event = Some(CamEvent::Selected(lane.cam));
+            }
+            if self.model.movable && response.hovered() {
+                self.ui.set_cursor_icon(if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab });
+            }
+            if response.has_focus() {
+                self.paint_focus(lane.cam);
+            }
+            if drag.is_none() {
+                self.model.tip(self.skin, response, hold);
+            }
+        }
+        event
+    }
+
+    fn tell(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
+        response.widget_info(|| {
+            let label = self.skin.words(&words::cam(lane));
+            let mut info = WidgetInfo::labeled(Role::Slider, self.ui.is_enabled(), label);
+            info.value = lane.edges.map(|cam| f64::from(cam.start.get()));
+            info.current_text_value =
+                Some(self.skin.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
+            info
+        });
+        response.gained_focus().then_some(CamEvent::Selected(lane.cam))
+    }
+
+    fn edge(&self, lane: &Lane, cam: Cam, edge: Edge, drag: Option<Drag>) -> Option<CamEvent> {
+        let hold = Hold::Edge(lane.cam, edge);
+        let (rect, x) = self.grip(cam, lane, edge)?;
+        let shown = self.place.shows(x);
+        let id = self.base.with("edge").with(hold);
+        let response = self.ui.interact(rect, id, self.sense(shown, true));
+        let label = words::edge(lane, edge);
+        let mut event = self.model.tell_edge(self.ui, self.skin, &response, hold, &label);
+        event = event.or(self.model.keys(self.ui, &response, hold, self.apart()));
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        if response.clicked() || response.gained_focus() {
+            event = event.or(Some(CamEvent::Selected(lane.cam)));
+        }
+        let at = self.model.chart.edge(lane.cam, edge)?;
+        event = self.follow(&response, Stretch { first: at, last: at }).or(event);
+        event = self.pulled(&response, hold, drag).or(event);
+        let is_held = response.dragged();
+        if self.model.movable && (is_held || response.hovered()) {
+            self.ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+        }
+        let state = Grip { active: is_held || response.hovered() && self.model.movable, focused: response.has_focus() };
+        self.paint_grip(lane.cam, edge, state);
+        if drag.is_none() {
+            self.model.tip(self.skin, response, hold);
+        }
+        event
+    }
+
+    /// Where an edge is taken hold of, and where it is drawn. What is not to be seen stands at the end of its lane, for
+    /// the keyboard alone.
+    fn grip(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
+        let chart = self.model.chart;
+        let at = self.model.chart.edge(lane.cam, edge)?.min(chart.range);
+        let x = match edge {
+            Edge::Start => self.place.x(f64::from(at)),
+            Edge::Stop => self.place.x(f64::from(at.saturating_add(1).min(chart.range))),
+        };
+        let own = lane.stretches(chart.range).into_iter().find(|stretch| match edge {
+            Edge::Start => stretch.first == cam.start.get(),
+            Edge::Stop => stretch.last == cam.stop.get(),
+        });
+        let width = own.and_then(|own| self.place.bar(lane.cam, own)).map_or(0.0, |bar| bar.width());
+        let shown = x.clamp(self.place.plot.left(), self.place.plot.right());
+        Some((self.place.grip(lane.cam, shown, edge == Edge::Start, width), x))
+    }
+
+    fn sense(&self, shown: bool, focusable: bool) -> Sense {
+        match (shown && self.model.movable, focusable) {
+            (true, true) => Sense::click_and_drag(),
+            (true, false) => Sense::CLICK | Sense::DRAG,
+            (false, true) if shown => Sense::click(),
+            (false, true) => Sense::focusable_noninteractive(),
+            (false, false) => Sense::CLICK,
+        }
+    }
+
+    /// What has the keyboard is to be seen.
+    fn follow(&self, response: &Response, stretch: Stretch) -> Option<CamEvent> {
+        let (view, range) = (self.place.view, self.model.chart.range);
+        let (first, last) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
+        let is_out = last < view.first() || first > view.first() + view.span();
+        let moved = response.gained_focus() || response.has_focus() && is_out && self.moved_by_key();
+        (moved && is_out).then(|| CamEvent::Viewed(view.panned(first - view.first() - view.span() / 2.0, range)))
+    }
+
+    fn moved_by_key(&self) -> bool {
+        use egui::Key::{ArrowLeft, ArrowRight};
+        self.ui.input(|input| [ArrowLeft, ArrowRight].into_iter().any(|key| input.key_released(key)))
+    }
+
+    /// How far the lines of the grid are apart at least, in steps.
+    fn apart(&self) -> f64 {
+        self.snap().apart.unwrap_or(1.0)
+    }
+
+    /// The pointer: where it would bring something, and where it lets it go.
+    fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
+        if !self.model.movable || !response.dragged() && !response.drag_stopped() {
+            return None;
+        }
+        let pointer = response.interact_pointer_pos()?;
+        let at = self.place.position(pointer.x);
+        let own = drag.filter(|drag| drag.hold == hold);
+        let pressed = || self.ui.input(|input| input.pointer.press_origin()).map(|pos| self.place.position(pos.x));
+        let from = own.map(|drag| drag.from).or_else(pressed).unwrap_or(at);
+        let to = own.and_then(|drag| drag.to);
+        self.model.dragged(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap())
+    }
+}

@@ -1,0 +1,204 @@
+//! The painting of the lanes.
+
+use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect, Shape, Stroke, StrokeKind, Vec2, pos2};
+
+use super::Lanes;
+use crate::devices::interbus::profile::{Edge, Scale, Unit};
+use crate::devices::interbus::protocol::CamNumber;
+use crate::devices::interbus::state::cams::{Hold, Lane, Tick, ticks, words};
+use crate::devices::interbus::views::widgets::cam_chart::{Drag, ink};
+use crate::ui::widgets::{focus_ring, hatch};
+
+/// How far numbers of a ruler are apart at least, in points.
+const APART: f64 = 64.0;
+/// Width of what is hatched at the end of the range.
+const BEYOND: f32 = 14.0;
+/// Less wide nothing looks hollow.
+const NARROW: f32 = 6.0;
+
+/// How an edge is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grip {
+    pub(super) active: bool,
+    pub(super) focused: bool,
+}
+
+impl Lanes<'_> {
+    /// All but the handles.
+    pub(super) fn paint(&self, drag: Option<Drag>) {
+        let (skin, place) = (self.skin, self.place);
+        let painter = self.ui.painter();
+        let corners = CornerRadius::same(2);
+        painter.rect_filled(place.plot, corners, skin.palette.sunken);
+        if let Some(cam) = self.model.selected {
+            let lane = place.lane(cam).union(place.head_of(cam));
+            painter.rect_filled(lane, corners, Color32::from(skin.palette.accent).gamma_multiply(0.1));
+        }
+        self.rulers();
+        let within = painter.with_clip_rect(place.plot.intersect(self.ui.clip_rect()));
+        for lane in &self.shown.lanes {
+            let rect = place.lane(lane.cam);
+            painter.hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, skin.palette.line));
+            self.cam(&within, lane);
+        }
+        self.position();
+        if let Some(drag) = drag {
+            self.goal(&drag);
+        }
+    }
+
+    /// Lines and numbers: steps above, the machine's units below.
+    fn rulers(&self) {
+        let (model, place, skin) = (self.model, self.place, self.skin);
+        let apart = APART * place.steps_in_point();
+        let lines = |scale: &Scale| ticks(scale, &place.view, model.chart.range, apart);
+        let plain = Scale::default();
+        let has_units = model.scale.unit() != Unit::Steps;
+        let above = if has_units { &plain } else { model.scale };
+        let steps = lines(above);
+        let painter = self.ui.painter();
+        for tick in if has_units { lines(model.scale) } else { steps.clone() } {
+            let x = place.x(tick.position);
+            painter.vline(x, place.plot.y_range(), Stroke::new(1.0, skin.palette.line));
+            if has_units {
+                self.number(&tick, model.scale.unit(), x, place.units);
+            }
+        }
+        for tick in steps {
+            self.number(&tick, Unit::Steps, place.x(tick.position), place.ruler);
+        }
+    }
+
+    fn number(&self, tick: &Tick, unit: Unit, x: f32, ruler: Rect) {
+        let (skin, painter) = (self.skin, self.ui.painter());
+        let is_above = ruler.bottom() <= self.place.plot.top() + 1.0;
+        let (edge, align) = if is_above { (ruler.bottom(), -1.0) } else { (ruler.top(), 1.0) };
+        painter.vline(x, egui::Rangef::point(edge).expand(2.0), Stroke::new(1.0, skin.palette.muted));
+        let words = skin.words(&words::tick(tick.value, tick.decimals, unit));
+        let font = FontId::monospace(skin.sizes.caption);
+        let middle = pos2(x, ruler.center().y + align);
+        painter.text(middle, Align2::CENTER_CENTER, words, font, skin.palette.muted.into());
+    }
+
+    /// A cam in its lane.
+    fn cam(&self, painter: &Painter, lane: &Lane) {
+        let (skin, place) = (self.skin, self.place);
+        let colour = ink(skin, lane.cam);
+        let range = self.shown.range;
+        for stretch in lane.stretches(range) {
+            let Some(bar) = place.bar(lane.cam, stretch) else { continue };
+            let corners = CornerRadius::same(2);
+            if lane.on {
+                painter.rect_filled(bar, corners, colour.gamma_multiply(0.42));
+                if lane.clashes {
+                    hatch(painter, skin, bar, skin.palette.bad.into());
+                }
+                let edge = if lane.clashes { skin.palette.bad.into() } else { colour };
+                painter.rect_stroke(bar, corners, Stroke::new(1.5, edge), StrokeKind::Inside);
+            } else if bar.width() < NARROW {
+                painter.rect_filled(bar, corners, skin.palette.muted);
+            } else {
+                let stroke = Stroke::new(1.0, skin.palette.muted);
+                let around = bar.shrink(0.5);
+                let path = [
+                    around.left_top(),
+                    around.right_top(),
+                    around.right_bottom(),
+                    around.left_bottom(),
+                    around.left_top(),
+                ];
+                painter.extend(Shape::dashed_line(&path, stroke, 3.0, 3.0));
+            }
+            self.over_the_end(painter, lane, bar, stretch.first == 0, stretch.last + 1 == range);
+        }
+        if lane.beyond {
+            let lane = place.lane(lane.cam).shrink2(Vec2::new(0.0, 3.0));
+            let x = place.x(f64::from(range)).min(place.plot.right());
+            let end = Rect::from_x_y_ranges(x - BEYOND..=x, lane.y_range());
+            hatch(painter, skin, end, skin.palette.bad.into());
+            painter.rect_stroke(end, CornerRadius::ZERO, Stroke::new(1.0, skin.palette.bad), StrokeKind::Inside);
+        }
+    }
+
+    /// A cam that goes over the end of the range shows that it goes on there.
+    fn over_the_end(&self, painter: &Painter, lane: &Lane, bar: Rect, at_first: bool, at_last: bool) {
+        if !lane.edges.is_some_and(|cam| cam.wraps()) {
+            return;
+        }
+        let stroke = Stroke::new(1.5, if lane.on { self.skin.palette.text } else { self.skin.palette.muted });
+        for (shown, x, towards) in [(at_first, bar.left() + 4.0, -1.0), (at_last, bar.right() - 4.0, 1.0)] {
+            if shown && bar.width() > 12.0 {
+                let tip = pos2(x + 1.5 * towards, bar.center().y);
+                for side in [-4.0, 4.0] {
+                    painter.line_segment([pos2(tip.x - 3.0 * towards, tip.y + side), tip], stroke);
+                }
+            }
+        }
+    }
+
+    /// Where the encoder is: a line through all lanes, under a mark in the ruler.
+    fn position(&self) {
+        let Some(position) = self.model.position.filter(|position| *position < self.model.chart.range) else { return };
+        let place = self.place;
+        let x = place.x(f64::from(position) + 0.5);
+        if !place.shows(x) {
+            return;
+        }
+        let (painter, colour) = (self.ui.painter(), Color32::from(self.skin.palette.text));
+        painter.vline(x, place.plot.y_range(), Stroke::new(1.5, colour));
+        let top = place.plot.top();
+        let mark = vec![pos2(x - 5.0, top - 6.0), pos2(x + 5.0, top - 6.0), pos2(x, top + 1.0)];
+        painter.add(Shape::convex_polygon(mark, colour, Stroke::NONE));
+    }
+
+    /// Where something that is dragged would come to.
+    fn goal(&self, drag: &Drag) {
+        let Some(to) = drag.to else { return };
+        let (skin, place) = (self.skin, self.place);
+        let lane = place.lane(drag.hold.cam());
+        let x = match drag.hold {
+            Hold::Edge(_, Edge::Stop) => place.x(f64::from(to.stop.get()) + 1.0),
+            _ => place.x(f64::from(to.start.get())),
+        };
+        let painter = self.ui.painter();
+        if place.shows(x) {
+            painter.vline(x, place.plot.y_range(), Stroke::new(1.0, skin.palette.accent));
+        }
+        let x = x.clamp(place.plot.left(), place.plot.right());
+        self.model.ghost(skin, painter, drag, pos2(x, lane.top() - 6.0));
+    }
+
+    /// An edge that is pointed at or has the keyboard.
+    pub(super) fn paint_grip(&self, cam: CamNumber, edge: Edge, state: Grip) {
+        let lit = state.active || state.focused;
+        let is_selected = self.model.selected == Some(cam) && self.model.movable;
+        if !lit && !is_selected {
+            return;
+        }
+        let Some(at) = self.shown.edge(cam, edge).map(|at| at.min(self.shown.range)) else { return };
+        let beyond = f64::from(u8::from(edge == Edge::Stop && at < self.shown.range));
+        let x = self.place.x(f64::from(at) + beyond);
+        if !self.place.shows(x) {
+            return;
+        }
+        let (skin, painter) = (self.skin, self.ui.painter());
+        let size = if lit { Vec2::new(5.0, 20.0) } else { Vec2::new(4.0, 14.0) };
+        let tab = Rect::from_center_size(pos2(x, self.place.lane(cam).center().y), size);
+        painter.rect_filled(tab.expand(1.0), CornerRadius::same(2), skin.palette.raised);
+        painter.rect_filled(tab, CornerRadius::same(2), if lit { skin.palette.accent } else { skin.palette.text });
+        if state.focused {
+            focus_ring(painter, skin, tab, CornerRadius::same(2));
+        }
+    }
+
+    /// The ring around a cam that has the keyboard.
+    pub(super) fn paint_focus(&self, cam: CamNumber) {
+        let Some(lane) = self.shown.lane(cam) else { return };
+        let painter = self.ui.painter();
+        for stretch in lane.stretches(self.shown.range) {
+            if let Some(bar) = self.place.bar(cam, stretch) {
+                focus_ring(painter, self.skin, bar.intersect(self.place.plot), CornerRadius::same(2));
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Where everything is in the lanes of cams.
+
+use egui::{Rect, Vec2, pos2};
+
+use crate::devices::interbus::protocol::{CamNumber, Program};
+use crate::devices::interbus::state::cams::{Stretch, View};
+
+/// Height of a ruler and of a lane.
+const RULER: f32 = 20.0;
+const LANE: f32 = 28.0;
+/// Width of what stands before the lanes, at most, and as a share of all.
+const HEAD: f32 = 208.0;
+const HEAD_PART: f32 = 0.34;
+/// Room behind the lanes for half a number of the ruler.
+const BEHIND: f32 = 16.0;
+/// How thick an edge is to take hold of.
+const GRIP: f32 = 9.0;
+
+/// Heads at the left, the part of the range that is to be seen at the right.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    /// What stands before the lanes.
+    pub(super) head: Rect,
+    /// The lanes.
+    pub(super) plot: Rect,
+    /// The ruler of steps.
+    pub(super) ruler: Rect,
+    /// The ruler of the machine's units, empty where it has none.
+    pub(super) units: Rect,
+    pub(super) view: View,
+}
+
+impl Place {
+    /// What all of it takes.
+    pub(super) fn size(width: f32, units: bool) -> Vec2 {
+        let rulers = if units { 2.0 * RULER } else { RULER };
+        Vec2::new(width, rulers + Program::CAMS as f32 * LANE)
+    }
+
+    /// In a rectangle of that size.
+    pub(super) fn new(outer: Rect, view: View, gap: f32) -> Self {
+        let top = outer.top() + RULER;
+        let bottom = top + Program::CAMS as f32 * LANE;
+        let left = outer.left() + HEAD.min(outer.width() * HEAD_PART);
+        let right = (outer.right() - BEHIND).max(left + 1.0);
+        let plot = Rect::from_min_max(pos2(left, top), pos2(right, bottom));
+        Place {
+            head: Rect::from_min_max(pos2(outer.left(), top), pos2(left - gap, bottom)),
+            plot,
+            ruler: Rect::from_min_max(pos2(left, outer.top()), pos2(right, top)),
+            units: Rect::from_min_max(pos2(left, bottom), pos2(right, outer.bottom())),
+            view,
+        }
+    }
+
+    pub(super) fn steps_in_point(&self) -> f64 {
+        self.view.span() / f64::from(self.plot.width().max(1.0))
+    }
+
+    /// Where a position begins.
+    pub(super) fn x(&self, position: f64) -> f32 {
+        let part = self.view.part(position).clamp(-1e4, 1e4);
+        self.plot.left() + part as f32 * self.plot.width()
+    }
+
+    /// The position there, also beyond the lanes.
+    pub(super) fn position(&self, x: f32) -> f64 {
+        self.view.position(f64::from((x - self.plot.left()) / self.plot.width().max(1.0)))
+    }
+
+    /// The lane of a cam.
+    pub(super) fn lane(&self, cam: CamNumber) -> Rect {
+        let top = self.plot.top() + f32::from(cam.get()) * LANE;
+        Rect::from_min_size(pos2(self.plot.left(), top), Vec2::new(self.plot.width(), LANE))
+    }
+
+    /// What stands before it.
+    pub(super) fn head_of(&self, cam: CamNumber) -> Rect {
+        let lane = self.lane(cam);
+        Rect::from_x_y_ranges(self.head.x_range(), lane.y_range())
+    }
+
+    /// A stretch of a cam in its lane, as far as it is to be seen; it has a width in any case.
+    pub(super) fn bar(&self, cam: CamNumber, stretch: Stretch) -> Option<Rect> {
+        let (left, right) = (self.x(f64::from(stretch.first)), self.x(f64::from(stretch.last) + 1.0));
+        if right < self.plot.left() || left > self.plot.right() {
+            return None;
+        }
+        let bar = Rect::from_x_y_ranges(left..=right.max(left + 2.0), self.lane(cam).y_range());
+        // Far beyond the lanes nothing is drawn.
+        Some(bar.shrink2(Vec2::new(0.0, 5.0)).intersect(self.plot.expand2(Vec2::new(GRIP, 0.0))))
+    }
+
+    /// Where an edge is taken hold of: inside its cam where that is wide enough, so that two edges that meet are two.
+    pub(super) fn grip(&self, cam: CamNumber, x: f32, is_start: bool, width: f32) -> Rect {
+        let inside = (width / 2.0).clamp(1.0, GRIP - 2.0);
+        let (left, right) = if is_start { (x - GRIP + inside, x + inside) } else { (x - inside, x + GRIP - inside) };
+        Rect::from_x_y_ranges(left..=right, self.lane(cam).shrink2(Vec2::new(0.0, 2.0)).y_range())
+    }
+
+    /// An edge there is to be seen.
+    pub(super) fn shows(&self, x: f32) -> bool {
+        x >= self.plot.left() - 1.0 && x <= self.plot.right() + 1.0
+    }
+}

@@ -1,0 +1,295 @@
+//! The cams of a program around a ring: the measuring range begins at the top and goes round clockwise.
+//!
+//! * **Size**: a square, as wide as is given.
+//! * **Keyboard**: Tab goes from edge to edge; the arrows move one by a step, with Shift to the next line of the grid;
+//!   Delete switches its cam off, Space on and off.
+//! * **Pointer**: an edge is dragged around the ring, or a cam as a whole; Escape gives it up.
+//! * **Accessible**: an edge is a slider with its position, which can be set.
+//! * **Painting**: a circle a cam, the first outermost, with an arc in its colour, which is thin where the cam does not
+//!   work, and struck through where it meets another pulse of its track; the encoder's position as a hand; numbers of steps, or of the machine's units, around it.
+
+use egui::accesskit::Role;
+use egui::epaint::PathStroke;
+use egui::{
+    Align2, Color32, CornerRadius, CursorIcon, FontId, Id, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui,
+    Vec2, WidgetInfo,
+};
+
+use super::cam_chart::{self, CamChart, CamEvent, Drag, ink};
+use crate::app::Text;
+use crate::devices::interbus::profile::Edge;
+use crate::devices::interbus::protocol::{CamNumber, Program, Value};
+use crate::devices::interbus::state::cams::{Chart, Hold, Lane, Snap, View, ticks, words};
+use crate::ui::Skin;
+use crate::ui::widgets::focus_ring;
+
+/// The least side of the square.
+const LEAST: f32 = 160.0;
+/// Where the innermost circle is, as a share of the radius.
+const INNER: f32 = 0.34;
+/// Room around it for numbers.
+const NUMBERS: f32 = 26.0;
+/// How thick an edge is to take hold of.
+const GRIP: f32 = 12.0;
+/// Around the ring at most so many numbers.
+const LINES: f64 = 12.0;
+
+/// Circles around a middle.
+#[derive(Clone, Copy, Debug)]
+struct Dial {
+    middle: Pos2,
+    radius: f32,
+    range: f64,
+}
+
+impl Dial {
+    /// A place on a circle, the range's beginning at the top.
+    fn at(self, position: f64, radius: f32) -> Pos2 {
+        let angle = (position / self.range * std::f64::consts::TAU) as f32;
+        self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius
+    }
+
+    /// The position in whose direction a place lies.
+    fn position(self, place: Pos2) -> f64 {
+        let from = place - self.middle;
+        let part = f64::from(from.x.atan2(-from.y)) / std::f64::consts::TAU;
+        part.rem_euclid(1.0) * self.range
+    }
+
+    /// How thick a circle is with the gap to the next one.
+    fn pitch(self) -> f32 {
+        self.radius * (1.0 - INNER) / Program::CAMS as f32
+    }
+
+    /// The middle of a cam's circle.
+    fn circle(self, cam: CamNumber) -> f32 {
+        self.radius - (f32::from(cam.get()) + 0.5) * self.pitch()
+    }
+
+    /// The cam on whose circle a place lies.
+    fn cam(self, place: Pos2) -> Option<CamNumber> {
+        let from_outside = (self.radius - place.distance(self.middle)) / self.pitch();
+        if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
+    }
+
+    /// The shorter way from one position to another, around the ring.
+    fn turned(self, from: f64, to: f64) -> f64 {
+        (to - from + self.range / 2.0).rem_euclid(self.range) - self.range / 2.0
+    }
+
+    /// Steps in a point of the outermost circle.
+    fn steps_in_point(self) -> f64 {
+        self.range / (std::f64::consts::TAU * f64::from(self.radius))
+    }
+}
+
+/// What everything here needs.
+struct Ring<'a> {
+    ui: &'a Ui,
+    skin: &'a Skin,
+    model: &'a CamChart<'a>,
+    shown: &'a Chart,
+    dial: Dial,
+    base: Id,
+}
+
+/// Draws it and says what was done. One ring a `Ui`: another needs an id of its own (`push_id`).
+pub(crate) fn cam_ring(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
+    let base = ui.make_persistent_id("cam_ring");
+    let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
+    let preview = model.shown(drag);
+    let shown = preview.as_ref().unwrap_or(model.chart);
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side.max(LEAST)), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, model.label));
+    let range = f64::from(model.chart.range.max(1));
+    let dial = Dial { middle: rect.center(), radius: rect.width() / 2.0 - NUMBERS, range };
+    let ring = Ring { ui, skin, model, shown, dial, base };
+    if ui.is_rect_visible(rect) {
+        ring.paint();
+    }
+    let whole = ring.disc(rect, drag);
+    let edges = ring.edges(drag);
+    if let Some(drag) = drag {
+        model.ghost(skin, ui.painter(), &drag, rect.center());
+    }
+    if drag.is_some() && !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
+        ui.data_mut(|data| data.remove::<Drag>(base));
+    }
+    edges.or(whole)
+}
+
+impl Ring<'_> {
+    fn snap(&self) -> Snap {
+        Snap::on(self.dial.steps_in_point())
+    }
+
+    /// The circles themselves: a cam is taken hold of where it is.
+    fn disc(&self, rect: Rect, drag: Option<Drag>) -> Option<CamEvent> {
+        let sense = if self.model.movable { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
+        let response = self.ui.interact(rect, self.base.with("disc"), sense);
+        let under = |place: Pos2| {
+            let lane = self.model.chart.lane(self.dial.cam(place)?)?;
+            let position = Value::of_word(self.dial.position(place) as u32);
+            lane.edges.filter(|cam| cam.is_on(position)).map(|_| Hold::Whole(lane.cam))
+        };
+        let hovered = response.hover_pos();
+        let hold = match drag {
+            Some(drag) => Some(drag.hold),
+            None => self.ui.input(|input| input.pointer.press_origin()).filter(|_| response.dragged()).and_then(under),
+        };
+        if self.model.movable && (response.dragged() || hovered.and_then(under).is_some()) {
+            self.ui.set_cursor_icon(if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab });
+        }
+        let event = hold.and_then(|hold| self.pulled(&response, hold, drag));
+        let clicked = response.clicked().then(|| response.interact_pointer_pos().and_then(|at| self.dial.cam(at)));
+        if let Some(hold) = hovered.and_then(under).filter(|_| drag.is_none()) {
+            self.model.tip(self.skin, response, hold);
+        }
+        event.or(clicked.flatten().map(CamEvent::Selected))
+    }
+
+    fn edges(&self, drag: Option<Drag>) -> Option<CamEvent> {
+        let mut event = None;
+        for lane in self.model.chart.lanes.iter().filter(|lane| lane.edges.is_some()) {
+            event = self.edge(lane, Edge::Start, drag).or(event);
+            event = self.edge(lane, Edge::Stop, drag).or(event);
+        }
+        event
+    }
+
+    fn edge(&self, lane: &Lane, edge: Edge, drag: Option<Drag>) -> Option<CamEvent> {
+        let hold = Hold::Edge(lane.cam, edge);
+        let place = self.place(self.model.chart, lane.cam, edge)?;
+        let rect = Rect::from_center_size(place, Vec2::splat(GRIP.min(self.dial.pitch())));
+        let sense = if self.model.movable { Sense::click_and_drag() } else { Sense::click() };
+        let response = self.ui.interact(rect, self.base.with("edge").with(hold), sense);
+        let label = Text::new("cams.on_ring").with_text("edge", words::edge(lane, edge));
+        let mut event = self.model.tell_edge(self.ui, self.skin, &response, hold, &label);
+        let apart = self.snap().apart.unwrap_or(1.0);
+        event = event.or(self.model.keys(self.ui, &response, hold, apart));
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        if response.clicked() || response.gained_focus() {
+            event = event.or(Some(CamEvent::Selected(lane.cam)));
+        }
+        event = self.pulled(&response, hold, drag).or(event);
+        let is_active = self.model.movable && (response.dragged() || response.hovered());
+        if is_active {
+            self.ui.set_cursor_icon(if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab });
+        }
+        self.paint_grip(lane.cam, edge, is_active, response.has_focus());
+        if drag.is_none() {
+            self.model.tip(self.skin, response, hold);
+        }
+        event
+    }
+
+    /// Where an edge is drawn.
+    fn place(&self, chart: &Chart, cam: CamNumber, edge: Edge) -> Option<Pos2> {
+        let at = chart.edge(cam, edge)?.min(chart.range);
+        let beyond = u32::from(edge == Edge::Stop && at < chart.range);
+        Some(self.dial.at(f64::from(at + beyond), self.dial.circle(cam)))
+    }
+
+    /// The pointer goes around: every drawing by the shorter way from where it was.
+    fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
+        if !self.model.movable || !response.dragged() && !response.drag_stopped() {
+            return None;
+        }
+        let now = self.dial.position(response.interact_pointer_pos()?);
+        let own = drag.filter(|drag| drag.hold == hold);
+        let pressed = || self.ui.input(|input| input.pointer.press_origin()).map(|pos| self.dial.position(pos));
+        let from = own.map(|drag| drag.from).or_else(pressed).unwrap_or(now);
+        let before = own.map_or(from, |drag| drag.at);
+        let at = before + self.dial.turned(before, now);
+        let to = own.and_then(|drag| drag.to);
+        self.model.dragged(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap())
+    }
+
+    fn paint(&self) {
+        let (skin, dial, painter) = (self.skin, self.dial, self.ui.painter());
+        for lane in &self.shown.lanes {
+            let stroke = Stroke::new(1.0, skin.palette.line);
+            painter.circle_stroke(dial.middle, dial.circle(lane.cam), stroke);
+        }
+        if let Some(cam) = self.model.selected {
+            let wide = Stroke::new(dial.pitch(), Color32::from(skin.palette.accent).gamma_multiply(0.12));
+            // A stroke lies outside its circle.
+            painter.circle_stroke(dial.middle, dial.circle(cam) - dial.pitch() / 2.0, wide);
+        }
+        self.numbers();
+        for lane in &self.shown.lanes {
+            self.arc(painter, lane);
+        }
+        if let Some(position) = self.model.position.filter(|position| *position < self.shown.range) {
+            let at = f64::from(position) + 0.5;
+            let stroke = Stroke::new(1.5, skin.palette.text);
+            let inner = dial.radius * INNER * 0.5;
+            painter.line_segment([dial.at(at, inner), dial.at(at, dial.radius + 3.0)], stroke);
+            painter.circle_filled(dial.at(at, inner), 3.0, stroke.color);
+        }
+    }
+
+    fn numbers(&self) {
+        let (skin, dial, painter) = (self.skin, self.dial, self.ui.painter());
+        let range = self.shown.range;
+        let scale = self.model.scale;
+        let lines = ticks(scale, &View::whole(range), range, dial.range / LINES);
+        for tick in lines.iter().filter(|tick| tick.position < dial.range - dial.range / LINES / 2.0) {
+            let at = |radius| dial.at(tick.position, radius);
+            painter.line_segment([at(dial.radius * INNER), at(dial.radius + 3.0)], Stroke::new(1.0, skin.palette.line));
+            let words = skin.words(&words::tick(tick.value, tick.decimals, scale.unit()));
+            let galley =
+                painter.layout_no_wrap(words, FontId::monospace(skin.sizes.caption), skin.palette.muted.into());
+            // Outside the circle on whichever side it is.
+            let out = (at(dial.radius) - dial.middle) / dial.radius.max(1.0);
+            let middle = at(dial.radius + 5.0) + out * galley.size() / 2.0;
+            painter.galley(middle - galley.size() / 2.0, galley, skin.palette.muted.into());
+        }
+    }
+
+    fn arc(&self, painter: &Painter, lane: &Lane) {
+        let (skin, dial) = (self.skin, self.dial);
+        let thick = (dial.pitch() - 3.0).max(2.0);
+        let (width, colour) =
+            if lane.on { (thick, ink(skin, lane.cam)) } else { (1.5, Color32::from(skin.palette.muted)) };
+        for stretch in lane.stretches(self.shown.range) {
+            let (from, to) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
+            let count = (((to - from) / dial.range * 128.0).ceil() as usize).clamp(2, 128);
+            let point = |at: usize| dial.at(from + (to - from) * at as f64 / count as f64, dial.circle(lane.cam));
+            painter.add(Shape::line((0..=count).map(point).collect(), PathStroke::new(width, colour)));
+            if lane.clashes {
+                let marked = PathStroke::new(2.0, Color32::from(skin.palette.bad));
+                painter.add(Shape::line((0..=count).map(point).collect(), marked));
+            }
+        }
+        let cam = pos_of_name(dial, lane.cam);
+        let font = FontId::monospace((skin.sizes.caption).min(dial.pitch()));
+        let ink = if lane.on { skin.palette.text } else { skin.palette.muted };
+        let label = Rect::from_center_size(cam, Vec2::splat(dial.pitch().min(13.0)));
+        painter.rect_filled(label, CornerRadius::same(2), skin.palette.raised);
+        painter.text(cam, Align2::CENTER_CENTER, lane.cam.get().to_string(), font, ink.into());
+    }
+
+    fn paint_grip(&self, cam: CamNumber, edge: Edge, active: bool, focused: bool) {
+        let is_selected = self.model.selected == Some(cam) && self.model.movable;
+        let Some(place) = self.place(self.shown, cam, edge).filter(|_| active || focused || is_selected) else {
+            return;
+        };
+        let (skin, painter) = (self.skin, self.ui.painter());
+        let lit = active || focused;
+        let radius = if lit { 5.0 } else { 3.5 };
+        painter.circle_filled(place, radius + 1.0, skin.palette.raised);
+        painter.circle_filled(place, radius, if lit { skin.palette.accent } else { skin.palette.text });
+        if focused {
+            let around = Rect::from_center_size(place, Vec2::splat(2.0 * radius + 2.0));
+            focus_ring(painter, skin, around, CornerRadius::same(6));
+        }
+    }
+}
+
+/// Where the number of a cam stands: at the beginning of the range.
+fn pos_of_name(dial: Dial, cam: CamNumber) -> Pos2 {
+    dial.middle - Vec2::new(0.0, dial.circle(cam))
+}

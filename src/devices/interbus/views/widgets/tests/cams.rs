@@ -1,0 +1,316 @@
+//! The lanes and the ring of a cam program with keys, pointer and a screen reader.
+
+use egui::accesskit::{Action, ActionData, ActionRequest};
+use egui::{Event, Key, Modifiers, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::devices::interbus::profile::{Direction, Image, Names, Parameters, Scale};
+use crate::devices::interbus::protocol::{Cam, CamNumber, ProgramNumber, Value};
+use crate::devices::interbus::state::cams::{Chart, View};
+use crate::devices::interbus::state::staged::{Edit, Staged};
+use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
+use crate::ui::widgets::tests::{NONE, SHIFT, focus, press, skin, window};
+
+struct Page {
+    staged: Staged,
+    scale: Scale,
+    view: View,
+    selected: Option<CamNumber>,
+    position: Option<u32>,
+    own: Option<u8>,
+    events: Vec<CamEvent>,
+}
+
+fn program() -> ProgramNumber {
+    ProgramNumber::new(1).unwrap()
+}
+
+fn cam(number: u8) -> CamNumber {
+    CamNumber::new(number).unwrap()
+}
+
+fn edges(start: u32, stop: u32) -> Cam {
+    Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
+}
+
+/// 1000 steps: cam 0 from 100 to 299, cam 3 from 900 over the end to 49, cam 4 off.
+fn page() -> Page {
+    let parameters =
+        Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
+    let mut staged = Staged::of_profile(Image::of(parameters), Names::default());
+    for (number, start, stop, on) in [(0, 100, 299, true), (3, 900, 49, true), (4, 600, 700, false)] {
+        staged.edit(&Edit::Cam { program: program(), cam: cam(number), start, stop, on }).unwrap();
+    }
+    let named = Edit::Name { program: program(), cam: cam(0), name: "feed".to_owned() };
+    staged.edit(&named).unwrap();
+    let view = View::whole(1000);
+    Page { staged, scale: Scale::default(), view, selected: None, position: None, own: None, events: Vec::new() }
+}
+
+fn draw(page: Page, ring: bool) -> Harness<'static, Page> {
+    window(page, move |ui, page: &mut Page| {
+        let chart = Chart::of(&page.staged, program()).unwrap();
+        let model = CamChart {
+            label: "Program 1",
+            chart: &chart,
+            scale: &page.scale,
+            position: page.position,
+            own: page.own,
+            selected: page.selected,
+            movable: true,
+            snaps: false,
+        };
+        let event = if ring { cam_ring(ui, &skin(), &model, 400.0) } else { cam_lanes(ui, &skin(), &model, page.view) };
+        let edit = match event {
+            Some(CamEvent::Moved { cam, to, drawn }) => {
+                let (start, stop) = (to.start.get(), to.stop.get());
+                Some(Edit::Cam { program: program(), cam, start, stop, on: drawn })
+            }
+            Some(CamEvent::Switched(cam, on)) => Some(Edit::Switch { program: program(), cam, on }),
+            _ => None,
+        };
+        if let Some(edit) = edit {
+            page.staged.edit(&edit).unwrap();
+        }
+        match event {
+            Some(CamEvent::Selected(cam)) => page.selected = Some(cam),
+            Some(CamEvent::Viewed(view)) => page.view = view,
+            _ => {}
+        }
+        page.events.extend(event);
+    })
+}
+
+fn lanes() -> Harness<'static, Page> {
+    draw(page(), false)
+}
+
+/// What was changed, in order.
+fn changes(harness: &Harness<'_, Page>) -> Vec<CamEvent> {
+    let events = harness.state().events.iter().copied();
+    events.filter(|event| matches!(event, CamEvent::Moved { .. } | CamEvent::Switched(..))).collect()
+}
+
+fn moved(number: u8, start: u32, stop: u32) -> CamEvent {
+    CamEvent::Moved { cam: cam(number), to: edges(start, stop), drawn: false }
+}
+
+fn value(harness: &Harness<'_, Page>, label: &str) -> String {
+    harness.get_by_label(label).value().unwrap()
+}
+
+/// Points between two positions, from the edges of a cam of 200 steps.
+fn steps(harness: &Harness<'_, Page>, count: f32) -> Vec2 {
+    let x = |label| harness.get_by_label(label).rect().center().x;
+    // The two handles lie inside their cam, four points and a half from the middle of what they are taken hold by.
+    let width = x("Cam 0: stop") - x("Cam 0: start") + 2.0 * 2.5;
+    Vec2::new(width / 200.0 * count, 0.0)
+}
+
+fn drag(harness: &mut Harness<'_, Page>, from: egui::Pos2, by: Vec2) {
+    harness.drag_at(from);
+    harness.step();
+    for part in [0.5, 1.0] {
+        harness.hover_at(from + by * part);
+        harness.step();
+    }
+    harness.drop_at(from + by);
+    harness.run();
+}
+
+#[test]
+fn edges_are_moved_by_keys() {
+    let mut harness = lanes();
+    assert_eq!(value(&harness, "Cam 0: start"), "100");
+    focus(&mut harness, "Cam 0: start");
+    press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::ArrowLeft), (NONE, Key::ArrowLeft)]);
+    assert_eq!(changes(&harness), [moved(0, 101, 299), moved(0, 100, 299), moved(0, 99, 299)]);
+    assert_eq!(harness.state().selected, Some(cam(0)));
+    // The grid is of 20 steps here: ten points are at least fourteen steps, at most twenty.
+    press(&mut harness, &[(SHIFT, Key::ArrowRight), (SHIFT, Key::ArrowRight), (SHIFT, Key::ArrowLeft)]);
+    assert_eq!(changes(&harness)[3..], [moved(0, 100, 299), moved(0, 120, 299), moved(0, 100, 299)]);
+    press(&mut harness, &[(NONE, Key::Tab)]);
+    assert!(harness.get_by_label("Cam 0: stop").is_focused());
+    press(&mut harness, &[(NONE, Key::Delete), (NONE, Key::Delete), (NONE, Key::Space)]);
+    assert_eq!(changes(&harness)[6..], [CamEvent::Switched(cam(0), false), CamEvent::Switched(cam(0), true)]);
+    focus(&mut harness, "Cam 3: stop");
+    press(&mut harness, &[(NONE, Key::ArrowLeft)]);
+    assert_eq!(changes(&harness)[8..], [moved(3, 900, 48)]);
+    focus(&mut harness, "Cam 3");
+    press(&mut harness, &[(NONE, Key::ArrowRight)]);
+    assert_eq!(changes(&harness)[9..], [moved(3, 901, 49)]);
+}
+
+#[test]
+fn edges_and_cams_are_dragged() {
+    let mut harness = lanes();
+    let by = steps(&harness, 100.0);
+    let from = harness.get_by_label("Cam 0: stop").rect().center();
+    drag(&mut harness, from, by);
+    let previews = harness.state().events.iter().filter(|event| matches!(event, CamEvent::Preview(..))).count();
+    assert!(previews >= 2);
+    let now = harness.state().staged.wanted().unwrap().cam(program(), cam(0)).unwrap();
+    assert_eq!(now.start.get(), 100);
+    assert!(now.stop.get().abs_diff(399) <= 2, "{now:?}");
+    assert_eq!(changes(&harness).len(), 1, "a drag is one step");
+    let middle = harness.get_by_label("Cam 0 · feed").rect().center();
+    drag(&mut harness, middle, by * 7.5);
+    let now = harness.state().staged.wanted().unwrap().cam(program(), cam(0)).unwrap();
+    assert!(now.wraps() && now.start.get().abs_diff(850) <= 4, "over the end: {now:?}");
+}
+
+#[test]
+fn a_drag_is_given_up_with_escape() {
+    let mut harness = lanes();
+    let from = harness.get_by_label("Cam 0: stop").rect().center();
+    harness.drag_at(from);
+    harness.step();
+    harness.hover_at(from + steps(&harness, 100.0));
+    harness.run_steps(3);
+    assert!(matches!(harness.state().events.last(), Some(CamEvent::Preview(..))));
+    press(&mut harness, &[(NONE, Key::Escape)]);
+    harness.hover_at(from + steps(&harness, 120.0));
+    harness.run_steps(3);
+    harness.drop_at(from + steps(&harness, 120.0));
+    harness.run();
+    assert!(changes(&harness).is_empty());
+}
+
+#[test]
+fn a_cam_is_drawn_in_the_lane_of_one_that_does_not_work() {
+    let mut harness = lanes();
+    let lane = harness.get_by_label("Cam 4").rect();
+    let first = harness.get_by_label("Cam 0: start").rect().center().x;
+    let from = egui::pos2(first, lane.center().y);
+    let by = steps(&harness, 200.0);
+    drag(&mut harness, from, by);
+    let CamEvent::Moved { cam: own, to, drawn: true } = changes(&harness)[0] else { panic!("{:?}", changes(&harness)) };
+    assert_eq!(own, cam(4));
+    assert!(to.start.get().abs_diff(100) <= 8 && to.stop.get().abs_diff(300) <= 8, "{to:?}");
+    assert!(harness.state().staged.wanted().unwrap().is_on(program(), cam(4)));
+    // In the lane of one that works nothing is drawn.
+    let lane = harness.get_by_label("Cam 0 · feed").rect();
+    drag(&mut harness, egui::pos2(lane.right() + 100.0, lane.center().y), by);
+    assert_eq!(changes(&harness).len(), 1);
+}
+
+fn ask(harness: &mut Harness<'_, Page>, label: &str, action: Action, data: Option<ActionData>) {
+    let (target_node, target_tree) = harness.get_by_label(label).accesskit_node().locate();
+    let request = ActionRequest { action, target_tree, target_node, data };
+    harness.event(Event::AccessKitActionRequest(request));
+    harness.run();
+}
+
+#[test]
+fn a_screen_reader_sets_edges() {
+    for ring in [false, true] {
+        let mut harness = draw(page(), ring);
+        let label = if ring { "Cam 0: start, on the ring" } else { "Cam 0: start" };
+        ask(&mut harness, label, Action::SetValue, Some(ActionData::NumericValue(250.0)));
+        ask(&mut harness, label, Action::Increment, None);
+        ask(&mut harness, label, Action::Decrement, None);
+        ask(&mut harness, label, Action::SetValue, Some(ActionData::NumericValue(5000.0)));
+        let expected = [moved(0, 250, 299), moved(0, 251, 299), moved(0, 250, 299), moved(0, 999, 299)];
+        assert_eq!(changes(&harness), expected);
+        assert_eq!(value(&harness, label), "999");
+    }
+}
+
+#[test]
+fn lanes_say_where_cams_are_and_what_the_outputs_are() {
+    let mut own = page();
+    own.scale = Scale::degrees(1000.0, 0).unwrap();
+    (own.position, own.own) = (Some(150), Some(0b1000));
+    let mut harness = draw(own, false);
+    assert_eq!(value(&harness, "Cam 0 · feed"), "On from 100 (36.0°) to 299 (107.6°), 200 steps");
+    assert_eq!(value(&harness, "Cam 4"), "Switched off; 600 (216.0°) to 700 (252.0°), 101 steps");
+    assert_eq!(value(&harness, "Output 0"), "off as the encoder says, on as simulated");
+    assert_eq!(value(&harness, "Output 1"), "off, as the encoder says");
+    let is_on = |harness: &Harness<'_, Page>, label| {
+        harness.get_by_label(label).accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+    };
+    assert!(is_on(&harness, "Cam 0 works") && !is_on(&harness, "Cam 4 works"));
+    harness.get_by_label("Cam 4 works").click();
+    harness.run();
+    assert_eq!(changes(&harness), [CamEvent::Switched(cam(4), true)]);
+    harness.get_by_label("Cam 1 works").click();
+    harness.run();
+    assert_eq!(changes(&harness).len(), 1, "the profile does not say where it is");
+}
+
+#[test]
+fn the_wheel_looks_nearer_and_keys_bring_what_is_out_of_sight() {
+    let mut harness = lanes();
+    let lane = harness.get_by_label("Cam 0 · feed").rect();
+    harness.hover_at(lane.center());
+    harness.step();
+    for _ in 0..4 {
+        harness.event(Event::Zoom(2.0));
+        harness.run();
+    }
+    let view = harness.state().view;
+    assert!(view.span() < 80.0 && view.first() > 150.0 && view.first() < 250.0, "{view:?}");
+    focus(&mut harness, "Cam 3: start");
+    harness.run();
+    let view = harness.state().view;
+    assert!(view.first() <= 900.0 && 900.0 <= view.first() + view.span(), "{view:?}");
+}
+
+#[test]
+fn everything_lies_within_its_width() {
+    for width in [420.0, 600.0, 860.0] {
+        let harness = window(page(), move |ui, page: &mut Page| {
+            ui.set_max_width(width);
+            let chart = Chart::of(&page.staged, program()).unwrap();
+            let model = CamChart {
+                label: "Program 1",
+                chart: &chart,
+                scale: &page.scale,
+                position: None,
+                own: None,
+                selected: None,
+                movable: true,
+                snaps: true,
+            };
+            cam_lanes(ui, &skin(), &model, page.view);
+        });
+        let left = harness.get_by_label("before").rect().left();
+        for label in ["Cam 0 · feed", "Cam 0: stop", "Cam 3: start", "Cam 3: stop", "Output 7", "Cam 7 works"] {
+            let rect = harness.get_by_label(label).rect();
+            assert!(rect.left() >= left - 1.0 && rect.right() <= left + width, "{label} at {width}: {rect}");
+        }
+    }
+}
+
+#[test]
+fn a_ring_is_turned_by_keys_and_pointer() {
+    let mut harness = draw(page(), true);
+    focus(&mut harness, "Cam 3: stop, on the ring");
+    press(&mut harness, &[(NONE, Key::ArrowRight), (Modifiers::NONE, Key::Delete)]);
+    assert_eq!(changes(&harness), [moved(3, 900, 50), CamEvent::Switched(cam(3), false)]);
+    // From a tenth of the turn to a quarter: three o'clock.
+    let ring = harness.get_by_label("Program 1").rect();
+    let from = harness.get_by_label("Cam 0: start, on the ring").rect().center();
+    let radius = from.distance(ring.center());
+    let to = ring.center() + Vec2::new(radius, 0.0);
+    drag(&mut harness, from, to - from);
+    assert_eq!(changes(&harness)[2..], [moved(0, 250, 299)]);
+    // Cam 4 as a whole, from half past seven to where the range begins: 650 to 1000.
+    let lane = |part: f32, radius: f32| {
+        let angle = part * std::f32::consts::TAU;
+        ring.center() + Vec2::new(angle.sin(), -angle.cos()) * radius
+    };
+    let circle = harness.get_by_label("Cam 4: start, on the ring").rect().center().distance(ring.center());
+    let (from, middle, to) = (lane(0.65, circle), lane(0.85, circle), lane(0.0, circle));
+    harness.drag_at(from);
+    harness.step();
+    for at in [middle, to] {
+        harness.hover_at(at);
+        harness.step();
+    }
+    harness.drop_at(to);
+    harness.run();
+    let now = harness.state().staged.wanted().unwrap().cam(program(), cam(4)).unwrap();
+    assert!(now.start.get().abs_diff(950) <= 1 && now.stop.get().abs_diff(50) <= 1, "{now:?}");
+}

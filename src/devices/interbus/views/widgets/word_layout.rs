@@ -1,0 +1,310 @@
+//! The 32 bits of the cam output word, as the shift of the window lays them out, and below it the position with the bits
+//! that go into the window.
+//!
+//! * **Size**: as wide as there is room; where 32 cells have none, half of them on a second line.
+//! * **Keyboard**: nothing to operate; Tab passes it.
+//! * **Pointer**: what a bit is, under it.
+//! * **Accessible**: an image with the label given, whose value are the groups; each group is a label with its bits.
+//! * **Painting**: a cell a bit, the word's own number above it, in it the bit, or which bit of the position or which cam
+//!   it is while there is no word; the position's bits as a row of their own, those that are not sent hollow.
+
+use egui::accesskit::Role;
+use egui::{
+    Align2, Color32, CornerRadius, FontId, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2,
+};
+
+use crate::app::Text;
+use crate::devices::interbus::protocol::{CamBit, CamOutput, Value, WindowShift};
+use crate::ui::Skin;
+use crate::ui::widgets::BitCell;
+use crate::ui::widgets::series;
+
+/// A word.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WordLayout<'a> {
+    /// Accessible name.
+    pub(crate) label: &'a str,
+    /// How far the position is shifted under its window.
+    pub(crate) shift: WindowShift,
+    /// A cam output word as it came; `None`: the layout alone.
+    pub(crate) word: Option<u32>,
+    /// Steps of the measuring range: bits of the position above it are always 0.
+    pub(crate) range: u32,
+}
+
+/// Bits that are of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Group {
+    kind: Kind,
+    /// The highest bit of the word, and the lowest.
+    high: u8,
+    low: u8,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Invalid,
+    Zero,
+    Window,
+    Cams,
+}
+
+/// Widths that a cell may have.
+const LEAST: f32 = 17.0;
+const MOST: f32 = 26.0;
+/// Heights of the numbers, of a cell, of the lane with the names, and between two rows.
+const NUMBERS: f32 = 15.0;
+const CELL: f32 = 24.0;
+const NAMES: f32 = 20.0;
+const GAP: f32 = 8.0;
+/// Bits of the word, and of the position.
+const BITS: u8 = 32;
+const POSITION: u8 = Value::BITS as u8;
+
+impl Kind {
+    const fn of(bit: CamBit) -> Self {
+        match bit {
+            CamBit::Invalid => Kind::Invalid,
+            CamBit::Zero => Kind::Zero,
+            CamBit::Position(_) => Kind::Window,
+            CamBit::Cam(_) => Kind::Cams,
+        }
+    }
+
+    fn ink(self, skin: &Skin) -> Color32 {
+        match self {
+            Kind::Invalid => skin.palette.bad.into(),
+            Kind::Zero => skin.palette.muted.into(),
+            Kind::Window => series(skin, 1),
+            Kind::Cams => series(skin, 2),
+        }
+    }
+}
+
+impl WordLayout<'_> {
+    fn bit(&self, bit: u8) -> CamBit {
+        CamOutput::bit(bit, self.shift).unwrap_or(CamBit::Zero)
+    }
+
+    /// From the highest bit on.
+    fn groups(&self) -> Vec<Group> {
+        let mut groups: Vec<Group> = Vec::new();
+        for bit in (0..BITS).rev() {
+            let kind = Kind::of(self.bit(bit));
+            match groups.last_mut() {
+                Some(group) if group.kind == kind => group.low = bit,
+                _ => groups.push(Group { kind, high: bit, low: bit }),
+            }
+        }
+        groups
+    }
+
+    /// The bits of the position under the window, the highest and the lowest.
+    fn window(&self) -> Option<(u8, u8)> {
+        let mask = self.shift.mask();
+        let high = mask.checked_ilog2()?;
+        u8::try_from(high).ok().zip(u8::try_from(mask.trailing_zeros()).ok())
+    }
+
+    /// What a group is, with where it stands in the word.
+    fn name(&self, group: Group) -> Text {
+        match group.kind {
+            Kind::Invalid => Text::new("cams.word_invalid"),
+            Kind::Zero => Text::new("cams.word_zero"),
+            Kind::Cams => Text::new("cams.word_cams"),
+            Kind::Window => {
+                let (high, low) = self.window().unwrap_or_default();
+                Text::new("cams.word_window").with("high", high).with("low", low)
+            }
+        }
+    }
+
+    /// What a bit is, in a sentence.
+    fn says(&self, bit: u8) -> Text {
+        let own = match self.bit(bit) {
+            CamBit::Invalid => Text::new("cams.word_invalid"),
+            CamBit::Zero => Text::new("cams.word_zero"),
+            CamBit::Position(number) => Text::new("cams.word_position").with("bit", number),
+            CamBit::Cam(number) => Text::new("cams.output_of").with("cam", number),
+        };
+        Text::new("cams.word_bit").with("bit", bit).with_text("what", own)
+    }
+
+    fn is_set(&self, bit: u8) -> Option<bool> {
+        self.word.map(|word| word >> bit & 1 == 1)
+    }
+}
+
+/// Where the cells are.
+struct Cells {
+    left: f32,
+    top: f32,
+    cell: f32,
+    columns: u8,
+}
+
+impl Cells {
+    fn new(room: f32) -> Self {
+        let columns = if room >= f32::from(BITS) * LEAST { BITS } else { BITS / 2 };
+        let cell = (room / f32::from(columns)).floor().clamp(LEAST, MOST);
+        Cells { left: 0.0, top: 0.0, cell, columns }
+    }
+
+    fn line_height() -> f32 {
+        NUMBERS + CELL + NAMES + GAP
+    }
+
+    fn size(&self) -> Vec2 {
+        let lines = f32::from(BITS / self.columns) * Cells::line_height();
+        Vec2::new(f32::from(self.columns) * self.cell, lines + CELL * f32::from(self.position_lines()))
+    }
+
+    /// The position has its bits right-justified below the word's.
+    const fn position_lines(&self) -> u8 {
+        POSITION.div_ceil(self.columns)
+    }
+
+    fn at(self, origin: egui::Pos2) -> Self {
+        Cells { left: origin.x, top: origin.y, ..self }
+    }
+
+    /// The cell of a bit of the word.
+    fn word(&self, bit: u8) -> Rect {
+        let place = BITS - 1 - bit.min(BITS - 1);
+        let line = f32::from(place / self.columns) * Cells::line_height() + NUMBERS;
+        self.cell_at(place % self.columns, line)
+    }
+
+    /// The cell of a bit of the position.
+    fn position(&self, bit: u8) -> Rect {
+        let lines = self.position_lines() * self.columns;
+        let place = lines - 1 - bit.min(lines - 1);
+        let word = f32::from(BITS / self.columns) * Cells::line_height();
+        self.cell_at(place % self.columns, word + f32::from(place / self.columns) * CELL)
+    }
+
+    fn cell_at(&self, column: u8, line: f32) -> Rect {
+        let at = pos2(self.left + f32::from(column) * self.cell, self.top + line);
+        Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL - 1.0))
+    }
+
+    /// The cells from one bit of the word down to another, one rectangle a line.
+    fn runs(&self, high: u8, low: u8) -> Vec<Rect> {
+        let mut runs: Vec<Rect> = Vec::new();
+        for bit in (low..=high).rev() {
+            let cell = self.word(bit);
+            match runs.last_mut().filter(|run| (run.top() - cell.top()).abs() < 1.0) {
+                Some(run) => *run = run.union(cell),
+                None => runs.push(cell),
+            }
+        }
+        runs
+    }
+}
+
+/// Draws it.
+pub(crate) fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
+    let cells = Cells::new(ui.available_width());
+    let (outer, response) = ui.allocate_exact_size(cells.size(), Sense::hover());
+    let cells = cells.at(outer.min);
+    let told: Vec<String> = layout.groups().iter().map(|group| tells(skin, layout, *group)).collect();
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Image, true, layout.label);
+        info.current_text_value = Some(told.join(", "));
+        info
+    });
+    let base = response.id;
+    for bit in (0..BITS).rev() {
+        word_bit(ui, skin, layout, bit, cells.word(bit));
+        let own = ui.interact(cells.word(bit), base.with(bit), Sense::hover());
+        own.on_hover_text(skin.words(&layout.says(bit)));
+    }
+    for (group, words) in layout.groups().into_iter().zip(&told) {
+        name(ui, skin, layout, &cells, group);
+        let Some(run) = cells.runs(group.high, group.low).into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))
+        else {
+            continue;
+        };
+        let lane = Rect::from_min_size(run.left_bottom(), Vec2::new(run.width(), NAMES));
+        let own = ui.interact(lane, base.with((group.high, group.low)), Sense::hover());
+        own.widget_info(|| WidgetInfo::labeled(Role::Label, true, words));
+        own.on_hover_text(words);
+    }
+    position(ui.painter(), skin, layout, &cells);
+    ui.add(egui::Label::new(skin.caption(skin.say("cams.word_of_position"))).wrap());
+}
+
+/// A group with its place in the word and, where a word has come, its bits.
+fn tells(skin: &Skin, layout: &WordLayout<'_>, group: Group) -> String {
+    let name = skin.words(&layout.name(group));
+    let place = if group.high == group.low {
+        Text::new("cams.word_place").with("bit", group.high)
+    } else {
+        Text::new("cams.word_places").with("high", group.high).with("low", group.low)
+    };
+    let bits: Option<String> =
+        (group.low..=group.high).rev().map(|bit| layout.is_set(bit).map(|set| if set { '1' } else { '0' })).collect();
+    let place = skin.words(&place);
+    match bits {
+        Some(bits) => format!("{name}, {place}: {bits}"),
+        None => format!("{name}, {place}"),
+    }
+}
+
+fn word_bit(ui: &Ui, skin: &Skin, layout: &WordLayout<'_>, bit: u8, rect: Rect) {
+    let kind = Kind::of(layout.bit(bit));
+    let blank = match layout.bit(bit) {
+        CamBit::Invalid => "!".to_owned(),
+        CamBit::Zero => "0".to_owned(),
+        CamBit::Position(number) | CamBit::Cam(number) => number.to_string(),
+    };
+    let set = layout.is_set(bit);
+    let is_wrong = set == Some(true) && matches!(kind, Kind::Invalid | Kind::Zero);
+    let painter = ui.painter();
+    BitCell { ink: kind.ink(skin), bit: set, blank: &blank, alarm: is_wrong }.paint(painter, skin, rect);
+    let font = FontId::monospace(skin.sizes.caption);
+    let above = pos2(rect.center().x, rect.top() - NUMBERS / 2.0);
+    painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, skin.palette.muted.into());
+}
+
+/// A bracket below a group with its name, as far as that fits.
+fn name(ui: &Ui, skin: &Skin, layout: &WordLayout<'_>, cells: &Cells, group: Group) {
+    let painter = ui.painter();
+    let ink = group.kind.ink(skin);
+    let runs = cells.runs(group.high, group.low);
+    for run in &runs {
+        painter.hline(run.left() + 1.0..=run.right() - 1.0, run.bottom() + 3.0, Stroke::new(2.0, ink));
+    }
+    let Some(run) = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width())) else { return };
+    let font = FontId::proportional(skin.sizes.caption);
+    let words = skin.words(&layout.name(group));
+    let galley = painter.layout_no_wrap(words, font, skin.palette.muted.into());
+    if galley.size().x <= run.width() {
+        let at = pos2(run.center().x - galley.size().x / 2.0, run.bottom() + 5.0);
+        painter.galley(at, galley, skin.palette.muted.into());
+    }
+}
+
+/// The position's own bits: which are sent, which are left out, which the range never uses.
+fn position(painter: &Painter, skin: &Skin, layout: &WordLayout<'_>, cells: &Cells) {
+    let mask = layout.shift.mask();
+    let last = layout.range.saturating_sub(1);
+    let used = u32::BITS - last.leading_zeros();
+    let bits = layout.word.and_then(|word| CamOutput::parse(word).ok()).map(|own| own.position_bits(layout.shift));
+    let ink = Kind::Window.ink(skin);
+    for bit in (0..POSITION).rev() {
+        let rect = cells.position(bit);
+        let is_sent = mask >> bit & 1 == 1;
+        let font = FontId::monospace(skin.sizes.caption);
+        if is_sent {
+            let set = bits.map(|bits| bits >> bit & 1 == 1);
+            BitCell { ink, bit: set, blank: &bit.to_string(), alarm: false }.paint(painter, skin, rect);
+        } else {
+            let is_used = u32::from(bit) < used;
+            let colour = if is_used { skin.palette.warn } else { skin.palette.line };
+            painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, colour), StrokeKind::Inside);
+            let ink = if is_used { skin.palette.text } else { skin.palette.muted };
+            painter.text(rect.center(), Align2::CENTER_CENTER, bit.to_string(), font, ink.into());
+        }
+    }
+}
