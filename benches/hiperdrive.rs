@@ -15,15 +15,15 @@ use crossbeam_channel::{Receiver, unbounded};
 use encoder_studio::buses::ethernet_ip::protocol::{
     ForwardClose, IoPacket, Owner, Path, RealTimeFormat, RequestTimeout,
 };
-use encoder_studio::device::hiperdrive::cyclic::{Drives, Histogram};
-use encoder_studio::device::hiperdrive::dead_man::{Effort, Intent, Permit, Wish};
-use encoder_studio::device::hiperdrive::{DriveLimits, Opened, Rules};
-use encoder_studio::link::{Clock, DatagramPort, Datagrams, RealClock, UdpPort};
-use encoder_studio::protocol::hiperdrive::{
+use encoder_studio::devices::hiperdrive::jobs::{Cyclic, Motion};
+use encoder_studio::devices::hiperdrive::procedures::cyclic::{Drives, Histogram};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Intent, Permit, Wish};
+use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, Opened, Rules};
+use encoder_studio::devices::hiperdrive::protocol::{
     ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutImage, Topology, Variant,
 };
-use encoder_studio::sim::hiperdrive::{Setup, Station};
-use encoder_studio::worker::hiperdrive::{Cyclic, Motion};
+use encoder_studio::devices::hiperdrive::sim::{Setup, Station};
+use encoder_studio::link::{Clock, DatagramPort, Datagrams, RealClock, UdpPort};
 
 const INTERVAL: Duration = Duration::from_millis(10);
 const LAYOUT: Layout = Layout { topology: Topology::Adapter, pkw: true, order: ByteOrder::Little };

@@ -12,7 +12,6 @@ pub mod units;
 
 // floor 2: bytes ↔ meaning, and what is saved
 pub mod profile;
-pub mod protocol;
 
 // floor 3: the world outside
 pub mod link;

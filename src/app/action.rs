@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::connect;
 use super::diverged::{Diverged, Resolve};
-use super::hiperdrive;
 use super::keep::{SettingsRead, SettingsWritten};
 use super::recorder::{self, Exported};
 use super::review::Permit;
@@ -16,6 +15,8 @@ use super::{Language, Picture, Settings, Text, Theme};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::protocol::Descriptions;
 use crate::devices::biss::state as biss;
+use crate::devices::hiperdrive::jobs::Hiperdrive;
+use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::state as hiperface;
@@ -28,7 +29,6 @@ use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
 use crate::signals::state as signals;
 use crate::store::{DeviceKey, FileError, StoreError};
-use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::{OpenError, Worker};
 
 /// Something to be done.
@@ -156,7 +156,7 @@ pub enum Done {
     /// A link to HIPERDRIVE drives was opened, or not.
     OpenedHiperdrive(Attempt<Hiperdrive>),
     /// Devices that answer in this network, or why nobody could be asked.
-    FoundDrives(u32, Result<Vec<super::hiperdrive::FoundDevice>, Text>),
+    FoundDrives(u32, Result<Vec<crate::devices::hiperdrive::state::FoundDevice>, Text>),
     /// The families of SSI encoders were read, with what is wrong with those of the user's own.
     Families(Arc<Families>, Vec<StoreError>),
     /// A link was opened for a search.

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::devices::hiperdrive::jobs::Motion;
 use crate::worker::Stopper;
-use crate::worker::hiperdrive::Motion;
 
 /// All drives that can be moved from here. Clones share them.
 #[derive(Clone, Default)]

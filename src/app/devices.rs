@@ -12,7 +12,6 @@ pub use wish::Wish;
 
 use super::action::{Known, ReadError, ReviewAction};
 use super::closing::MUCH;
-use super::hiperdrive;
 use super::line::Progressing;
 use super::recorder::Recorder;
 use super::review::Sheet;
@@ -24,6 +23,7 @@ use super::studio::SessionId;
 use super::tab::Tab;
 use super::trace::TraceLog;
 use crate::devices::biss::state as biss;
+use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::hiperface::state as hiperface;
 use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;
@@ -106,7 +106,7 @@ impl AnyDevice {
             crate::devices::interbus::protocol::KIND => {
                 AnyDevice::Interbus(Box::new(interbus::Encoder::in_file(id, file, document, services)))
             }
-            crate::protocol::hiperdrive::KIND => {
+            crate::devices::hiperdrive::protocol::KIND => {
                 AnyDevice::Hiperdrive(Box::new(hiperdrive::Unit::in_file(id, file, document, services)))
             }
             _ => return None,

@@ -12,7 +12,6 @@ pub(crate) mod documents;
 pub(crate) mod edits;
 pub mod explain;
 mod files;
-pub mod hiperdrive;
 pub(crate) mod history;
 mod hold;
 mod keep;

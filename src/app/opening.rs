@@ -12,12 +12,12 @@ use super::tab::Tab;
 use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text, explain};
 use crate::devices::biss::jobs::Biss;
+use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperface::jobs::{Hiperface, may_have_other_master};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::state as ssi;
 use crate::link::{LinkUrl, Scheme, TraceEntry};
-use crate::worker::hiperdrive::Hiperdrive;
 use crate::worker::{Ring, Session, Worker};
 
 /// Frames that wait for the window, at most.

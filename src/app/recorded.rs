@@ -5,10 +5,10 @@ use std::fmt::Debug;
 use super::session::Kind;
 use super::{Settings, Tab};
 use crate::devices::biss::jobs::Biss;
+use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::ssi::jobs::Ssi;
-use crate::worker::hiperdrive::Hiperdrive;
 
 /// Every entry, tab, measure and mark.
 pub(crate) const SETTINGS: &str = include_str!("../../tests/fixtures/settings/settings.ron");

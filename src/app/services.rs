@@ -12,8 +12,9 @@ use super::notices::{Log, Notice, Severity};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
 use super::{Text, explain};
-use crate::device::hiperdrive::{Error as DriveError, Found};
 use crate::devices::biss::jobs::{self as biss, Biss};
+use crate::devices::hiperdrive::jobs::{self as hiperdrive, Hiperdrive};
+use crate::devices::hiperdrive::procedures::{Error as DriveError, Found};
 use crate::devices::hiperface::jobs::{self as hiperface, Hiperface};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes};
 use crate::devices::interbus::jobs::{self as interbus, Interbus};
@@ -22,7 +23,6 @@ use crate::devices::ssi::protocol::Families;
 use crate::link::{LinkError, LinkUrl, PortInfo};
 use crate::profile::Formats;
 use crate::store::{Folders, Store, StoreError};
-use crate::worker::hiperdrive::{self, Hiperdrive};
 use crate::worker::{JobId, OpenError, Session};
 
 /// Opens links to a kind of device.
@@ -69,7 +69,7 @@ impl World {
             open_ssi: Arc::new(ssi::open),
             open_interbus: Arc::new(interbus::open),
             open_hiperdrive: Arc::new(hiperdrive::open),
-            discover: Arc::new(super::hiperdrive::ask_all),
+            discover: Arc::new(crate::devices::hiperdrive::state::ask_all),
             formats,
             ports: Arc::new(crate::link::ports),
             codes: Vec::new(),

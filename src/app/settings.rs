@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Language;
-use super::hiperdrive::{LocksAlone, Remembered};
 use super::tab::Tab;
+use crate::devices::hiperdrive::state::{LocksAlone, Remembered};
 
 /// Dark or light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

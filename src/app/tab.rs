@@ -1,15 +1,16 @@
 //! The tabs of the window.
 
-use super::hiperdrive::HiperdriveForm;
 use crate::devices::biss::jobs as biss;
 use crate::devices::biss::state::BissForm;
+use crate::devices::hiperdrive::jobs as hiperdrive;
+use crate::devices::hiperdrive::state::HiperdriveForm;
 use crate::devices::hiperface::jobs as hiperface;
 use crate::devices::interbus::jobs as interbus;
 use crate::devices::interbus::state::InterbusForm;
 use crate::devices::ssi::jobs as ssi;
 use crate::devices::ssi::state::SsiForm;
 use crate::link::LinkUrl;
-use crate::worker::{OpenError, hiperdrive};
+use crate::worker::OpenError;
 
 /// A tab of the window: a kind of device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]

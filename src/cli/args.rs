@@ -14,7 +14,7 @@ pub(crate) use act::{Action, Do, action_name, no_action, no_option};
 pub(super) use analyse::Analyse;
 pub(crate) use decode::{Decode, Direction, Protocol, Words};
 
-use super::hiperdrive::{Move, listed_parameters};
+use crate::devices::hiperdrive::commands::{Move, listed_parameters};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
 use crate::devices::ssi::commands::Ssi;
 use crate::link::LinkUrl;

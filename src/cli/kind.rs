@@ -4,9 +4,10 @@
 use super::args::{Common, Decode, DeviceKind, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
 use super::simulate::Simulated;
-use super::{Failure, Result, hiperdrive};
+use super::{Failure, Result};
 use crate::app::Text;
 use crate::devices::biss::commands as biss;
+use crate::devices::hiperdrive::commands as hiperdrive;
 use crate::devices::hiperface::commands as hiperface;
 use crate::devices::interbus::commands as interbus;
 use crate::devices::ssi::commands as ssi;

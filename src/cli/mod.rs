@@ -6,7 +6,6 @@ pub(crate) mod args;
 pub(crate) mod check;
 pub(crate) mod consent;
 pub(crate) mod decode;
-mod hiperdrive;
 pub(crate) mod kind;
 pub(crate) mod number;
 pub(crate) mod output;
@@ -19,6 +18,7 @@ pub(crate) mod runner;
 pub(crate) mod simulate;
 
 use crate::buses::ethernet_ip::commands as ethernet_ip;
+use crate::devices::hiperdrive::commands as hiperdrive;
 use crate::devices::ssi::commands as ssi;
 use std::path::PathBuf;
 use std::process::ExitCode;

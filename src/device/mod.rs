@@ -1,7 +1,6 @@
 //! What one does with a device: procedures that read like the manuals' step tables.
 
 pub mod check;
-pub mod hiperdrive;
 pub(crate) mod line;
 mod replies;
 pub(crate) mod written;

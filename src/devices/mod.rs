@@ -1,6 +1,7 @@
 //! The devices: one folder each, which holds all that the program knows about it.
 
 pub mod biss;
+pub mod hiperdrive;
 pub mod hiperface;
 pub mod interbus;
 pub mod ssi;

@@ -6,7 +6,6 @@ mod cause;
 pub(crate) mod difference;
 mod document;
 mod error;
-pub mod hiperdrive;
 mod misspelt;
 pub(crate) mod mounting;
 mod place;

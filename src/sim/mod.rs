@@ -6,7 +6,6 @@
 
 mod at_adapter;
 mod fault;
-pub mod hiperdrive;
 pub(crate) mod line;
 mod motor;
 pub(crate) mod setting;

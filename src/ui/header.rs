@@ -7,9 +7,9 @@ use super::page::apart;
 use super::stopping::{goes_down, means_motion, pressed_at};
 use super::{Skin, Views, icons};
 use crate::app::connect;
-use crate::app::hiperdrive::Unit;
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme};
+use crate::devices::hiperdrive::state::Unit;
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;

@@ -9,7 +9,6 @@ mod docks;
 mod end;
 pub(crate) mod foot;
 mod header;
-mod hiperdrive;
 pub mod icons;
 mod keys;
 pub(crate) mod motor;
@@ -27,6 +26,7 @@ pub(crate) mod wires;
 mod workspace;
 
 use crate::devices::biss::views as biss;
+use crate::devices::hiperdrive::views as hiperdrive;
 use crate::devices::hiperface::views as hiperface;
 use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;

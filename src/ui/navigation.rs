@@ -4,9 +4,10 @@ use egui::Ui;
 
 use super::controls::{icon_button, name};
 use super::docks::Docks;
-use super::{Skin, Views, hiperdrive, icons};
+use super::{Skin, Views, icons};
 use crate::app::{Action, Studio, Tab};
 use crate::devices::biss::views as biss;
+use crate::devices::hiperdrive::views as hiperdrive;
 use crate::devices::hiperface::views as hiperface;
 use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;

@@ -11,9 +11,10 @@ use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Skin, header, hiperdrive, review, stopping};
+use super::{Skin, header, review, stopping};
 use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
 use crate::devices::biss::views as biss;
+use crate::devices::hiperdrive::views as hiperdrive;
 use crate::devices::hiperface::state::Encoder;
 use crate::devices::hiperface::views as hiperface;
 use crate::devices::interbus::views as interbus;
@@ -67,7 +68,7 @@ impl Views {
     }
 
     /// The HIPERDRIVE tab of a session.
-    pub(super) fn hiperdrive(&mut self, unit: &crate::app::hiperdrive::Unit) -> &mut hiperdrive::View {
+    pub(super) fn hiperdrive(&mut self, unit: &crate::devices::hiperdrive::state::Unit) -> &mut hiperdrive::View {
         let view = self.hiperdrive.entry(unit.session.id).or_default();
         view.follow(unit);
         view

@@ -9,7 +9,6 @@
 
 mod agenda;
 pub(crate) mod commit;
-pub mod hiperdrive;
 mod interruption;
 #[cfg(test)]
 mod invented;

@@ -6,16 +6,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
-use encoder_studio::device::hiperdrive::{Asked, Error, Found, discover};
-use encoder_studio::link::{Cancel, RealClock, UdpShout};
-use encoder_studio::profile::Consent;
-use encoder_studio::profile::hiperdrive::{Image, NetworkSettings, Service};
-use encoder_studio::protocol::hiperdrive::{DriveNumber, ParameterNumber, Topology, Value, Variant};
-use encoder_studio::store::Store;
-use encoder_studio::worker::Session;
-use encoder_studio::worker::hiperdrive::{
+use encoder_studio::devices::hiperdrive::jobs::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, open,
 };
+use encoder_studio::devices::hiperdrive::procedures::{Asked, Error, Found, discover};
+use encoder_studio::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
+use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Value, Variant};
+use encoder_studio::link::{Cancel, RealClock, UdpShout};
+use encoder_studio::profile::Consent;
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
 
 use super::support::{Bench, Foreign, Ran};
 

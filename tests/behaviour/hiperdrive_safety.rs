@@ -10,11 +10,11 @@ use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use encoder_studio::device::hiperdrive::cyclic::CyclicLost;
-use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Wish};
-use encoder_studio::protocol::hiperdrive::{Actual, Direction, DriveNumber, Percent, State};
+use encoder_studio::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, open};
+use encoder_studio::devices::hiperdrive::procedures::cyclic::CyclicLost;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Wish};
+use encoder_studio::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Percent, State};
 use encoder_studio::store::Store;
-use encoder_studio::worker::hiperdrive::{Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, open};
 use encoder_studio::worker::{Event, Session, Worker};
 
 use super::support::{Bench, Simulated, ended, signal};

@@ -6,9 +6,11 @@ mod ladder;
 mod model;
 mod watch;
 
-use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Goal, Lock, Motive, Permit, Phase, Refusal, Wish};
-use encoder_studio::protocol::hiperdrive::{Direction, ErrorCode, Percent, RunEnd};
-use encoder_studio::sim::hiperdrive::Load;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{
+    Effort, Ended, Goal, Lock, Motive, Permit, Phase, Refusal, Wish,
+};
+use encoder_studio::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd};
+use encoder_studio::devices::hiperdrive::sim::Load;
 
 use bench::Bench;
 

@@ -4,21 +4,21 @@
 use std::path::Path;
 
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as Set};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
 use encoder_studio::devices::biss::profile::BissProfile;
 use encoder_studio::devices::biss::state::Action as Biss;
+use encoder_studio::devices::hiperdrive::profile::HiperdriveProfile;
+use encoder_studio::devices::hiperdrive::protocol::ParameterNumber;
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit as Set};
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::devices::interbus::profile::InterbusProfile;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
 use encoder_studio::kinds::FORMATS;
-use encoder_studio::profile::hiperdrive::HiperdriveProfile;
 use encoder_studio::profile::{self, Body, Comparison, Document, PlanId, Profile};
-use encoder_studio::protocol::hiperdrive::ParameterNumber;
 
 use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, PORT};
 use crate::wire::Wire;
@@ -190,7 +190,7 @@ fn compared(one: Body, other: Body) -> Comparison {
     } else if let Some((one, other)) = pair::<InterbusProfile>(&one, &other) {
         encoder_studio::devices::interbus::profile::compare(&one, &other)
     } else if let Some((one, other)) = pair::<HiperdriveProfile>(&one, &other) {
-        encoder_studio::profile::hiperdrive::compare(&one, &other)
+        encoder_studio::devices::hiperdrive::profile::compare(&one, &other)
     } else {
         let (one, other) = pair::<HiperfaceProfile>(&one, &other).unwrap();
         encoder_studio::devices::hiperface::profile::compare(&one.fields, &other.fields)

@@ -1,14 +1,16 @@
 //! The HIPERDRIVE tab by actions: what is read and when, parameters beside what is wanted, a write with its review, and what is
 //! locked after it.
 
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, LimitsStay, Mark, Measure, Motor, Unit};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, Wish, connect};
 use encoder_studio::buses::ethernet_ip::protocol::{Identity, IdentityItem, Revision, SocketAddress};
-use encoder_studio::device::hiperdrive::Found;
-use encoder_studio::device::hiperdrive::dead_man::{Goal, Lock};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR};
+use encoder_studio::devices::hiperdrive::procedures::Found;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Goal, Lock};
+use encoder_studio::devices::hiperdrive::protocol::{
+    Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR,
+};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, LimitsStay, Mark, Measure, Motor, Unit};
 
 use crate::support::Desk;
 

@@ -4,18 +4,20 @@
 mod bench;
 mod foreign;
 
-use encoder_studio::app::hiperdrive::axis::{Action as Run, Button, End, Place, Power, Reached, Restart, Step, words};
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Settings, Severity};
-use encoder_studio::device::hiperdrive::dead_man::Effort;
-use encoder_studio::profile::hiperdrive::Service;
-use encoder_studio::protocol::hiperdrive::{
+use encoder_studio::devices::hiperdrive::jobs::Change;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Effort;
+use encoder_studio::devices::hiperdrive::profile::Service;
+use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
 };
+use encoder_studio::devices::hiperdrive::state::axis::{
+    Action as Run, Button, End, Place, Power, Reached, Restart, Step, words,
+};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::sim::Faults;
 use encoder_studio::units::Moment;
-use encoder_studio::worker::hiperdrive::Change;
 
 use crate::hiperdrive_acts::act_until;
 use crate::support::Desk;

@@ -3,10 +3,10 @@
 
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Motor};
 use encoder_studio::app::{Action, Tab};
-use encoder_studio::device::hiperdrive::dead_man::Goal;
-use encoder_studio::protocol::hiperdrive::{Direction, RunEnd, State, StatusBit};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
+use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, State, StatusBit};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Motor};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, unit};

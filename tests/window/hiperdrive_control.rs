@@ -3,11 +3,11 @@
 
 use std::time::Duration;
 
-use encoder_studio::app::hiperdrive::axis::{Action as Run, Button};
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Motor, Unit};
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect};
-use encoder_studio::device::hiperdrive::dead_man::Lock;
-use encoder_studio::protocol::hiperdrive::{ErrorCode, State, Value};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, State, Value};
+use encoder_studio::devices::hiperdrive::state::axis::{Action as Run, Button};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Motor, Unit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit};

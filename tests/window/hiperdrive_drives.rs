@@ -3,11 +3,11 @@
 use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::{AccessKitNode, Queryable};
-use encoder_studio::app::explain::hiperdrive as explain;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::{Action, Language, Severity, Studio, Tab};
-use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Phase};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Phase};
+use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
+use encoder_studio::devices::hiperdrive::state::explain;
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, unit};

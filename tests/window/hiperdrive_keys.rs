@@ -4,9 +4,9 @@
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit};
 use encoder_studio::app::{Action, Studio};
-use encoder_studio::worker::hiperdrive::Motion;
+use encoder_studio::devices::hiperdrive::jobs::Motion;
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit};
 
 use crate::hiperdrive::number;
 use crate::hiperdrive_stop::{begin, in_hand, moving, pointer, until_it_stands};

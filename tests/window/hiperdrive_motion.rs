@@ -3,12 +3,12 @@
 
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit, Mark, Motor, Unit};
 use encoder_studio::app::{Action, Severity, Studio, Tab, connect};
-use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Lock};
-use encoder_studio::protocol::hiperdrive::{
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock};
+use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
 };
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Mark, Motor, Unit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};

@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Measure};
 use encoder_studio::app::recorder::Recorder;
 use encoder_studio::app::{Action, Desk as Whose, FileQuestion, Severity};
-use encoder_studio::protocol::hiperdrive::{DriveNumber, Length, Value};
+use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, number, read, unit};

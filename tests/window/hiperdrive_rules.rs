@@ -6,15 +6,15 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::{Action, Severity, Studio, Tab, World};
-use encoder_studio::device::hiperdrive::Station;
+use encoder_studio::devices::hiperdrive::jobs::Way;
+use encoder_studio::devices::hiperdrive::procedures::Station;
+use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, State, Value};
+use encoder_studio::devices::hiperdrive::sim::{Config, Target};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::link::{ByteLink, Clock, LinkError, RealClock, SimLink, SimPort};
-use encoder_studio::protocol::hiperdrive::{DriveNumber, ErrorCode, State, Value};
-use encoder_studio::sim::hiperdrive::{Config, Target};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;
-use encoder_studio::worker::hiperdrive::Way;
 
 use crate::hiperdrive::{ONE, act, drive, number, unit, until_read};
 use crate::hiperdrive_acts::{drive_until, set_off};

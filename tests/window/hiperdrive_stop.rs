@@ -6,12 +6,12 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor};
 use encoder_studio::app::{Action, Studio, Tab};
-use encoder_studio::device::hiperdrive::dead_man::{Ended, Phase};
-use encoder_studio::protocol::hiperdrive::{OutData, State};
+use encoder_studio::devices::hiperdrive::jobs::DriveView;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Phase};
+use encoder_studio::devices::hiperdrive::protocol::{OutData, State};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor};
 use encoder_studio::units::Moment;
-use encoder_studio::worker::hiperdrive::DriveView;
 
 use crate::hiperdrive::ONE;
 use crate::screen::Screen;

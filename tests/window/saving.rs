@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use encoder_studio::app::diverged::{Resolve, Side};
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Edit as HiperdriveEdit};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, SessionId, Severity, Studio};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit as HiperdriveEdit};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
@@ -288,7 +288,7 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
         programs: [(program: 1, mask: 1, cams: [(cam: 0, start: 3000, stop: 3500)])],\n)\n";
     let interbus = |desk: &mut Desk, id| desk.act(Action::Interbus(id, Interbus::Edit(Box::new(Edit::Preset(9)))));
     let hiperdrive = |desk: &mut Desk, id| {
-        let number = encoder_studio::protocol::hiperdrive::ParameterNumber::new(166).unwrap();
+        let number = encoder_studio::devices::hiperdrive::protocol::ParameterNumber::new(166).unwrap();
         desk.act(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(HiperdriveEdit::Set(number, 40)))));
     };
     let layout = |desk: &mut Desk, id| desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));

@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, World, connect};
-use encoder_studio::device::hiperdrive::Found;
 use encoder_studio::devices::biss::jobs as biss;
 use encoder_studio::devices::biss::procedures::Way;
+use encoder_studio::devices::hiperdrive::jobs as hiperdrive;
+use encoder_studio::devices::hiperdrive::procedures::Found;
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
@@ -20,7 +21,7 @@ use encoder_studio::devices::interbus::jobs as interbus;
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::store::{Folders, Store};
-use encoder_studio::worker::{Session, hiperdrive};
+use encoder_studio::worker::Session;
 
 use crate::texts;
 use crate::wire::{TestLink, Wire};
@@ -116,7 +117,8 @@ impl Outside {
                     return crate::unhurried::open(url, store);
                 }
                 let Some(wire) = drives.get(&url.target) else { return hiperdrive::open(url, store) };
-                let station = encoder_studio::device::hiperdrive::Station::from_query(&url.query, None, MARGIN)?;
+                let station =
+                    encoder_studio::devices::hiperdrive::procedures::Station::from_query(&url.query, None, MARGIN)?;
                 let link = Box::new(TestLink::plug_into(wire)?);
                 let way = hiperdrive::Way { wire: link, port: None, station, target: None };
                 Ok(Session::to_target(way, wire.clock(), store))

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Measure, Motor};
 use encoder_studio::app::{Action, Language, Settings, Studio, Tab, Theme, World};
-use encoder_studio::device::hiperdrive::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure, Motor};
 use encoder_studio::kinds::FORMATS;
-use encoder_studio::protocol::hiperdrive::{DriveNumber, Length, Value};
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
 

@@ -4,12 +4,12 @@
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};
 
-use encoder_studio::device::hiperdrive::Station;
+use encoder_studio::devices::hiperdrive::jobs::{Hiperdrive, Way};
+use encoder_studio::devices::hiperdrive::procedures::Station;
+use encoder_studio::devices::hiperdrive::sim::{Config, Target};
 use encoder_studio::link::{Clock, LinkUrl, RealClock, SimLink, SimPort};
-use encoder_studio::sim::hiperdrive::{Config, Target};
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
-use encoder_studio::worker::hiperdrive::{Hiperdrive, Way};
 use encoder_studio::worker::{OpenError, Session};
 
 use crate::support::MARGIN;

@@ -4,13 +4,13 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::hiperdrive::axis::Step;
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Mark, Motor};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, Text, connect};
 use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
-use encoder_studio::device::hiperdrive::dead_man::Goal;
-use encoder_studio::protocol::hiperdrive::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
+use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
+use encoder_studio::devices::hiperdrive::state::axis::Step;
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Mark, Motor};
 use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
@@ -210,7 +210,7 @@ fn parameters_are_typed_into_their_table() {
     begin(&mut screen, "158 Lower limit");
     screen.put("158 Lower limit", "17");
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    let three = encoder_studio::protocol::hiperdrive::DriveNumber::new(3).unwrap();
+    let three = encoder_studio::devices::hiperdrive::protocol::DriveNumber::new(3).unwrap();
     screen.act(Action::Hiperdrive(id, Hiperdrive::SelectDrive(three)));
     screen.steps();
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);

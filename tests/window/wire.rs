@@ -5,13 +5,14 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::sim as biss;
 use encoder_studio::devices::biss::sim::Port;
+use encoder_studio::devices::hiperdrive::sim as hiperdrive;
+use encoder_studio::devices::hiperdrive::sim::Target;
 use encoder_studio::devices::hiperface::sim as hiperface;
 use encoder_studio::devices::hiperface::sim::Bus;
 use encoder_studio::devices::interbus::sim as interbus;
 use encoder_studio::devices::interbus::sim::Gateway;
 use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, VirtualClock};
-use encoder_studio::sim::hiperdrive::Target;
-use encoder_studio::sim::{AT_ADAPTER, ByteDevice, hiperdrive};
+use encoder_studio::sim::{AT_ADAPTER, ByteDevice};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use crate::support::LONG;

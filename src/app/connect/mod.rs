@@ -11,12 +11,12 @@ pub use target::is_missing;
 
 use std::path::PathBuf;
 
-use super::hiperdrive::{Discovery, HiperdriveForm};
 use super::services::Services;
 use super::tab::Tab;
 use super::{Text, explain};
 use crate::app::action::Done;
 use crate::devices::biss::state::BissForm;
+use crate::devices::hiperdrive::state::{Discovery, HiperdriveForm};
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::state::{LinkForm, Search};
 use crate::devices::interbus::state::InterbusForm;

@@ -1,8 +1,9 @@
 //! A device on the desk as what it is, for those who know one kind, and what only some kinds can do.
 
 use super::AnyDevice;
-use crate::app::{SineCosineSource, hiperdrive};
+use crate::app::SineCosineSource;
 use crate::devices::biss::state as biss;
+use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::hiperface::state as hiperface;
 use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;
@@ -14,7 +15,7 @@ impl AnyDevice {
         crate::devices::biss::protocol::KIND,
         crate::devices::ssi::protocol::KIND,
         crate::devices::interbus::protocol::KIND,
-        crate::protocol::hiperdrive::KIND,
+        crate::devices::hiperdrive::protocol::KIND,
     ];
 
     /// As a HIPERFACE encoder.

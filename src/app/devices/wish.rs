@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use super::AnyDevice;
 use crate::app::action::Action;
-use crate::app::hiperdrive;
 use crate::app::studio::SessionId;
 use crate::devices::biss::state as biss;
+use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::hiperface::state as hiperface;
 use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;

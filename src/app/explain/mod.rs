@@ -2,7 +2,6 @@
 //! device stands in a module of its own.
 
 mod detail;
-pub mod hiperdrive;
 pub mod signal;
 
 use std::path::Path;

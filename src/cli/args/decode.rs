@@ -3,10 +3,10 @@
 use clap::{Args, ValueEnum};
 
 use super::DeviceKind;
-use crate::cli::hiperdrive::Order;
+use crate::devices::hiperdrive::commands::Order;
+use crate::devices::hiperdrive::protocol as hiperdrive;
 use crate::devices::interbus::commands::WordMode;
 use crate::devices::interbus::protocol as interbus;
-use crate::protocol::hiperdrive;
 
 #[derive(Args)]
 pub(crate) struct Decode {

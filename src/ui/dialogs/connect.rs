@@ -8,6 +8,7 @@ use egui::{RichText, ScrollArea, Ui};
 use crate::app::connect::{Action as Connect, Connect as Dialog, is_missing};
 use crate::app::{Action, Studio, Tab, Text};
 use crate::devices::biss::views as biss;
+use crate::devices::hiperdrive::views as hiperdrive;
 use crate::devices::hiperface::state::Search;
 use crate::devices::hiperface::views as hiperface;
 use crate::devices::interbus::views as interbus;
@@ -16,7 +17,7 @@ use crate::link::LinkUrl;
 use crate::ui::controls::{
     at_the_right, button, entry, icon_button, modal, mono_entry, name, paragraph, primary, problem,
 };
-use crate::ui::{Skin, hiperdrive, icons};
+use crate::ui::{Skin, icons};
 
 /// What the dialog remembers.
 #[derive(Default)]

@@ -8,12 +8,13 @@ use super::nothing;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Desk, Rgb, Studio, Text, Wish};
 use crate::devices::biss::views as biss;
+use crate::devices::hiperdrive::views as hiperdrive;
 use crate::devices::hiperface::views as hiperface;
 use crate::devices::interbus::views as interbus;
 use crate::devices::ssi::views as ssi;
 use crate::ui::controls::{choice, enabled_button, icon_button};
 use crate::ui::page::apart;
-use crate::ui::{Skin, Views, hiperdrive, icons, plot};
+use crate::ui::{Skin, Views, icons, plot};
 
 /// Microseconds from one reading of the position to the next; back to back first.
 const RATES: [(u64, &str); 4] =

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use encoder_studio::device::hiperdrive::dead_man::{Ended, Phase, Wish};
-use encoder_studio::protocol::hiperdrive::{DriveNumber, State};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Phase, Wish};
+use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, State};
 
 use super::super::support::{Bench, Foreign};
 use super::{FAST, Host, JOG};

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use encoder_studio::device::hiperdrive::Error;
-use encoder_studio::device::hiperdrive::dead_man::Lock;
-use encoder_studio::device::hiperdrive::write::Interrupted;
+use encoder_studio::devices::hiperdrive::jobs::{Change, HiperdriveJob, JobError};
+use encoder_studio::devices::hiperdrive::procedures::Error;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::procedures::write::Interrupted;
 use encoder_studio::link::Cancel;
-use encoder_studio::worker::hiperdrive::{Change, HiperdriveJob, JobError};
 
 use super::support::{Stand, drive, image};
 use crate::support::Tap;

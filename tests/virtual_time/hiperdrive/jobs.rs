@@ -1,14 +1,14 @@
 //! What can be read of a device. Nothing is set for it, and no cyclic connection is opened.
 
-use encoder_studio::device::hiperdrive::check::{Finding, Step, Verdict};
-use encoder_studio::device::hiperdrive::{Error, Late};
+use encoder_studio::devices::hiperdrive::procedures::check::{Finding, Step, Verdict};
+use encoder_studio::devices::hiperdrive::procedures::{Error, Late};
 use std::sync::{Arc, Mutex};
 
 use encoder_studio::buses::ethernet_ip::protocol::{AddressSource, Service};
+use encoder_studio::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput, JobError, open};
+use encoder_studio::devices::hiperdrive::protocol::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
 use encoder_studio::link::{Clock, TraceEntry, write_entry, write_header};
-use encoder_studio::protocol::hiperdrive::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
 use encoder_studio::store::Store;
-use encoder_studio::worker::hiperdrive::{HiperdriveJob, HiperdriveOutput, JobError, open};
 use encoder_studio::worker::{Event, JobId};
 
 use super::support::{Stand, drive, number};

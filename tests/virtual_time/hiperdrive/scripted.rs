@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use encoder_studio::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
-use encoder_studio::device::hiperdrive::{Asked, Error, Master, Station, read_rules};
+use encoder_studio::devices::hiperdrive::procedures::{Asked, Error, Master, Station, read_rules};
+use encoder_studio::devices::hiperdrive::protocol::{Topology, Value};
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
-use encoder_studio::protocol::hiperdrive::{Topology, Value};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::{drive, number};

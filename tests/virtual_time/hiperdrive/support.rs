@@ -5,17 +5,17 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use encoder_studio::buses::ethernet_ip::protocol::{Body, Command, Frame, Request};
-use encoder_studio::device::hiperdrive::{Station, Survey};
-use encoder_studio::link::{Clock, SimPort, VirtualClock};
-use encoder_studio::profile::Consent;
-use encoder_studio::profile::hiperdrive::Image;
-use encoder_studio::protocol::hiperdrive::{DriveNumber, ParameterNumber, Value};
-use encoder_studio::sim::hiperdrive::{Config, Target};
-use encoder_studio::store::Store;
-use encoder_studio::worker::Session;
-use encoder_studio::worker::hiperdrive::{
+use encoder_studio::devices::hiperdrive::jobs::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Way,
 };
+use encoder_studio::devices::hiperdrive::procedures::{Station, Survey};
+use encoder_studio::devices::hiperdrive::profile::Image;
+use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
+use encoder_studio::devices::hiperdrive::sim::{Config, Target};
+use encoder_studio::link::{Clock, SimPort, VirtualClock};
+use encoder_studio::profile::Consent;
+use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
 
 use crate::support::{MARGIN, Tap, TestLink, folder};
 

@@ -1,15 +1,15 @@
 //! What is written: exactly what was planned, each read back, then one save; and what is refused names why.
 
-use encoder_studio::device::hiperdrive::dead_man::Lock;
-use encoder_studio::device::hiperdrive::{Asked, Error, LimitsSeen};
+use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
+use encoder_studio::devices::hiperdrive::procedures::{Asked, Error, LimitsSeen};
+use encoder_studio::devices::hiperdrive::profile::{HiperdriveProfile, PlanError, RestoreOptions, Service};
+use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, Range, Value};
 use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::Clock;
 use encoder_studio::profile::Document;
-use encoder_studio::profile::hiperdrive::{HiperdriveProfile, PlanError, RestoreOptions, Service};
-use encoder_studio::protocol::hiperdrive::{ErrorCode, Range, Value};
 use encoder_studio::store::read_text;
 use encoder_studio::worker::NotBegun;
-use encoder_studio::worker::hiperdrive::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 
 use super::support::{Stand, drive, image, number};
 

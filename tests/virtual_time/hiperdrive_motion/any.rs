@@ -4,10 +4,10 @@
 //! A word that commands motion goes out only with a fresh act of a person, in its direction and within the limits: a model
 //! beside the dead-man says so ([`Model`]).
 
-use encoder_studio::device::hiperdrive::dead_man::Permit;
-use encoder_studio::device::hiperdrive::dead_man::{Effort, Goal, Lock, Wish};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ErrorCode, RunEnd, State};
-use encoder_studio::sim::hiperdrive::{Defect, Load};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, Wish};
+use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, RunEnd, State};
+use encoder_studio::devices::hiperdrive::sim::{Defect, Load};
 
 use super::bench::Bench;
 use super::model::Model;

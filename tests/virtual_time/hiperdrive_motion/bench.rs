@@ -3,11 +3,11 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use encoder_studio::device::hiperdrive::dead_man::{DeadMan, Ended, Intent, Permit, Wish};
-use encoder_studio::protocol::hiperdrive::{
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, Permit, Wish};
+use encoder_studio::devices::hiperdrive::protocol::{
     Actual, ControlBit, ControlWord, DriveNumber, ErrorCode, OutImage, ParameterNumber, Setpoint, State, Value,
 };
-use encoder_studio::sim::hiperdrive::{Load, Setup, Station};
+use encoder_studio::devices::hiperdrive::sim::{Load, Setup, Station};
 use encoder_studio::units::Moment;
 
 pub(super) const INTERVAL: Duration = Duration::from_millis(10);

@@ -1,7 +1,7 @@
 //! Whatever ends a motion: the word that stands goes out with the same call, and up the ladder while the drive does not.
 
-use encoder_studio::device::hiperdrive::dead_man::{Ended, Goal, Lock, Phase, Rung, Wish};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase, Rung, Wish};
+use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber};
 use proptest::prelude::*;
 
 use super::bench::Bench;
@@ -149,7 +149,7 @@ fn what_moves_unasked_is_stopped() {
     bench.until_over();
     super::words(&mut bench);
     let mut moving = bench.actual();
-    moving.status = encoder_studio::protocol::hiperdrive::StatusWord::new(0x1A37);
+    moving.status = encoder_studio::devices::hiperdrive::protocol::StatusWord::new(0x1A37);
     bench.heard = Some(moving);
     bench.run(150);
     assert!(!bench.man.is_idle());

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use encoder_studio::device::hiperdrive::dead_man::{Ended, Wish};
-use encoder_studio::protocol::hiperdrive::{Actual, Direction, RunEnd, Setpoint, StatusBit};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Wish};
+use encoder_studio::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, Setpoint, StatusBit};
 use encoder_studio::units::Moment;
 
 /// Issue 21.14: acts as they were made, without the dead-man's own bookkeeping.

@@ -2,9 +2,9 @@
 //!
 //! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps a millisecond, 382 in an interval of 10 ms.
 
-use encoder_studio::device::hiperdrive::dead_man::{Effort, Ended, Permit, Phase, Refusal, Wish};
-use encoder_studio::protocol::hiperdrive::{Direction, RunEnd, StatusBit};
-use encoder_studio::sim::hiperdrive::{Defect, Load};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Permit, Phase, Refusal, Wish};
+use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
+use encoder_studio::devices::hiperdrive::sim::{Defect, Load};
 
 use super::bench::Bench;
 use super::{FULL, TURN, to};

@@ -1,8 +1,8 @@
 //! Writes to a HIPERDRIVE adapter or hub.
 
-use encoder_studio::device::hiperdrive::Error;
-use encoder_studio::profile::hiperdrive::{RestoreOptions, Service};
-use encoder_studio::worker::hiperdrive::{Change, HiperdriveJob, HiperdriveOutput, JobError};
+use encoder_studio::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, JobError};
+use encoder_studio::devices::hiperdrive::procedures::Error;
+use encoder_studio::devices::hiperdrive::profile::{RestoreOptions, Service};
 
 use super::{Ready, compare, listen};
 use crate::hiperdrive::support::{Stand, drive, image};

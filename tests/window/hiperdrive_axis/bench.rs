@@ -1,11 +1,11 @@
 //! A desk on which axes are set up: steps, writes that go well and that do not, jogs.
 
-use encoder_studio::app::hiperdrive::axis::{Action as Run, Axis, Button, Entries, Place, Seen, Step};
-use encoder_studio::app::hiperdrive::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, ReviewAction, Tab};
-use encoder_studio::protocol::hiperdrive::{Direction, DriveNumber, ParameterNumber, Value};
-use encoder_studio::sim::hiperdrive::Hindrance;
+use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
+use encoder_studio::devices::hiperdrive::sim::Hindrance;
+use encoder_studio::devices::hiperdrive::state::axis::{Action as Run, Axis, Button, Entries, Place, Seen, Step};
+use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
 
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;

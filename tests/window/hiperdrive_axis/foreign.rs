@@ -1,6 +1,6 @@
 //! Another master sets the reference again, at another place, to the number that it has: no parameter changes by it.
 
-use encoder_studio::protocol::hiperdrive::ParameterNumber;
+use encoder_studio::devices::hiperdrive::protocol::ParameterNumber;
 use encoder_studio::sim::Faults;
 
 use super::*;

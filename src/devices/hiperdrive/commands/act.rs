@@ -1,0 +1,119 @@
+//! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
+
+use super::plan::{commit, operations, prepare, said};
+use super::run::{Runner, drive};
+use crate::app::Text;
+use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::check;
+use crate::cli::consent::require_consent;
+use crate::cli::number::parse_number;
+use crate::cli::output::Output;
+use crate::cli::profiles::show_done;
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Failure, Result};
+use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput};
+use crate::devices::hiperdrive::procedures::DriveIdentity;
+use crate::devices::hiperdrive::profile::Service;
+use crate::devices::hiperdrive::protocol::{DriveNumber, KIND};
+use crate::devices::hiperdrive::state::explain as words;
+
+const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
+
+pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
+    let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
+    let of_drive = matches!(act.action, Action::Acknowledge | Action::SetPosition);
+    let foreign = [(act.exact, "--exact"), (act.kit, "--kit"), (act.timeout.is_some(), "--timeout")];
+    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
+        return Err(no_option(option, KIND));
+    }
+    let mine = [(act.of.drive.is_some() && !of_drive, "--drive"), (act.all && act.action != Action::Factory, "--all")];
+    if let Some((_, option)) = mine.into_iter().find(|(given, _)| *given) {
+        return Err(Failure::Usage(format!("{option} is not for {}", action_name(act.action))));
+    }
+    let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
+    let change = match (act.action, words.as_slice()) {
+        (Action::Check, []) => return check_device(common, output),
+        (Action::Acknowledge, []) => Change::Do(Service::Acknowledge(drive(&act.of))),
+        (Action::Save, []) => Change::Do(Service::Save),
+        (Action::Recall, []) => Change::Do(Service::Recall),
+        (Action::Factory, []) => Change::Do(if act.all { Service::FactoryAll } else { Service::Factory }),
+        (Action::PresenceTest, []) => Change::Do(Service::Reset),
+        (Action::SetPosition, [position]) => set_position(act, position)?,
+        (Action::SetPosition, _) => return Err(takes("one position")),
+        (
+            Action::Check
+            | Action::Acknowledge
+            | Action::Save
+            | Action::Recall
+            | Action::Factory
+            | Action::PresenceTest,
+            _,
+        ) => return Err(takes("no argument")),
+        (other, _) => return Err(no_action(other, KIND, ACTIONS)),
+    };
+    require_consent(&act.consent)?;
+    let mut runner = Runner::open(common)?;
+    let prepared = prepare(&mut runner, output, change)?;
+    let operations = operations(&prepared.plan);
+    let said = said(&prepared.plan);
+    let before: Vec<DriveNumber> = prepared.identity.drives.iter().map(|own| own.number).collect();
+    let spent = commit(&mut runner, output, prepared, &act.consent)?;
+    let found = if act.action == Action::PresenceTest { drives(&mut runner)? } else { Vec::new() };
+    match act.action {
+        Action::Factory if !act.all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
+        Action::Acknowledge if operations.is_empty() => {
+            output.remark(&Text::new("hd_cli.no_fault").with("drive", drive(&act.of).get()).terminal());
+        }
+        _ => {}
+    }
+    let told: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
+    let done = show_done(output, &action_name(act.action), &operations, &spent, &[], &format!("{said}{told}"))?;
+    // What was done may have been in vain.
+    match act.action {
+        Action::PresenceTest => present(&before, &found)?,
+        Action::Acknowledge if !operations.is_empty() => {
+            let again = prepare(&mut runner, output, Change::Do(Service::Acknowledge(drive(&act.of))))?;
+            if !again.plan.is_empty() {
+                return Err(failed(&Text::new("hd_cli.still_faulty").with("drive", drive(&act.of).get())));
+            }
+        }
+        _ => {}
+    }
+    Ok(done)
+}
+
+/// The drives that are plugged in.
+fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
+    match runner.run(HiperdriveJob::Identify)? {
+        HiperdriveOutput::Identity(identity) => Ok(identity.drives),
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// That the presence test has found a drive, and each that was there before it.
+fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
+    if found.is_empty() {
+        return Err(failed(&Text::new("hd_cli.no_drives")));
+    }
+    match before.iter().find(|number| found.iter().all(|own| own.number != **number)) {
+        Some(gone) => Err(failed(&Text::new("hd_cli.drive_gone").with("drive", gone.get()))),
+        None => Ok(()),
+    }
+}
+
+fn set_position(act: &Do, text: &str) -> Result<Change> {
+    let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
+    let position = i32::try_from(number).map_err(|_| {
+        let said = Text::new("hd_cli.position_range").with("value", text);
+        failed(&said.with("low", i32::MIN).with("high", i32::MAX))
+    })?;
+    Ok(Change::SetPosition { drive: drive(&act.of), position, save: true })
+}
+
+fn check_device(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    match runner.run(HiperdriveJob::Check)? {
+        HiperdriveOutput::Check(lines) => check::show(output, &words::check(&lines)),
+        other => Err(unexpected(&other)),
+    }
+}

@@ -1,0 +1,93 @@
+//! `decode hiperdrive`: control and status words, process data, parameter words, and packets with any of these in them.
+
+use serde_json::{Map, json};
+
+use super::image;
+use super::meaning::{self, Known, Reading, parameter_words};
+use crate::bits::{hex, hex_compact};
+use crate::buses::ethernet_ip::commands::{self as ethernet_ip, Device, Said};
+use crate::cli::args::Decode;
+use crate::cli::decode::{Explained, frames, show};
+use crate::cli::output::Output;
+use crate::cli::{Failure, Result};
+use crate::devices::hiperdrive::protocol::{KIND, Layout};
+
+pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
+    let options = &arguments.words;
+    let known = Known { direction: options.direction, order: options.order.map(Into::into).unwrap_or_default() };
+    let explained: Vec<Explained> =
+        captured(&arguments.hex)?.iter().map(|captured| explain(captured, &known)).collect();
+    show(output, &explained)
+}
+
+/// What an argument holds.
+enum Captured {
+    /// 4 digits.
+    Word(u16),
+    Bytes(Vec<u8>),
+}
+
+/// Arguments of 4 digits are words each; others are bytes.
+fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
+    let word = |text: &String| {
+        let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
+        let is_word = digits.len() == 4 && digits.chars().all(|c| c.is_ascii_hexdigit());
+        is_word.then(|| u16::from_str_radix(digits, 16).ok()).flatten().map(Captured::Word)
+    };
+    let words: Vec<Option<Captured>> = arguments.iter().map(word).collect();
+    match words.iter().filter(|word| word.is_some()).count() {
+        0 => Ok(frames(arguments)?.into_iter().map(Captured::Bytes).collect()),
+        all if all == arguments.len() => Ok(words.into_iter().flatten().collect()),
+        _ => Err(Failure::Usage(
+            "words (4 hex digits, as 0439) and bytes cannot stand beside each other: explain them one after the other"
+                .to_owned(),
+        )),
+    }
+}
+
+fn explain(captured: &Captured, known: &Known) -> Explained {
+    let (shown, compact, said) = match captured {
+        Captured::Word(word) => {
+            let text = format!("{word:04X}");
+            (text.clone(), text, meaning::of_word(*word, known).map(|readings| lines(&readings)))
+        }
+        Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), of_bytes(bytes, known)),
+    };
+    let (meaning, mut more) = match said {
+        Ok(Said { lines, more, .. }) => (Ok(lines), more),
+        Err(why) => (Err(why), Map::new()),
+    };
+    more.insert("device".to_owned(), json!(KIND));
+    Explained { shown, compact, meaning, more }
+}
+
+/// Readings as lines, and for a script.
+fn lines(readings: &[Reading]) -> Said {
+    let list = readings.iter().map(Reading::json).collect();
+    let more = Map::from_iter([("readings".to_owned(), list)]);
+    Said { lines: readings.iter().flat_map(Reading::lines).collect(), more, data: None }
+}
+
+/// A packet, or process data by their length. What is said to have gone one way, and may be process data, is that.
+fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<Said, String> {
+    let fits = Layout::of_length(bytes.len()).next().is_some();
+    let packet =
+        ethernet_ip::explain(bytes, Device::Known(parameter_words)).filter(|_| !fits || known.direction.is_none());
+    if let Some(said) = packet {
+        let mut said = said?;
+        if let Some((data, to_target)) = said.data.take() {
+            let readings = image::cyclic(&data, to_target, known);
+            said.lines.extend(readings.iter().flat_map(Reading::lines));
+            said.more.insert("readings".to_owned(), readings.iter().map(Reading::json).collect());
+        }
+        return Ok(said);
+    }
+    if !fits {
+        return Err(format!(
+            "no process data (8, 16, 32, 40, 64 or 72 bytes, not {}) and no EtherNet/IP packet; a single word is written as \
+             0439",
+            bytes.len()
+        ));
+    }
+    image::of_bytes(bytes, known).map(|readings| lines(&readings))
+}

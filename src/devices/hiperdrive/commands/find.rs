@@ -1,0 +1,92 @@
+//! `find`: every adapter and hub in the network, asked all at once or at one address. Nothing is opened for it.
+
+use std::net::{SocketAddr, SocketAddrV4, ToSocketAddrs};
+use std::sync::Arc;
+
+use serde_json::{Value as Json, json};
+
+use crate::app::explain;
+use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
+use crate::cli::args::{Common, Find, no_option};
+use crate::cli::output::Output;
+use crate::cli::runner::failed;
+use crate::cli::{Done, Failure, Result};
+use crate::devices::hiperdrive::procedures::{Found, discover};
+use crate::devices::hiperdrive::protocol::KIND;
+use crate::devices::hiperdrive::state::explain as words;
+use crate::link::{Cancel, Clock, LinkUrl, RealClock, Scheme, UdpShout, Wire};
+
+pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
+    let foreign = [(find.one_encoder, "--one-encoder"), (find.power_cycle.is_some(), "--power-cycle")];
+    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
+        return Err(no_option(option, KIND));
+    }
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let shout = match &common.link {
+        None => UdpShout::to_all(EXPLICIT_PORT, clock.clone()),
+        Some(url) => UdpShout::to(addresses(url)?, clock.clone()),
+    };
+    let mut shout = shout.map_err(|error| failed(&explain::link(&error)))?;
+    let found = discover(&mut shout, &*clock, &Cancel::default()).map_err(|error| failed(&words::device(&error)))?;
+    let (drives, others): (Vec<Found>, Vec<Found>) = found.into_iter().partition(Found::is_hiperdrive);
+    let list: Vec<Json> = drives.iter().map(json_of).collect();
+    let text: String = drives.iter().map(text_of).collect();
+    output.show(&json!({"devices": list, "others": others.len()}), &text)?;
+    if !drives.is_empty() {
+        return Ok(Done::Well);
+    }
+    let heard = match others.len() {
+        0 => "Nobody answered.".to_owned(),
+        others => format!("No HIPERDRIVE answered; other EtherNet/IP devices: {others}."),
+    };
+    let hint = match &common.link {
+        None => {
+            "only devices in this computer's own network are asked; one elsewhere is asked with --link enip:ADDRESS."
+        }
+        Some(_) => "that address alone was asked; without --link all in this computer's own network are.",
+    };
+    Err(Failure::Failed(vec![format!("{heard} Check supply, cable and address: {hint}")]))
+}
+
+/// Where a link leads: one device, or all in a network (enip:192.168.1.255).
+fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
+    let (Scheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
+        return Err(Failure::Usage("find hiperdrive takes --link enip:ADDRESS, or no link to ask all".to_owned()));
+    };
+    let found = host.to_socket_addrs().map_err(|error| {
+        Failure::Failed(vec![format!("{host} has no address: {error}. Give its IP address, as in enip:192.168.1.10.")])
+    })?;
+    let of_version_4 = |address| match address {
+        SocketAddr::V4(address) => Some(address),
+        SocketAddr::V6(_) => None,
+    };
+    let found: Vec<SocketAddrV4> = found.filter_map(of_version_4).take(1).collect();
+    if found.is_empty() {
+        return Err(Failure::Failed(vec![format!("{host} has no IPv4 address, which these devices need.")]));
+    }
+    Ok(found)
+}
+
+fn link_of(found: &Found) -> String {
+    match found.port {
+        EXPLICIT_PORT => format!("enip:{}", found.address),
+        port => format!("enip:{}:{port}", found.address),
+    }
+}
+
+fn json_of(found: &Found) -> Json {
+    let identity = &found.identity.identity;
+    json!({
+        "link": link_of(found),
+        "address": found.address.to_string(),
+        "port": found.port,
+        "product_name": identity.product_name,
+        "serial_number": identity.serial_number.to_string(),
+        "revision": format!("{}.{}", identity.revision.major, identity.revision.minor),
+    })
+}
+
+fn text_of(found: &Found) -> String {
+    let identity = &found.identity.identity;
+    format!("{}  {}, serial number {}\n", link_of(found), identity.product_name, identity.serial_number)
+}

@@ -1,0 +1,235 @@
+//! Process data and parameter words in words.
+
+use serde_json::{Value as Json, json};
+
+use super::meaning::{self, Known, Reading, control_words, parameter_name, status_words};
+use crate::cli::args::Direction;
+use crate::devices::hiperdrive::protocol::{
+    Actual, Answer, ControlWord, InImage, Kind, Layout, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Task,
+    Value, turns,
+};
+
+/// Process data that are of a length that there is: what they may be, or the one that they are.
+///
+/// # Errors
+/// Why they cannot have gone the way that is known.
+pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<Reading>, String> {
+    let mut readings = Vec::new();
+    let words = parameter_word(bytes, known);
+    for layout in layouts(bytes.len(), known) {
+        // What cannot be a status word is one only where nothing else fits.
+        let from = || from_drives(bytes, layout).filter(|_| words.is_empty() || is_of_drives(bytes, layout));
+        match (to_drives(bytes, layout), known.direction) {
+            (Err(why), Some(Direction::Out)) if words.is_empty() => return Err(why),
+            (Err(_), Some(Direction::Out)) => {}
+            (Ok(reading), Some(Direction::Out)) => readings.push(reading),
+            (Ok(reading), None) => {
+                readings.push(reading);
+                readings.extend(from().filter(|_| !is_anything(bytes, layout)));
+            }
+            (_, Some(Direction::In)) | (Err(_), None) => readings.extend(from()),
+        }
+    }
+    readings.extend(words);
+    Ok(readings)
+}
+
+fn layouts(length: usize, known: &Known) -> impl Iterator<Item = Layout> {
+    Layout::of_length(length).map(|layout| Layout { order: known.order, ..layout })
+}
+
+/// A control word is not 0: as a status word it would be none of a drive.
+fn is_anything(bytes: &[u8], layout: Layout) -> bool {
+    OutImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
+}
+
+/// Status words are such as drives send.
+fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
+    InImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
+}
+
+/// Process data of a cyclic packet, which tells the way itself where nothing else is said. Nothing of a length that there is not.
+pub(super) fn cyclic(data: &[u8], to_target: bool, known: &Known) -> Vec<Reading> {
+    let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
+    let reading = |layout: Layout| {
+        if !to_target {
+            return from_drives(data, layout);
+        }
+        let refused = |why: String| Reading { direction: "OUT", lines: vec![why], json: json!({"legal": false}) };
+        Some(to_drives(data, layout).unwrap_or_else(refused))
+    };
+    layouts(data.len(), known).filter_map(reading).collect()
+}
+
+fn to_drives(bytes: &[u8], layout: Layout) -> Result<Reading, String> {
+    let image = OutImage::parse(bytes, layout).map_err(|why| why.to_string())?;
+    let mut lines = Vec::new();
+    let mut list = Vec::new();
+    for (number, drive) in (1..).zip(&image.drives) {
+        let control = drive.control().map_err(|why| format!("drive {number}: {why}"))?;
+        lines.push(format!("drive {number}: {}", out_words(drive, control)));
+        list.push(json!({
+            "drive": number,
+            "control": format!("{:04X}", drive.control),
+            "speed_percent": drive.speed,
+            "torque_percent": drive.torque,
+            "target": drive.target,
+        }));
+    }
+    lines.extend(image.pkw.map(request_words));
+    Ok(Reading { direction: "OUT", lines, json: json!({"drives": list}) })
+}
+
+fn from_drives(bytes: &[u8], layout: Layout) -> Option<Reading> {
+    let image = InImage::parse(bytes, layout).ok()?;
+    let mut lines = Vec::new();
+    let mut list = Vec::new();
+    for (number, drive) in (1..).zip(&image.drives) {
+        lines.push(format!("drive {number}: {}", in_words(drive)));
+        list.push(json!({
+            "drive": number,
+            "status": format!("{:04X}", drive.status.word()),
+            "state": drive.status.state().name(),
+            "speed_rpm": f64::from(drive.speed) / 10.0,
+            "position": drive.position,
+        }));
+    }
+    lines.extend(image.pkw.map(answer_words));
+    Some(Reading { direction: "IN", lines, json: json!({"drives": list}) })
+}
+
+fn out_words(drive: &OutData, control: ControlWord) -> String {
+    let OutData { control: word, speed, torque, target } = drive;
+    let none = if *speed == 0 || *torque == 0 { "; with 0 % nothing begins" } else { "" };
+    format!(
+        "control word {word:04X} ({}), speed {speed} %, torque {torque} %, target {target}{}{none}",
+        control_words(control),
+        in_turns(*target)
+    )
+}
+
+fn in_words(drive: &Actual) -> String {
+    let Actual { status, speed, position } = drive;
+    let rpm = f64::from(*speed) / 10.0;
+    format!(
+        "status word {:04X} ({}), speed {rpm} rpm, position {position}{}",
+        status.word(),
+        status_words(*status),
+        in_turns(*position)
+    )
+}
+
+/// As turns, if nothing is scaled.
+fn in_turns(position: i32) -> String {
+    let (turn, steps) = turns(position);
+    format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
+}
+
+/// Eight bytes as a parameter word, where the manual has the parameter. Texts alone have elements.
+fn parameter_word(bytes: &[u8], known: &Known) -> Vec<Reading> {
+    let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
+    let pkw = Pkw::parse(bytes, known.order);
+    let Some(row) = row(pkw) else { return Vec::new() };
+    let is_request = pkw.task().is_some_and(|task| match task {
+        Task::None => false,
+        Task::Read | Task::WriteWord | Task::WriteDouble => row.kind != Kind::Text,
+        Task::ReadElement | Task::WriteElementWord | Task::WriteElementDouble | Task::Count => row.kind == Kind::Text,
+    });
+    let is_answer = !matches!(pkw.answer(), Answer::None | Answer::Unknown);
+    let readings = [
+        (is_request, "OUT", Direction::Out, request_words as fn(Pkw) -> String),
+        (is_answer, "IN", Direction::In, answer_words),
+    ];
+    readings
+        .into_iter()
+        .filter(|(is, _, direction, _)| *is && known.direction.is_none_or(|known| known == *direction))
+        .map(|(_, direction, _, words)| {
+            let fits = direction == "OUT" || answer_fits(pkw, row);
+            let json = json!({"parameter": pkw.number(), "element": pkw.ind, "value": fits.then_some(pkw.pwe)});
+            Reading { direction, lines: vec![words(pkw)], json }
+        })
+        .collect()
+}
+
+fn request_words(pkw: Pkw) -> String {
+    let name = parameter_name(pkw.number());
+    let said = match pkw.task() {
+        None => return format!("parameter word: a request {}, which there is not, about {name}", pkw.pke >> 12),
+        Some(Task::None) => return "parameter word: nothing is asked".to_owned(),
+        Some(task @ (Task::Read | Task::Count)) => format!("{} of {name}", task.name()),
+        Some(Task::ReadElement) => format!("read element {} of {name}", pkw.ind),
+        Some(Task::WriteWord) => written_words(pkw, pkw.pwe & 0xFFFF, true),
+        Some(Task::WriteDouble) => written_words(pkw, pkw.pwe, false),
+        Some(task @ (Task::WriteElementWord | Task::WriteElementDouble)) => {
+            format!("{} {} of {name}: {}", task.name(), pkw.ind, pkw.pwe)
+        }
+    };
+    format!("parameter word: {said}")
+}
+
+fn answer_words(pkw: Pkw) -> String {
+    let name = parameter_name(pkw.number());
+    let said = match pkw.answer() {
+        Answer::None => return "parameter word: nothing is answered".to_owned(),
+        Answer::Unknown => format!("an answer {}, which there is not, about {name}", pkw.pke >> 12),
+        Answer::Word(word) => format!("{name} is {}", value_words(pkw, word.into(), true)),
+        Answer::Double(double) => format!("{name} is {}", value_words(pkw, double, false)),
+        Answer::Elements(count) => format!("{name} has {count} elements"),
+        Answer::Refused(error) => format!("{name} refused: {error}"),
+    };
+    format!("parameter word: {said}")
+}
+
+/// An answer has the width of its parameter's type.
+fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
+    match pkw.answer() {
+        Answer::Word(_) => is_of_width(row, true),
+        Answer::Double(_) => is_of_width(row, false),
+        _ => true,
+    }
+}
+
+/// A number that comes as a word, or as a double word, is one of this parameter. Of a text four characters are a double word.
+fn is_of_width(row: &ParameterRow, word: bool) -> bool {
+    row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
+}
+
+fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
+    let own = row(pkw).filter(|row| is_of_width(row, word));
+    let warning = own.map_or(String::new(), |row| meaning::warning(row, number(row, raw)));
+    format!("write {} to {}{warning}", value_words(pkw, raw, word), parameter_name(pkw.number()))
+}
+
+/// A number in the parameter's unit; four characters of a text.
+fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
+    match row(pkw) {
+        None => raw.to_string(),
+        Some(row) if !is_of_width(row, word) => {
+            let (got, expected) = if word { (2, 4) } else { (4, row.kind.length().unwrap_or(2).max(2)) };
+            format!("no value ({got} bytes where its type has {expected}: 0x{raw:X})")
+        }
+        Some(row) if row.kind == Kind::Text => match Kind::Text.parse(&raw.to_le_bytes()) {
+            Ok(Value::Text(text)) => format!("\"{text}\""),
+            _ => raw.to_string(),
+        },
+        Some(row) => meaning::number_words(row, number(row, raw)),
+    }
+}
+
+fn row(pkw: Pkw) -> Option<&'static ParameterRow> {
+    ParameterNumber::new(pkw.number()).and_then(ParameterNumber::row)
+}
+
+/// With its sign, where its kind has one.
+fn number(row: &ParameterRow, raw: u32) -> i64 {
+    match row.kind {
+        Kind::I8 | Kind::I16 => i64::from((raw as u16).cast_signed()),
+        Kind::I32 => i64::from(raw.cast_signed()),
+        _ => i64::from(raw),
+    }
+}
+
+/// For a script.
+pub(super) fn direction_json(direction: &str) -> Json {
+    json!(direction.to_lowercase())
+}

@@ -1,0 +1,279 @@
+//! Commands that only look: `identify`, `status`, `read`.
+
+use serde_json::{Value as Json, json};
+
+use super::item;
+use super::run::{Runner, value};
+use crate::cli::args::{Common, Read};
+use crate::cli::output::{Lines, Output};
+use crate::cli::runner::unexpected;
+use crate::cli::{Done, Result};
+use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
+use crate::devices::hiperdrive::procedures::{DriveIdentity, DriveStatus, Identity, Status};
+use crate::devices::hiperdrive::profile::Item;
+use crate::devices::hiperdrive::protocol::{
+    DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant, nominal,
+};
+use crate::devices::hiperdrive::state::explain as words;
+
+pub(super) fn identify(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let identity = match runner.run(HiperdriveJob::Identify)? {
+        HiperdriveOutput::Identity(identity) => identity,
+        other => return Err(unexpected(&other)),
+    };
+    let json = json!({
+        "device": KIND,
+        "category": identity.category,
+        "name": identity.name,
+        "article_number": identity.article_number,
+        "serial_number": identity.serial_number,
+        "production_date": identity.production_date,
+        "version": identity.version,
+        "drives": identity.drives.iter().map(drive_json).collect::<Vec<Json>>(),
+    });
+    output.show(&json, &identity_text(&identity))?;
+    Ok(Done::Well)
+}
+
+fn drive_json(drive: &DriveIdentity) -> Json {
+    json!({
+        "number": drive.number.get(),
+        "variant": drive.variant.number(),
+        "name": drive.name,
+        "article_number": drive.article_number,
+        "serial_number": drive.serial_number,
+        "version": drive.version,
+        "requested": drive.requested,
+    })
+}
+
+fn identity_text(identity: &Identity) -> String {
+    let mut lines = Lines::default();
+    lines
+        .add("device", format!("{} ({})", identity.name, identity.category))
+        .add("article number", &identity.article_number)
+        .add("serial number", &identity.serial_number)
+        .add("production date", &identity.production_date)
+        .add("version", &identity.version);
+    for drive in &identity.drives {
+        let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
+        let DriveIdentity { name, serial_number, version, .. } = drive;
+        lines.add(
+            format!("drive {}", drive.number.get()),
+            format!("{name}, serial number {serial_number}, version {version}{requested}"),
+        );
+    }
+    if identity.drives.is_empty() {
+        lines.add("drives", "none");
+    }
+    lines.text()
+}
+
+pub(super) fn status(common: &Common, output: &Output) -> Result {
+    let mut runner = Runner::open(common)?;
+    let status = match runner.run(HiperdriveJob::Status)? {
+        HiperdriveOutput::Status(status) => *status,
+        other => return Err(unexpected(&other)),
+    };
+    let said: Vec<Said> = status.drives.iter().flat_map(said).collect();
+    let list = |weight: Weight| said.iter().filter(|own| own.weight == weight).map(Said::json).collect::<Vec<Json>>();
+    let (errors, warnings, earlier) = (list(Weight::Error), list(Weight::Warning), list(Weight::Earlier));
+    let drives: Vec<Json> = status
+        .drives
+        .iter()
+        .map(|drive| {
+            json!({
+                "number": drive.number.get(),
+                "state": state_word(drive.status.state()),
+                "status_word": drive.status.word(),
+                "requested": drive.requested,
+                "faults": drive.faults,
+                "words": drive.words,
+                "temperature_c": drive.temperature,
+            })
+        })
+        .collect();
+    let json = json!({
+        "ok": errors.is_empty(),
+        "errors": errors,
+        "warnings": warnings,
+        "earlier": earlier,
+        "drives": drives,
+        "supply_v": volts(&status),
+        "temperature_c": status.temperature,
+    });
+    output.show(&json, &status_text(&status, &said))?;
+    Ok(Done::Well)
+}
+
+/// What something that is said comes to.
+#[derive(Clone, Copy, PartialEq)]
+enum Weight {
+    Error,
+    Warning,
+    /// It was once, and is in the buffer alone.
+    Earlier,
+}
+
+/// Something that a drive says of itself.
+struct Said {
+    drive: u8,
+    code: u16,
+    text: String,
+    weight: Weight,
+}
+
+impl Said {
+    fn json(&self) -> Json {
+        json!({"code": self.code, "text": self.text, "drive": self.drive})
+    }
+}
+
+/// What a drive reports. As many of its newest errors as it counts since the acknowledgement are errors, and at least one in a
+/// fault; the rest are of before, as the buffer has them also after power-up (reference 4), and say nothing of now. A drive that
+/// stands outside its limits is a warning, and so is one whose communication says something.
+fn said(drive: &DriveStatus) -> Vec<Said> {
+    let number = drive.number.get();
+    let is_fault = drive.status.has(StatusBit::Fault);
+    let since = usize::from(drive.faults).max(usize::from(is_fault));
+    let error = |(at, code): (usize, &ErrorCode)| {
+        let weight = if at < since { Weight::Error } else { Weight::Earlier };
+        Said { drive: number, code: code.code(), text: error_text(*code), weight }
+    };
+    let mut said: Vec<Said> = drive.buffer.iter().enumerate().map(error).collect();
+    if is_fault && drive.buffer.is_empty() {
+        let text = "the drive is in a fault and names no error".to_owned();
+        said.push(Said { drive: number, code: 0, text, weight: Weight::Error });
+    }
+    if drive.status.has(StatusBit::PositionLimit) {
+        let text = "the drive stands outside its limits (158, 160)".to_owned();
+        said.push(Said { drive: number, code: drive.status.word(), text, weight: Weight::Warning });
+    }
+    // 118: 0 is well, FFFFh no drive.
+    let [_, _, communication] = drive.words;
+    if !matches!(communication, 0 | 0xFFFF) {
+        let text = format!("RS-485 to the drive has errors (parameter 118: 0x{communication:04X})");
+        said.push(Said { drive: number, code: communication, text, weight: Weight::Warning });
+    }
+    said
+}
+
+pub(super) fn error_text(code: ErrorCode) -> String {
+    let words = words::error(code);
+    format!("{}: {} {}", words.name.terminal(), words.cause.terminal(), words.remedy.terminal())
+}
+
+/// A state for scripts.
+pub(super) fn state_word(state: State) -> &'static str {
+    match state {
+        State::NotReady => "not-ready",
+        State::Ready => "ready",
+        State::Operational => "operational",
+        State::Enabled => "enabled",
+        State::Moving => "moving",
+        State::Fault => "fault",
+        State::Locked => "locked",
+    }
+}
+
+fn volts(status: &Status) -> f64 {
+    // A few hundred tenths.
+    status.supply_tenths as f64 / 10.0
+}
+
+fn status_text(status: &Status, said: &[Said]) -> String {
+    let mut lines = Lines::default();
+    let of = |weight: Weight| said.iter().filter(move |own| own.weight == weight);
+    let words = |own: &Said| format!("drive {}: 0x{:04X} {}", own.drive, own.code, own.text);
+    for (label, weight) in [("error", Weight::Error), ("warning", Weight::Warning)] {
+        for own in of(weight) {
+            lines.add(label, words(own));
+        }
+        if of(weight).next().is_none() {
+            lines.add(format!("{label}s"), "none");
+        }
+    }
+    for own in of(Weight::Earlier) {
+        lines.add("note", format!("{} (in the error buffer from before, not present now)", words(own)));
+    }
+    lines.add("supply", format!("{:.1} V", volts(status))).add("temperature", format!("{} °C", status.temperature));
+    for drive in &status.drives {
+        let requested = if drive.requested { "" } else { ", not requested (152 = 0)" };
+        let (word, celsius) = (drive.status.word(), drive.temperature);
+        let state = words::state(drive.status.state()).terminal();
+        lines.add(format!("drive {}", drive.number.get()), format!("{state} (0x{word:04X}), {celsius} °C{requested}"));
+    }
+    lines.text()
+}
+
+/// A number of a parameter for a person: words in hexadecimal and with their meaning, tenths of something as such and whole.
+fn number_text(item: Item, number: i64) -> String {
+    let (base, unit) = (item.0.base(), item.0.row().map_or("", |row| row.unit));
+    let word = u16::try_from(number).ok();
+    match (base, word, unit.strip_prefix("0.1 ")) {
+        (105, Some(word), _) => {
+            let state = words::state(StatusWord::new(word).state());
+            format!("0x{word:04X} ({})", state.terminal())
+        }
+        (108..=115, Some(0), _) => "0x0000 (no error)".to_owned(),
+        (108..=115, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
+        (101 | 116..=118, Some(word), _) => format!("0x{word:04X}"),
+        (120, Some(word), _) => {
+            format!("{number} ({})", words::variant(Variant::new(word)).terminal())
+        }
+        (186, Some(255), _) => "255 (no time-out)".to_owned(),
+        // Of 32 bits.
+        (.., Some(whole)) => format!("{number} × {unit} = {:.1} {whole}", number as f64 / 10.0),
+        (.., None) if unit.is_empty() => number.to_string(),
+        (.., None) => format!("{number} {unit}"),
+    }
+}
+
+/// The speed as it is scaled, by the number of drive 1.
+const SPEED: u16 = 106;
+
+/// The speed scale of a drive (162, 164); `None` where it has a 0 in it.
+fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
+    let mut part = |base| match ParameterNumber::of_drive(base, drive).map(|number| value(runner, number)) {
+        Some(Ok(Value::Number(number))) => Ok(u16::try_from(number).unwrap_or(0)),
+        Some(Err(why)) => Err(why),
+        Some(Ok(Value::Text(_))) | None => Ok(0),
+    };
+    Ok(SpeedScale::new(part(162)?, part(164)?).ok())
+}
+
+/// A text of a parameter for a person: with the number that it tells, where it tells one.
+fn nominal_text(text: &str, unit: &str) -> String {
+    match nominal(text).filter(|_| !unit.is_empty()) {
+        Some(number) => format!("{text} = {number} {unit}"),
+        None => text.to_owned(),
+    }
+}
+
+pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
+    let item = item(&read.item, &read.of)?;
+    let mut runner = Runner::open(common)?;
+    let value = value(&mut runner, item.0)?;
+    let unit = item.0.row().map_or("", |row| row.unit);
+    // Tenths of rpm is what a speed is with the scale of the factory (manual 6.2).
+    let scale = item.0.drive().filter(|_| item.0.base() == SPEED).map(|drive| speed_scale(&mut runner, drive));
+    let scale = scale.transpose()?.flatten().filter(|scale| *scale != SpeedScale::FACTORY);
+    let unit = if scale.is_some() { "" } else { unit };
+    let (own, text) = match value {
+        Value::Number(number) => {
+            let rpm = scale.zip(i16::try_from(number).ok()).map(|(scale, speed)| scale.rpm(speed));
+            let text = rpm.map_or_else(|| number_text(item, number), |rpm| format!("{number} = {rpm:.1} rpm"));
+            (json!(number), text)
+        }
+        Value::Text(text) => (json!(text), nominal_text(&text, unit)),
+    };
+    let is_number = own.is_number();
+    let mut json = json!({"item": item.to_string(), "value": own, "name": item.name()});
+    // Of a text the unit says nothing: it may be tenths.
+    if let (true, false, Some(keys)) = (is_number, unit.is_empty(), json.as_object_mut()) {
+        keys.insert("unit".to_owned(), json!(unit));
+    }
+    output.show(&json, &format!("{text}\n"))?;
+    Ok(Done::Well)
+}

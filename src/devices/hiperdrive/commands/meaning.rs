@@ -1,0 +1,194 @@
+//! What control words, status words and parameters say, in words.
+
+use serde_json::{Value as Json, json};
+
+use super::image::direction_json;
+use crate::bits::hex;
+use crate::cli::args::Direction;
+use crate::devices::hiperdrive::protocol::{
+    Access, ByteOrder, ControlBit, ControlWord, ErrorCode, ParameterNumber, ParameterRow, StatusBit, StatusWord,
+    Travel, Value, Variant,
+};
+
+/// What is known of bytes beside themselves.
+pub(super) struct Known {
+    pub(super) direction: Option<Direction>,
+    pub(super) order: ByteOrder,
+}
+
+/// One of the things that bytes may say.
+pub(super) struct Reading {
+    pub(super) direction: &'static str,
+    pub(super) lines: Vec<String>,
+    /// An object.
+    pub(super) json: Json,
+}
+
+impl Reading {
+    pub(super) fn lines(&self) -> impl Iterator<Item = String> {
+        self.lines.iter().map(|line| format!("{}: {line}", self.direction))
+    }
+
+    pub(super) fn json(&self) -> Json {
+        let mut json = self.json.clone();
+        if let Some(object) = json.as_object_mut() {
+            object.insert("direction".to_owned(), direction_json(self.direction));
+            object.insert("meaning".to_owned(), json!(self.lines));
+        }
+        json
+    }
+}
+
+/// A word: what it may be, or the one that it is. Bit 11 mostly tells: a control word never has it, a drive that was found
+/// always.
+///
+/// # Errors
+/// That a control word must not be sent, where it is said to be one.
+pub(super) fn of_word(word: u16, known: &Known) -> Result<Vec<Reading>, String> {
+    let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
+    match (known.direction, control) {
+        (Some(Direction::Out), Err(why)) => Err(why.to_string()),
+        (Some(Direction::Out), Ok(control)) => Ok(vec![of_control(control)]),
+        (Some(Direction::In), _) => Ok(vec![of_status(status)]),
+        (None, Ok(control)) if word == 0 => Ok(vec![of_control(control), of_status(status)]),
+        (None, Ok(control)) => Ok(vec![of_control(control)]),
+        (None, Err(_)) if status.is_plausible() => Ok(vec![of_status(status)]),
+        (None, Err(why)) => {
+            let refused = Reading {
+                direction: "OUT",
+                lines: vec![format!("not to be sent, {why}")],
+                json: json!({"bits": [], "legal": false}),
+            };
+            Ok(vec![refused, of_status(status)])
+        }
+    }
+}
+
+fn of_control(control: ControlWord) -> Reading {
+    let names: Vec<&str> = control.set().map(|(_, name)| name).collect();
+    let lines = vec![format!("control word, {}", control_words(control))];
+    Reading { direction: "OUT", lines, json: json!({"bits": names, "legal": true}) }
+}
+
+fn of_status(status: StatusWord) -> Reading {
+    let names: Vec<&str> = status.set().map(StatusBit::name).collect();
+    let lines = vec![format!("status word, {}", status_words(status))];
+    Reading { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
+}
+
+/// What it does, then its bits.
+pub(super) fn control_words(control: ControlWord) -> String {
+    let bits: Vec<String> = control.set().map(|(bit, name)| format!("{bit} {name}")).collect();
+    let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
+    let then = if control.has(ControlBit::Acknowledge) { ", acknowledges a fault when bit 7 falls" } else { "" };
+    format!("{}{then}: {bits}", purpose(control))
+}
+
+fn purpose(control: ControlWord) -> &'static str {
+    use ControlBit::{Control, Enable, JogOne, JogTwo, NoPause, NoStop, On, SpeedMode, Start};
+    let speed = (control.has(NoStop), control.has(NoPause));
+    match control {
+        _ if !control.has(Control) => "leaves the drive alone",
+        _ if !control.has(On) => "keeps it ready",
+        _ if !control.has(Enable) => "keeps it operational",
+        _ if control.has(SpeedMode) && !control.has(Start) => "speed mode, stands",
+        _ if control.has(SpeedMode) => match speed {
+            (true, false) => "speed mode, runs clockwise to the end of the range",
+            (false, false) => "speed mode, runs counterclockwise to the end of the range",
+            (true, true) => "speed mode, runs clockwise without end",
+            (false, true) => "speed mode, runs counterclockwise without end",
+        },
+        _ if control.has(JogOne) || control.has(JogTwo) => "a jog step, which no stop ends",
+        _ if speed == (false, false) => "keeps it enabled",
+        _ if !control.has(NoStop) => "stops, the job is gone",
+        _ if !control.has(NoPause) => "pauses the job",
+        _ if control.has(Start) => "holds, and starts a job if status bit 12 is 0",
+        _ => "holds, and starts a job if status bit 12 is 1",
+    }
+}
+
+/// The state, then its bits.
+pub(super) fn status_words(status: StatusWord) -> String {
+    let bits: Vec<String> = status.set().map(|bit| format!("{} {}", bit.number(), bit.name())).collect();
+    let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
+    let present = match (status.is_plausible(), status.is_present()) {
+        (false, _) => ", but no drive sends that",
+        (true, false) => ", no drive found",
+        (true, true) => "",
+    };
+    format!("{}{present}: {bits}", status.state().name())
+}
+
+/// The parameter of an attribute with the value that is written; why there is none where the data are not of its kind.
+pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Result<String, String>)> {
+    let number = ParameterNumber::of_attribute(class, attribute)?;
+    let row = number.row();
+    let value = match row.map(|row| (row, row.kind.parse(data))) {
+        Some((row, Ok(Value::Number(value)))) => Ok(format!("{}{}", number_words(row, value), warning(row, value))),
+        Some((_, Ok(Value::Text(text)))) => Ok(format!("\"{text}\"")),
+        Some((_, Err(why))) => Err(why.to_string()),
+        None => Ok(hex(data)),
+    };
+    Some((parameter_name(number.get()), value))
+}
+
+/// Its number, what it is, and of which drive.
+pub(super) fn parameter_name(own: u16) -> String {
+    let Some(number) = ParameterNumber::new(own) else {
+        return format!("parameter {own}, which there is not");
+    };
+    let name = number.row().map_or("not in the manual", |row| row.name);
+    let drive = number.drive().map_or(String::new(), |drive| format!(" of drive {}", drive.get()));
+    format!("parameter {own} ({name}{drive})")
+}
+
+/// A number as its parameter means it.
+pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
+    let word = u16::try_from(number).ok();
+    match (row.number, word) {
+        (101, Some(word)) => ControlWord::parse(word).map_or_else(
+            |why| format!("{word:04X} ({why})"),
+            |control| format!("{word:04X} ({})", control_words(control)),
+        ),
+        (105, Some(word)) => format!("{word:04X} ({})", status_words(StatusWord::new(word))),
+        (108..=115, Some(0)) => "no error".to_owned(),
+        (108..=115, Some(word)) => {
+            let code = ErrorCode::new(word);
+            code.row().map_or_else(|| code.to_string(), |row| format!("{code}: {}; {}", row.cause, row.remedy))
+        }
+        (120, Some(word)) => {
+            let name = Variant::new(word).row().map_or("in no table", |row| row.name);
+            format!("{word} ({name})")
+        }
+        (47, _) => format!("{number}{}", save_words(number)),
+        _ => match row.unit {
+            "0.1 rpm" => format!("{number} ({} rpm)", number as f64 / 10.0),
+            "0.1 V" => format!("{number} ({} V)", number as f64 / 10.0),
+            "0.1 s" => format!("{number} ({} s)", number as f64 / 10.0),
+            "" => number.to_string(),
+            unit => format!("{number} {unit}"),
+        },
+    }
+}
+
+/// What speaks against writing a number; empty where nothing does.
+pub(super) fn warning(row: &ParameterRow, number: i64) -> String {
+    let beyond = row.allowed(Travel::UNKNOWN).filter(|range| !range.holds(number));
+    match (row.access, beyond) {
+        (Access::Read, _) => "; warning: it can only be read".to_owned(),
+        (_, Some(range)) => format!("; warning: it may be {range}"),
+        (_, None) => String::new(),
+    }
+}
+
+fn save_words(number: i64) -> &'static str {
+    match number {
+        -4 => " (reset the drives)",
+        -3 => " (everything from the factory, with the IP address, and save)",
+        -2 => " (own parameters of the device as saved last)",
+        -1 => " (own parameters of the device from the factory, without saving)",
+        0 => " (done)",
+        1 => " (save)",
+        _ => " (busy or bad)",
+    }
+}

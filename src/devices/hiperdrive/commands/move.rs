@@ -1,0 +1,208 @@
+//! `move`: a drive goes to a position, and whatever ends that leaves it standing and off. Nothing else on the command line
+//! moves anything.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+
+use super::args::Move;
+use super::inspect::error_text;
+use super::run::{Runner, drive, value};
+use crate::app::Text;
+use crate::cli::args::Common;
+use crate::cli::number::parse_number;
+use crate::cli::output::Output;
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Done, Failure, Result};
+use crate::devices::hiperdrive::jobs::{DriveView, HiperdriveJob, HiperdriveOutput};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, Permit, Phase, Refusal, Wish};
+use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, Rules};
+use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
+use crate::devices::hiperdrive::state::Measure;
+use crate::devices::hiperdrive::state::explain as words;
+use crate::units::Moment;
+
+/// How often it is said that the motion is wanted still.
+const REFRESH: Duration = Duration::from_millis(20);
+/// The ladder, and the way to off.
+const END: Duration = Duration::from_secs(3);
+
+/// How it went.
+enum Came {
+    /// The act ended like this.
+    Ended(Ended),
+    /// Ctrl-C.
+    Interrupted,
+    /// The time is up.
+    Late,
+}
+
+pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Result {
+    let target = parse_number(&wanted.target)
+        .ok_or_else(|| Failure::Usage(format!("{} is not a position: a number of steps", wanted.target)))?;
+    if !wanted.yes {
+        let what = "this moves the drive: look that it may, and give --yes; nothing was touched";
+        return Err(Failure::Usage(what.to_owned()));
+    }
+    let percent = |percent| Percent::new(percent).unwrap_or(Percent::FULL);
+    let effort = Effort { speed: percent(wanted.speed), torque: percent(wanted.torque) };
+    let mut runner = Runner::open(common)?;
+    let drive = drive(&wanted.of);
+    let identity = match runner.run(HiperdriveJob::Identify)? {
+        HiperdriveOutput::Identity(identity) => identity,
+        other => return Err(unexpected(&other)),
+    };
+    let (permit, scale) = permit(&mut runner, &identity, drive)?;
+    // What cannot be is refused before anything was opened.
+    let target = within(&permit, target)?;
+    permit.check(Wish::Move { target, effort }, Some(target)).map_err(refused)?;
+    if let Some((low, high)) = permit.limits {
+        output.remark(&range(drive, target, (low, high), scale));
+    }
+    match runner.run(HiperdriveJob::Take)? {
+        HiperdriveOutput::Taken => {}
+        other => return Err(unexpected(&other)),
+    }
+    let came = carry_out(&runner, drive, Wish::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
+    let stood = lead_off(&runner, drive);
+    // Given back also where it was lost: what there is to be told has been said then.
+    let given = runner.run(HiperdriveJob::Give);
+    let position = stood.map(|view| view.actual.position);
+    let reached = matches!(came, Came::Ended(Ended::Arrived));
+    let mut json = json!({"drive": drive.get(), "target": target, "position": position, "reached": reached});
+    if reached {
+        given?;
+        let text = position.map_or_else(String::new, |position| format!("drive {} is at {position}\n", drive.get()));
+        output.show(&json, &text)?;
+        return Ok(Done::Well);
+    }
+    let error = match came {
+        Came::Ended(Ended::Fault) => newest_error(&mut runner, drive),
+        _ => None,
+    };
+    if let (Some(error), Some(object)) = (error, json.as_object_mut()) {
+        object.insert("error".to_owned(), json!({"code": error.code(), "text": error_text(error)}));
+    }
+    output.show(&json, "")?;
+    let mut lines = why(&came, stood, wanted.timeout);
+    lines.extend(error.map(|error| format!("0x{:04X} {}", error.code(), error_text(error))));
+    Err(Failure::Failed(lines))
+}
+
+/// The error for which the drive stands, as far as it still tells.
+fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
+    let newest = value(runner, ParameterNumber::of_drive(108, drive)?).ok()?;
+    let Value::Number(code) = newest else { return None };
+    u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
+}
+
+/// Where it goes, and between which limits, as the drive is scaled now: whoever changed the scale sees what became of them.
+fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
+    let turns = |steps: i32| match scale {
+        Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
+        None => steps.to_string(),
+    };
+    format!("drive {} goes to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
+}
+
+/// What the drive may do by its parameters as they are now, and its scale.
+fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
+    let variant = identity.named(drive).map_err(|error| failed(&words::device(&error)))?.variant;
+    let mut values = Vec::new();
+    for base in [152, 154, 156, 158, 160, 186] {
+        let Some(number) = ParameterNumber::of_drive(base, drive) else { continue };
+        if let Value::Number(value) = value(runner, number)? {
+            values.push((base, value));
+        }
+    }
+    let rules = Rules::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
+    // They were read just now.
+    let now = Moment::START;
+    let limits = DriveLimits::of(rules, (identity.topology, variant), now);
+    Ok((limits.permit(now, false), limits.scale()))
+}
+
+/// A target beyond what 32 bits hold is beyond the limits too, whichever they are.
+fn within(permit: &Permit, target: i64) -> Result<i32> {
+    let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
+    i32::try_from(target).map_err(|_| {
+        let text = Text::new("hd_refused.outside").with_text("target", place(target));
+        failed(&text.with_text("low", place(low)).with_text("high", place(high)))
+    })
+}
+
+fn place(steps: impl Into<i64>) -> Text {
+    let unit = Text::new(Measure::Steps.unit());
+    Text::new("hd_entry.place").with("value", steps.into()).with_text("unit", unit)
+}
+
+fn refused(refusal: Refusal) -> Failure {
+    failed(&words::refusal(refusal, place))
+}
+
+/// Wants it until it has ended, is interrupted, or the time is up.
+fn carry_out(runner: &Runner, drive: DriveNumber, wish: Wish, patience: Duration) -> Came {
+    let motion = &runner.kept;
+    let until = Instant::now() + patience;
+    let act = motion.intend(drive, wish);
+    loop {
+        // What came in between is not kept fresh: Ctrl-C has stopped the drive itself.
+        if runner.is_interrupted() {
+            motion.stop();
+            return Came::Interrupted;
+        }
+        motion.refresh();
+        if let Some(ended) = over(runner, drive, act) {
+            return if runner.is_interrupted() { Came::Interrupted } else { Came::Ended(ended) };
+        }
+        if Instant::now() >= until {
+            motion.stop();
+            return Came::Late;
+        }
+        sleep(REFRESH);
+    }
+}
+
+/// How an act ended, where it has.
+fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
+    let view = runner.kept.view();
+    let ended = view.drives.iter().find(|own| own.number == drive).and_then(|own| own.ended);
+    match ended {
+        Some((number, ended)) if number >= act => Some(ended),
+        _ if !view.open => Some(Ended::Lost),
+        _ => None,
+    }
+}
+
+/// It stands, then it is off: where.
+fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
+    let motion = &runner.kept;
+    let find = || motion.view().drives.into_iter().find(|own| own.number == drive);
+    let until = Instant::now() + END;
+    while motion.is_open() && Instant::now() < until && find().is_some_and(|own| own.phase != Phase::Idle) {
+        motion.refresh();
+        sleep(REFRESH);
+    }
+    let stood = find();
+    let act = motion.intend(drive, Wish::Lead(Goal::Off));
+    while over(runner, drive, act).is_none() && Instant::now() < until {
+        motion.refresh();
+        sleep(REFRESH);
+    }
+    // Without a report it is not known where it is.
+    stood.filter(|own| own.actual.status.is_present())
+}
+
+fn why(came: &Came, stood: Option<DriveView>, seconds: u16) -> Vec<String> {
+    let first = match came {
+        Came::Ended(ended) => words::ended(*ended, place).terminal(),
+        Came::Interrupted => "Interrupted: the drive was stopped.".to_owned(),
+        Came::Late => format!("It is not there after {seconds} s, and was stopped. Give it more time with --timeout."),
+    };
+    let place = match stood {
+        Some(own) => format!("Drive {} is at {}.", own.number.get(), own.actual.position),
+        None => "Where the drive is was not heard.".to_owned(),
+    };
+    vec![first, place]
+}

@@ -1,0 +1,109 @@
+//! A plan for an adapter or a hub: shown, agreed to, carried out.
+
+use serde_json::{Value as Json, json};
+
+use super::run::Runner;
+use crate::app::Text;
+use crate::cli::Result;
+use crate::cli::args::Consenting;
+use crate::cli::consent::{agree, check_wear};
+use crate::cli::output::{Lines, Output};
+use crate::cli::plan::{self, Shown, Spent};
+use crate::cli::runner::unexpected;
+use crate::devices::hiperdrive::jobs::{
+    Change, Commit, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING,
+};
+use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, warnings};
+use crate::devices::hiperdrive::state::explain as words;
+use crate::profile::{Consent, Operation as _};
+
+/// Makes a plan for a change; nothing is written. What it brings along is told.
+pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
+    let asked = match &change {
+        Change::SetPosition { position, .. } => Some(i64::from(*position)),
+        _ => None,
+    };
+    let prepared = match runner.run(HiperdriveJob::Prepare(change))? {
+        HiperdriveOutput::Prepared(prepared) => *prepared,
+        other => return Err(unexpected(&other)),
+    };
+    if let (Some(asked), Some(Op::Write { new, .. })) = (asked, prepared.plan.ops.first())
+        && asked != *new
+    {
+        output.remark(&Text::new("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal());
+    }
+    for warning in warnings(&prepared.plan) {
+        output.remark(&words::warning(&warning).terminal());
+    }
+    if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
+        output.remark(&Text::new("hd_cli.address_lost").terminal());
+    }
+    Ok(prepared)
+}
+
+/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+    if prepared.plan.is_empty() {
+        return Ok(Spent::default());
+    }
+    // The manual names no limit.
+    check_wear::<Hiperdrive>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), u64::MAX)?;
+    if let Some(saves) = prepared.wear() {
+        output.remark(&format!(
+            "{saves} saves have been counted here with this one: the manual names no limit, and from {WEAR_WARNING} on an \
+             EEPROM may wear out."
+        ));
+    }
+    agree(output, consent, &shown(&prepared).text)?;
+    let granted = Consent::to(prepared.plan.id());
+    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
+    let committed = match runner.run(HiperdriveJob::Commit(Box::new(commit)))? {
+        HiperdriveOutput::Committed(committed) => *committed,
+        other => return Err(unexpected(&other)),
+    };
+    Ok(Spent::of(output, committed))
+}
+
+/// The plan for a person and for a script: each parameter old → new, and what it costs.
+pub(super) fn shown(prepared: &Prepared) -> Shown {
+    let plan = &prepared.plan;
+    let mut lines = Lines::default();
+    for op in &plan.ops {
+        let words = words::op(op);
+        for change in &words.changes {
+            lines.add(words.item.terminal(), format!("{}  →  {}", change.old.terminal(), change.new.terminal()));
+        }
+    }
+    let text = plan::text(plan, lines, prepared.cycles_seen, None);
+    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+}
+
+/// What operations have made of what, a line each.
+pub(super) fn said(plan: &HiperdrivePlan) -> String {
+    let mut text = String::new();
+    for words in plan.ops.iter().map(words::op) {
+        for change in &words.changes {
+            let (item, old, new) = (words.item.terminal(), change.old.terminal(), change.new.terminal());
+            text.push_str(&format!("{item}: {old} → {new}\n"));
+        }
+    }
+    text
+}
+
+/// The operations as JSON.
+pub(super) fn operations(plan: &HiperdrivePlan) -> Vec<Json> {
+    plan.ops
+        .iter()
+        .map(|op| {
+            let (old, new) = match op {
+                Op::Write { old, new, .. } => (json!(old), json!(new)),
+                Op::Service(service) => match service.code() {
+                    Some(code) => (Json::Null, json!(code)),
+                    None => (Json::Null, json!(0)),
+                },
+                Op::Network { .. } => (Json::Null, json!(op.note())),
+            };
+            json!({"item": op.item(), "old": old, "new": new, "write_cycles": op.write_cycles()})
+        })
+        .collect()
+}

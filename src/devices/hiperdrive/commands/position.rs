@@ -1,0 +1,149 @@
+//! `position`: where a drive is, with what its scale makes of it.
+
+use serde_json::json;
+
+use super::inspect::state_word;
+use super::run::{Runner, drive, value};
+use crate::cli::Result;
+use crate::cli::args::{Common, Position};
+use crate::cli::output::Output;
+use crate::cli::positions::readings;
+use crate::cli::runner::{Ended, unexpected};
+use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob, HiperdriveOutput};
+use crate::devices::hiperdrive::procedures::Reading;
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, PositionScale, StatusBit, Value};
+use crate::devices::hiperdrive::state::explain as explained;
+
+/// The scale is read once, since a position is nothing without it; from then on 105 to 107 alone.
+pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
+    let mut runner = Runner::open(common)?;
+    let drive = drive(&position.of);
+    let (numerator, denominator) = (part(&mut runner, 154, drive)?, part(&mut runner, 156, drive)?);
+    let scale = numerator.zip(denominator).and_then(|(one, other)| PositionScale::new(one, other).ok());
+    if position.csv {
+        output.print("t_s,raw,turns,steps,degrees,valid\n")?;
+    }
+    readings(
+        &mut runner,
+        position,
+        || HiperdriveJob::Position(drive),
+        |_, came| {
+            let reading = match came.map_err(|error| Ended::<Hiperdrive>::Job(error).into_failure())? {
+                HiperdriveOutput::Position(reading) => reading,
+                other => return Err(unexpected(&other)),
+            };
+            let place = scale.map(|scale| Place::of(reading.actual.position, scale));
+            if position.csv {
+                output.print(&row(&reading, place))?;
+            } else {
+                show(output, &reading, place)?;
+            }
+            Ok(true)
+        },
+    )
+}
+
+/// A part of the scale.
+fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u16>> {
+    let Some(number) = ParameterNumber::of_drive(number, drive) else { return Ok(None) };
+    Ok(match value(runner, number)? {
+        Value::Number(part) => u16::try_from(part).ok(),
+        Value::Text(_) => None,
+    })
+}
+
+/// Where a position lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    /// Whole turns; −1 step lies in turn −1.
+    turns: i64,
+    /// Within the turn; not always whole, since a turn is not always whole steps.
+    steps: f64,
+    /// Within the turn.
+    degrees: f64,
+}
+
+impl Place {
+    /// A turn is 256 · numerator / denominator steps (reference 5).
+    fn of(position: i32, scale: PositionScale) -> Self {
+        let (numerator, denominator) = (i64::from(scale.numerator()), i64::from(scale.denominator()));
+        // In parts of a step, of which a turn has a whole number.
+        let (turn, parts) = (256 * numerator, i64::from(position) * denominator);
+        let rest = parts.rem_euclid(turn);
+        // At most 256 · 65535.
+        let (exact, turn_parts, step_parts) = (rest as f64, turn as f64, denominator as f64);
+        Place { turns: parts.div_euclid(turn), steps: exact / step_parts, degrees: 360.0 * exact / turn_parts }
+    }
+
+    /// As JSON: whole where they are.
+    fn steps_json(self) -> serde_json::Value {
+        // At most 2^24.
+        if self.steps.fract() == 0.0 { json!(self.steps as i64) } else { json!(self.steps) }
+    }
+}
+
+/// The drive is there and has its reference.
+fn is_valid(reading: &Reading) -> bool {
+    let status = reading.actual.status;
+    status.is_present() && status.has(StatusBit::ReferenceSet)
+}
+
+fn show(output: &Output, reading: &Reading, place: Option<Place>) -> Result<()> {
+    let t = reading.at.since_start().as_secs_f64();
+    let actual = reading.actual;
+    let state = actual.status.state();
+    let json = json!({
+        "t_s": t,
+        "raw": actual.position,
+        "turns": place.map(|place| place.turns),
+        "steps": place.map(Place::steps_json),
+        "degrees": place.map(|place| place.degrees),
+        "valid": is_valid(reading),
+        "drive": reading.drive.get(),
+        "speed": actual.speed,
+        "state": state_word(state),
+    });
+    let words = match place {
+        _ if !is_valid(reading) => "not valid".to_owned(),
+        Some(place) => format!("turn {}, step {}, {:.3}°", place.turns, place.steps, place.degrees),
+        None => "its scale (154, 156) cannot be".to_owned(),
+    };
+    let state = explained::state(state).terminal();
+    output.show(&json, &format!("{t:10.3} s  {:>11}  {words}  ({state})\n", actual.position))
+}
+
+fn row(reading: &Reading, place: Option<Place>) -> String {
+    let column = |number: Option<String>| number.unwrap_or_default();
+    format!(
+        "{:.6},{},{},{},{},{}\n",
+        reading.at.since_start().as_secs_f64(),
+        reading.actual.position,
+        column(place.map(|place| place.turns.to_string())),
+        column(place.map(|place| place.steps.to_string())),
+        column(place.map(|place| place.degrees.to_string())),
+        is_valid(reading),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 65536 steps a turn: −1 is turn −1, 65535; 163840 are 2.5 turns. 400 of 0.01 mm: 1000 are 2.5 turns. 256 · 10 / 3 =
+    /// 853.33: −1 is turn −1, 852.33.
+    #[test]
+    fn a_position_has_turns_and_a_place_in_its_turn() {
+        let place = |position, numerator, denominator| {
+            let Place { turns, steps, degrees } =
+                Place::of(position, PositionScale::new(numerator, denominator).unwrap());
+            (turns, (steps * 1000.0).round() / 1000.0, (degrees * 1000.0).round() / 1000.0)
+        };
+        assert_eq!(place(0, 256, 1), (0, 0.0, 0.0));
+        assert_eq!(place(-1, 256, 1), (-1, 65_535.0, 359.995));
+        assert_eq!(place(163_840, 256, 1), (2, 32_768.0, 180.0));
+        assert_eq!(place(1000, 400, 256), (2, 200.0, 180.0));
+        assert_eq!(place(-1, 10, 3), (-1, 852.333, 359.578));
+        assert_eq!(place(i32::MIN, 65_535, 1), (-129, 16_744_192.0, 359.297));
+        assert_eq!(Place::of(-1, PositionScale::FACTORY).steps_json(), json!(65_535));
+    }
+}

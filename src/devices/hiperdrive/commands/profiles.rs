@@ -1,0 +1,102 @@
+//! What the commands about profiles do with an adapter or a hub: `save`, `restore`, and reading it for a comparison.
+
+use serde_json::json;
+
+use super::plan::{commit, prepare, shown};
+use super::run::Runner;
+use crate::app::explain;
+use crate::cli::args::{Common, Restore, Save};
+use crate::cli::consent::require_consent;
+use crate::cli::output::{Output, count};
+use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
+use crate::cli::runner::{failed, unexpected};
+use crate::cli::{Done, Result};
+use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
+use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
+use crate::devices::hiperdrive::state::explain as words;
+use crate::profile::{Body, Comparison, ProfileError};
+
+pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
+    let profile = saved(common)?;
+    let (parameters, drives) = (profile.image.values.len(), profile.identity.drives.len());
+    keep(&save.file, Body::new(profile))?;
+    let json = json!({"file": save.file, "parameters": parameters, "drives": drives});
+    let counted = format!("{} of the device and {}", count(parameters, "parameter"), count(drives, "drive"));
+    output.show(&json, &format!("{}: {counted}\n", save.file.display()))?;
+    Ok(Done::Well)
+}
+
+/// The device as it is, for a comparison: all of it.
+pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+    Ok(Body::new(saved(common)?))
+}
+
+fn saved(common: &Common) -> Result<HiperdriveProfile> {
+    match Runner::open(common)?.run(HiperdriveJob::Save)? {
+        HiperdriveOutput::Saved(profile) => Ok(*profile),
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// What differs between two profiles.
+pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
+}
+
+/// That two profiles are not of the same device, or of the same drives. One without a serial number is of none.
+pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
+    let error =
+        profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
+            .err()?;
+    Some(match error {
+        profile::PlanError::OtherDevice { profile, device } => {
+            format!("The profile is of serial number {profile}, the device has {device}.")
+        }
+        other => format!("{other}."),
+    })
+}
+
+/// What the device does not have of the profile: a place without a drive once, not each of its parameters.
+fn absent(prepared: &Prepared) -> Vec<String> {
+    let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
+    let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {
+        Some(drive) => format!("no drive is at place {}: its parameters are left alone", drive.get()),
+        None => format!("{name} is left alone: the device does not have it"),
+    });
+    let mut words: Vec<String> = words.collect();
+    words.dedup();
+    words
+}
+
+pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+    let profile = profile
+        .into_profile::<HiperdriveProfile>()
+        .map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let options = restore_options(restore)?;
+    if !restore.dry_run {
+        require_consent(&restore.consent)?;
+    }
+    let mut runner = Runner::open(common)?;
+    let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+    for types in &prepared.other_types {
+        output.remark(&words::other_type(types).terminal());
+    }
+    for words in absent(&prepared) {
+        output.remark(&words);
+    }
+    for item in &prepared.mounting_left {
+        let how = match item.0.base() {
+            198 => "a reference is never restored; \"do hiperdrive set-position\" sets it",
+            _ => "--with-mounting restores it",
+        };
+        output.remark(&format!("{item} belongs to the mounting and is left alone: {how}"));
+    }
+    let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
+    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    left.warn(output);
+    if restore.dry_run {
+        return show_dry_run(output, &shown(&prepared), &left);
+    }
+    let spent = commit(&mut runner, output, prepared, &restore.consent)?;
+    show_restored(output, &spent, &left)
+}

@@ -1,0 +1,99 @@
+//! Running jobs on an adapter or a hub with its drives.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::app::Text;
+use crate::cli::Result;
+use crate::cli::args::{Code, OfDrive};
+use crate::cli::output::say;
+use crate::cli::patience::Pace;
+use crate::cli::runner::{self, Runs, unexpected};
+use crate::devices::hiperdrive::jobs::{
+    Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark, open,
+};
+use crate::devices::hiperdrive::procedures::Station;
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
+use crate::devices::hiperdrive::state::explain as words;
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::worker::{OpenError, Session};
+
+/// Some of the longest intervals: a stop word is out before the program may end.
+const STOPPED: Duration = Duration::from_millis(500);
+/// The drives are off, and their connection is closed.
+const RELEASED: Duration = Duration::from_secs(1);
+const LOOKS: Duration = Duration::from_millis(1);
+
+/// A session with an adapter or a hub on its thread.
+pub(super) type Runner = runner::Runner<Hiperdrive>;
+
+impl Runs for Hiperdrive {
+    type Kept = Motion;
+    const HAS_CODES: bool = false;
+
+    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
+        open(url, store)
+    }
+
+    /// Access codes of the environment are for other devices.
+    fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Motion {
+        session.motion()
+    }
+
+    fn say(remark: &Remark) {
+        match remark {
+            Remark::ControlLost => say(&format!("{}\n", Text::new("hd_cli.control_lost").terminal())),
+            Remark::RulesUnread(error) => {
+                let why = words::device(error).terminal();
+                say(&format!("{} {why}\n", Text::new("hd_end.rules").terminal()));
+            }
+            Remark::RulesRead => {}
+        }
+    }
+
+    fn doing(doing: &Doing) -> String {
+        doing.to_string()
+    }
+
+    fn failure(error: &JobError) -> Vec<Text> {
+        words::job(error)
+    }
+
+    fn reply_pace(session: &Session<Self>) -> Option<Pace> {
+        let station = session.station();
+        Some(Pace { replies: station.replies(), timeout: station.timeout, longest: Station::LONGEST_TIMEOUT })
+    }
+
+    /// What moves is told to stop, and that is waited for; before the program ends, that the drives are off and let go.
+    fn interrupt(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
+        let motion = motion.clone();
+        Box::new(move |again| {
+            motion.stop();
+            let until = Instant::now() + STOPPED;
+            while !motion.is_standing() && Instant::now() < until {
+                sleep(LOOKS);
+            }
+            if again {
+                motion.leave();
+                let until = Instant::now() + RELEASED;
+                while motion.is_connected() && Instant::now() < until {
+                    sleep(LOOKS);
+                }
+            }
+        })
+    }
+}
+
+/// Reads a parameter.
+pub(super) fn value(runner: &mut Runner, number: ParameterNumber) -> Result<Value> {
+    match runner.run(HiperdriveJob::Read(number))? {
+        HiperdriveOutput::Value(_, value) => Ok(value),
+        other => Err(unexpected(&other)),
+    }
+}
+
+/// The drive that is meant: the first, where none is named.
+pub(super) fn drive(of: &OfDrive) -> DriveNumber {
+    of.drive.and_then(DriveNumber::new).unwrap_or(DriveNumber::FIRST)
+}

@@ -1,0 +1,47 @@
+//! `simulate hiperdrive`: virtual drives behind an adapter or a hub, as an EtherNet/IP target.
+
+use std::net::{Ipv4Addr, SocketAddrV4};
+
+use crate::cli::args::Simulate;
+use crate::cli::output::Output;
+use crate::cli::simulate::{Simulated, settings};
+use crate::cli::{Failure, Result};
+use crate::devices::hiperdrive::sim::{Config, Target};
+use crate::sim::DatagramDevice;
+use crate::units::{CharacterFormat, Moment};
+
+pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    if arguments.pty.is_some() {
+        let what = "HIPERDRIVE is reached over EtherNet/IP: use --listen HOST:PORT instead of --pty";
+        return Err(Failure::Usage(what.to_owned()));
+    }
+    if arguments.bridge {
+        return Err(Failure::Usage("--bridge is for biss: hiperdrive is reached over EtherNet/IP".to_owned()));
+    }
+    let config = Config::from_pairs(&settings(arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
+    Ok(Box::new(Target::new(&config)))
+}
+
+impl Simulated for Target {
+    /// There is no serial line.
+    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+        None
+    }
+
+    /// A target has several originators at once.
+    fn another(&self, peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
+        Some(Box::new(self.connection(peer)))
+    }
+
+    fn datagrams(&self) -> Option<Box<dyn DatagramDevice>> {
+        Some(Box::new(self.clone()))
+    }
+
+    fn listens(&self, at: SocketAddrV4) {
+        self.listen(at);
+    }
+
+    fn has_ended(&self) -> bool {
+        Target::has_ended(self)
+    }
+}

@@ -1,0 +1,65 @@
+//! `write`: one parameter.
+
+use super::item;
+use super::plan::{commit, operations, prepare, said};
+use super::run::Runner;
+use crate::app::Text;
+use crate::cli::args::{Common, Write};
+use crate::cli::consent::require_consent;
+use crate::cli::number::parse_number;
+use crate::cli::output::Output;
+use crate::cli::profiles::show_done;
+use crate::cli::runner::failed;
+use crate::cli::{Failure, Result};
+use crate::devices::hiperdrive::jobs::Change;
+use crate::devices::hiperdrive::profile::{Image, Item, PlanError, Service};
+use crate::devices::hiperdrive::protocol::{Access, Travel};
+use crate::devices::hiperdrive::state::explain as words;
+
+pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
+    let item = item(&write.item, &write.of)?;
+    let change = change(item, &write.value)?;
+    require_consent(&write.consent)?;
+    // A number says little of what it does.
+    if let Change::Do(_) = change {
+        output.remark(&words::change(&change).terminal());
+    }
+    let mut runner = Runner::open(common)?;
+    let prepared = prepare(&mut runner, output, change)?;
+    let (operations, said) = (operations(&prepared.plan), said(&prepared.plan));
+    let spent = commit(&mut runner, output, prepared, &write.consent)?;
+    show_done(output, &item.to_string(), &operations, &spent, &[], &said)
+}
+
+/// The position that is set: it has 32 bits, whatever bounds it beside.
+const REFERENCE: u16 = 198;
+
+/// What writing a value comes to. What no device takes is refused before anything is opened.
+fn change(item: Item, text: &str) -> Result<Change> {
+    let number = item.0;
+    let refused = |error: PlanError| failed(&words::plan(&error));
+    let row = number.row().ok_or_else(|| refused(PlanError::NotRead { item }))?;
+    match (row.number, row.access) {
+        (101..=104, ..) => return Err(refused(PlanError::Moves { item })),
+        (199, ..) => return Err(refused(PlanError::Acts { item })),
+        (_, Access::Read) => return Err(refused(PlanError::ReadOnly { item })),
+        _ => {}
+    }
+    let value = parse_number(text).ok_or_else(|| Failure::Usage(format!("{item}: {text:?} is not a number")))?;
+    if (row.number, value) == (47, 0) {
+        return Err(failed(&Text::new("hd_cli.no_service")));
+    }
+    // What the turns of the drive bound the plan looks at: with the scale of the drive both limits can be named.
+    if row.reach.is_none() || row.number == REFERENCE {
+        row.check(number, value, Travel::UNKNOWN).map_err(|error| refused(error.into()))?;
+    }
+    match (row.number, number.drive()) {
+        (47, _) => Service::of_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
+        (REFERENCE, Some(drive)) => {
+            // Of 32 bits.
+            let position = i32::try_from(value).map_err(|_| refused(PlanError::Acts { item }))?;
+            Ok(Change::SetPosition { drive, position, save: true })
+        }
+        _ => Ok(Change::Write(Box::new(Image { values: [(number, value)].into() }))),
+    }
+}

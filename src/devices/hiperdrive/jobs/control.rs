@@ -1,0 +1,198 @@
+//! The cyclic connection of a session: it is opened and closed by a person, and what the drives may do comes from their
+//! parameters, as they were read last.
+
+use std::sync::Arc;
+
+use super::commit::commit as carry_through;
+use super::looks::Looks;
+use super::{Commit, Committed, Cyclic, Hiperdrive, JobError, Motion, Remark, Told};
+use crate::buses::ethernet_ip::protocol::ForwardClose;
+use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
+use crate::devices::hiperdrive::procedures::{DriveLimits, Error, GROUPS, Identity, Rules, Survey, identify};
+use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber, Value};
+use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
+use crate::units::Moment;
+use crate::worker::Desk;
+
+/// Who has the cyclic connection, and what drives may do over it.
+pub(super) struct Control {
+    port: Option<Box<dyn DatagramPort>>,
+    clock: Arc<dyn Clock>,
+    motion: Motion,
+    open: Option<Open>,
+    /// The device and its drives, as they were when it was opened last.
+    identity: Option<Identity>,
+    /// When what rules them could not be read.
+    pub(super) looks: Looks,
+}
+
+struct Open {
+    cyclic: Cyclic,
+    close: ForwardClose,
+}
+
+impl Control {
+    pub(super) fn new(port: Option<Box<dyn DatagramPort>>, clock: Arc<dyn Clock>) -> Self {
+        Control {
+            port,
+            clock: clock.clone(),
+            motion: Motion::new(clock),
+            open: None,
+            identity: None,
+            looks: Looks::default(),
+        }
+    }
+
+    pub(super) fn motion(&self) -> Motion {
+        self.motion.clone()
+    }
+
+    /// What a drive says over the cyclic connection, while there is one and something has come over it.
+    pub(super) fn actual(&self, drive: DriveNumber) -> Option<Actual> {
+        let view = self.motion.view();
+        let speaks = view.open && view.link.received > 0;
+        view.drives.iter().find(|own| speaks && own.number == drive).map(|own| own.actual)
+    }
+
+    /// The device and its drives, while drives may be moved.
+    pub(super) fn held(&self) -> Option<Identity> {
+        self.open.as_ref().and(self.identity.clone())
+    }
+
+    /// The explicit messages are gone: drives stop.
+    pub(super) fn lose_session(&self) {
+        if let Some(open) = &self.open {
+            open.cyclic.lose(CyclicLost::Session);
+        }
+    }
+
+    /// What drives may do, by a survey that began at that moment.
+    pub(super) fn rule_by(&mut self, survey: &Survey, began: Moment) {
+        for drive in &survey.identity.drives {
+            let read = |base| match survey.values.get(&ParameterNumber::of_drive(base, drive.number)?)? {
+                Value::Number(value) => Some(*value),
+                Value::Text(_) => None,
+            };
+            self.limit(&survey.identity, drive.number, Rules::by(read), [began; GROUPS]);
+        }
+    }
+
+    /// Nothing is known of what a drive may do any more.
+    pub(super) fn forget(&mut self, drive: DriveNumber) {
+        self.motion.with_limits(drive, DriveLimits::forget);
+    }
+
+    /// Publishes what a drive may do by its parameters, and when they were read.
+    pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: Rules, times: [Moment; GROUPS]) {
+        let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
+        self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
+    }
+}
+
+impl Hiperdrive {
+    /// Opens the cyclic connection. Nothing moves by that.
+    pub(super) fn take(
+        &mut self,
+        desk: &mut Desk,
+        told: &mut dyn FnMut(u64, u64, ParameterNumber),
+    ) -> Result<(), Error> {
+        if self.control.open.is_some() {
+            return Err(Error::InControl);
+        }
+        let identity = identify(&mut self.master(desk), told)?;
+        self.control.looks = Looks::default();
+        identity.drives.iter().for_each(|drive| self.control.motion.doubt_limits(drive.number));
+        self.read_rules(desk, &identity)?;
+        let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
+        let opened = self.master(desk).forward_open(identity.topology, packets.port())?;
+        packets.aim(opened.port);
+        let joined = opened.group.map_or(Ok(()), |group| packets.join(group));
+        let drives: Vec<DriveNumber> = identity.drives.iter().map(|drive| drive.number).collect();
+        let started = joined.and_then(|()| {
+            let clock = self.control.clock.clone();
+            let started = Cyclic::start(packets, &opened, &drives, clock, &self.control.motion);
+            started.map_err(|error| LinkError::new("cyclic data", LinkErrorKind::Other(error.to_string())))
+        });
+        match started {
+            Ok(cyclic) => {
+                self.control.open = Some(Open { cyclic, close: opened.close });
+                self.control.motion.set_connected(true);
+                self.control.identity = Some(identity);
+                Ok(())
+            }
+            Err(error) => {
+                // What cannot be used is given back; why it cannot be used is what counts.
+                if let Err(why) = self.master(desk).forward_close(&opened.close) {
+                    tracing::warn!("{why}");
+                }
+                Err(error.into())
+            }
+        }
+    }
+
+    /// Stops all drives and closes the cyclic connection.
+    pub(super) fn give(&mut self, desk: &mut Desk) -> Result<(), Error> {
+        let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
+        cyclic.close();
+        let closed = self.master(desk).forward_close(&close);
+        self.control.motion.set_connected(false);
+        closed
+    }
+
+    /// The session ends: drives that are in control are stopped and let go, and a device that had a master is told.
+    pub(super) fn end(&mut self, desk: &mut Desk) {
+        let had_control = self.control.identity.is_some();
+        if let Err(why) = self.give(desk) {
+            tracing::warn!("{why}");
+        }
+        // Nothing answers that, and a device that is gone needs not to know.
+        if had_control && let Err(why) = self.master(desk).unregister() {
+            tracing::debug!("{why}");
+        }
+    }
+
+    /// The program ends, and drives are in control still.
+    pub(super) fn is_to_end(&self) -> bool {
+        self.control.open.is_some() && self.control.motion.is_leaving()
+    }
+
+    /// A cyclic connection that was lost is closed at the other end as well, and told once. It is lost also where explicit
+    /// messages are: whoever cannot write parameters any more does not move anything either.
+    pub(super) fn let_go_of_lost(&mut self, desk: &mut Desk) {
+        if self.control.open.is_some() && self.wire.check().is_err() {
+            self.control.lose_session();
+        }
+        if self.is_to_end() {
+            return self.end(desk);
+        }
+        if self.control.open.as_ref().is_none_or(|open| open.cyclic.lost().is_none()) {
+            return;
+        }
+        self.remark = Some(Remark::ControlLost);
+        // It may have ended there already, or nobody answers: it ends there by itself then.
+        if let Err(why) = self.give(desk) {
+            tracing::warn!("{why}");
+        }
+    }
+
+    /// Carries a plan out, and looks again at what drives may do: until that is known, nothing.
+    pub(super) fn commit(&mut self, desk: &mut Desk, commit: &Commit, tell: Told<'_>) -> Result<Committed, JobError> {
+        let identity = &commit.prepared.identity;
+        for drive in &identity.drives {
+            // As they are before the plan: a scale that it changes is told from this one.
+            let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
+            let now = desk.clock.now();
+            self.control.motion.with_limits(drive.number, |limits| {
+                limits.take(rules, (identity.topology, drive.variant), [now; GROUPS]);
+                limits.forget();
+            });
+        }
+        let ended = carry_through(self, desk, commit, tell);
+        let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);
+        // Who is gone is not asked again.
+        if !lost && let Err(why) = self.read_rules(desk, identity) {
+            tracing::warn!("{why}");
+        }
+        ended
+    }
+}

@@ -1,0 +1,171 @@
+//! The thread of a cyclic connection: it sends at absolute deadlines, takes what comes in between, and asks the dead-men for
+//! each packet. A stop is on the wire with the next packet, one interval later at most.
+//!
+//! It ends when it is asked to, when the program ends, when its handle goes, when the connection is lost, and with the program: the drives are told
+//! to stop, then to be off; then nothing is sent any more. Where it fails, nothing is sent any more at once, and the target's
+//! watchdog stops the drives.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, bounded};
+
+use super::motion::Motion;
+use crate::devices::hiperdrive::procedures::Opened;
+use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives};
+use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::link::{Clock, Datagrams, wake_before_others};
+
+/// A cyclic connection on its thread. Dropped, it stops the drives and ends by itself; [`close`](Self::close) waits for that.
+pub struct Cyclic {
+    motion: Motion,
+    wishes: Arc<Wishes>,
+    ended: Receiver<Never>,
+}
+
+/// What the thread is told.
+#[derive(Default)]
+struct Wishes {
+    end: AtomicBool,
+    lost: Mutex<Option<CyclicLost>>,
+}
+
+/// Nothing of this kind is ever sent: its channel tells by its end that the thread has ended.
+enum Never {}
+
+/// A cyclic connection without a thread: whoever owns one turns it, a test in virtual time.
+pub struct Pump {
+    drives: Drives,
+    port: Box<dyn Datagrams>,
+    clock: Arc<dyn Clock>,
+    motion: Motion,
+    wishes: Arc<Wishes>,
+    packet: Vec<u8>,
+}
+
+/// The ladder, three packets that say off, and some time for the system.
+const PATIENCE: Duration = Duration::from_millis(1500);
+/// Packets that are taken after the next one was due: whoever floods the port does not keep it from being sent.
+const AT_ONCE: usize = 64;
+
+impl Cyclic {
+    /// Starts the thread. The connection was opened, and `port` is aimed at the target.
+    ///
+    /// # Errors
+    /// When the system has no thread left: nothing was sent.
+    pub fn start(
+        port: Box<dyn Datagrams>,
+        opened: &Opened,
+        drives: &[DriveNumber],
+        clock: Arc<dyn Clock>,
+        motion: &Motion,
+    ) -> std::io::Result<Self> {
+        let mut pump = Pump::new(port, opened, drives, clock, motion);
+        let wishes = pump.wishes.clone();
+        let (alive, ended) = bounded(0);
+        let failed = motion.clone();
+        let thread = std::thread::Builder::new().name("cyclic".to_owned()).spawn(move || {
+            let _alive: crossbeam_channel::Sender<Never> = alive;
+            failed.set_punctual(wake_before_others());
+            let turned = catch_unwind(AssertUnwindSafe(|| while pump.turn() {}));
+            if turned.is_err() {
+                failed.fail();
+            }
+        });
+        if let Err(error) = thread {
+            motion.fail();
+            return Err(error);
+        }
+        Ok(Cyclic { motion: motion.clone(), wishes, ended })
+    }
+
+    /// Why it has ended, where nobody has closed it. What is to be closed over the session's own connection is closed by
+    /// whoever asks.
+    pub fn lost(&self) -> Option<CyclicLost> {
+        self.motion.lost()
+    }
+
+    /// The session knows that it is lost: the drives are told to stop.
+    pub fn lose(&self, why: CyclicLost) {
+        *self.wishes.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
+    }
+
+    /// Stops the drives, switches them off and ends; what is left is to close the connection. Why it was lost, where it was.
+    pub fn close(self) -> Option<CyclicLost> {
+        self.wishes.end.store(true, Ordering::SeqCst);
+        // The channel ends with the thread; whoever is later than that is not waited for.
+        let _ = self.ended.recv_timeout(PATIENCE);
+        self.lost()
+    }
+}
+
+impl Drop for Cyclic {
+    fn drop(&mut self) {
+        self.wishes.end.store(true, Ordering::SeqCst);
+    }
+}
+
+impl Pump {
+    /// A connection that was opened just now, through a port that is aimed at the target.
+    pub fn new(
+        port: Box<dyn Datagrams>,
+        opened: &Opened,
+        drives: &[DriveNumber],
+        clock: Arc<dyn Clock>,
+        motion: &Motion,
+    ) -> Self {
+        let drives = Drives::new(opened, drives, motion.open(), clock.now());
+        motion.publish(&drives);
+        let (motion, wishes) = (motion.clone(), Arc::default());
+        Pump { drives, port, clock, motion, wishes, packet: Vec::new() }
+    }
+
+    /// The drives are to stop and the connection is to end; [`turn`](Self::turn) does it.
+    pub fn end(&self) {
+        self.wishes.end.store(true, Ordering::SeqCst);
+    }
+
+    /// Takes what comes until the next packet is due, and sends it. False: it is over.
+    pub fn turn(&mut self) -> bool {
+        let due = self.drives.poll_at();
+        let mut late = 0;
+        while late < AT_ONCE {
+            match self.port.receive(due, &mut self.packet) {
+                Ok(true) => {
+                    let now = self.clock.now();
+                    self.drives.on_packet(now, &self.packet);
+                    late += usize::from(now >= due);
+                }
+                Ok(false) => break,
+                Err(error) => return self.is_gone(error.into()),
+            }
+        }
+        self.hear_wishes();
+        let now = self.clock.now();
+        let packet = self.motion.with_wanted(|intent, permit| self.drives.poll(now, intent, permit));
+        let sent = packet.map_or(Ok(()), |packet| self.port.send(&packet));
+        if let Err(error) = sent {
+            return self.is_gone(error.into());
+        }
+        self.motion.publish(&self.drives);
+        !self.drives.is_over()
+    }
+
+    fn hear_wishes(&mut self) {
+        let now = self.clock.now();
+        if let Some(why) = self.wishes.lost.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            self.drives.lose(now, why);
+        }
+        if self.wishes.end.load(Ordering::SeqCst) || self.motion.is_leaving() {
+            self.drives.close(now);
+        }
+    }
+
+    fn is_gone(&mut self, why: CyclicLost) -> bool {
+        self.drives.lose(self.clock.now(), why);
+        self.motion.publish(&self.drives);
+        false
+    }
+}

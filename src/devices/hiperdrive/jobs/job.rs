@@ -1,0 +1,237 @@
+//! What can be asked of an adapter or a hub with its drives, and what comes of it.
+
+use std::fmt;
+
+use crate::devices::hiperdrive::procedures::check::{Line, Step};
+use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
+use crate::devices::hiperdrive::procedures::{Error, Identity, Network, Reading, Status, Survey};
+use crate::devices::hiperdrive::profile::{
+    HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, OtherType, PlanError, RestoreOptions, Service,
+};
+use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, Value};
+use crate::profile::Consent;
+use crate::store::DeviceKey;
+use crate::worker::commit::wear;
+
+/// Saves from which a person should know that they may be numbered: an assumption, since the manual names no limit (`U`).
+pub const WEAR_WARNING: u64 = 50_000;
+
+/// What a session with an adapter or a hub does. Reading changes nothing; drives move only between [`Take`](Self::Take) and
+/// [`Give`](Self::Give), by the session's `Motion`.
+#[derive(Debug)]
+pub enum HiperdriveJob {
+    /// Who is there: for a window, after connecting.
+    Hello,
+    /// Everything that can be read.
+    Survey,
+    /// Who is there.
+    Identify,
+    /// Errors and states of all drives.
+    Status,
+    /// What device and drives say, with a verdict a line.
+    Check,
+    /// Where a drive is, once.
+    Position(DriveNumber),
+    /// A parameter.
+    Read(ParameterNumber),
+    /// Address switches and TCP/IP object.
+    Network,
+    /// Everything that can be restored.
+    Save,
+    /// Makes a plan; writes nothing.
+    Prepare(Change),
+    /// Carries a plan out.
+    Commit(Box<Commit>),
+    /// Opens the cyclic connection. Nothing moves by that.
+    Take,
+    /// Stops all drives and closes it.
+    Give,
+    /// From now on this drive is polled.
+    Watch(DriveNumber),
+}
+
+/// A change that a user wants.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// Make the device as the profile says.
+    Restore {
+        /// The profile.
+        profile: Box<HiperdriveProfile>,
+        /// What the restore may do.
+        options: RestoreOptions,
+    },
+    /// Make it like this, and save it; what the image says nothing about stays as it is.
+    Write(Box<Image>),
+    /// Make it like this, and save nothing.
+    Try(Box<Image>),
+    /// The drive's place becomes this position.
+    SetPosition {
+        /// Which drive.
+        drive: DriveNumber,
+        /// In steps as scaled; it is rounded to 64 of them.
+        position: i32,
+        /// Save it, and all that was not saved before.
+        save: bool,
+    },
+    /// The device does something.
+    Do(Service),
+    /// The device gets its address in another way.
+    Network(NetworkSettings),
+}
+
+/// Kinds of change that differ in what completes one that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A profile is restored: doing it again completes it.
+    Restore,
+    /// Edits are written: those that are not yet stay edited.
+    Edits,
+    /// Values are written for now.
+    Try,
+    /// A position is set.
+    Position,
+    /// The device does something.
+    Service(Service),
+    /// The address.
+    Network,
+}
+
+impl Change {
+    /// Its kind.
+    pub const fn kind(&self) -> ChangeKind {
+        match self {
+            Change::Restore { .. } => ChangeKind::Restore,
+            Change::Write(_) => ChangeKind::Edits,
+            Change::Try(_) => ChangeKind::Try,
+            Change::SetPosition { .. } => ChangeKind::Position,
+            Change::Do(service) => ChangeKind::Service(*service),
+            Change::Network(_) => ChangeKind::Network,
+        }
+    }
+}
+
+/// A plan, ready to be looked at.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The kind of change that it is for.
+    pub kind: ChangeKind,
+    /// What would be written.
+    pub plan: HiperdrivePlan,
+    /// The device it is for.
+    pub identity: Identity,
+    /// What the device keeps, as it was read for the plan.
+    pub image: Image,
+    /// Saves that this computer has seen the device take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Items that are as they should be already.
+    pub unchanged: u64,
+    /// Items of a profile that the device does not have.
+    pub missing: Vec<String>,
+    /// Values of the mounting that differ and are left alone.
+    pub mounting_left: Vec<Item>,
+    /// The profile is of another type of device or drive: each difference.
+    pub other_types: Vec<OtherType>,
+    /// Values of the mounting of another device that are written: they have to be set up anew.
+    pub mounting_written: Vec<Item>,
+}
+
+impl Prepared {
+    /// So many saves after this, where a person should know.
+    pub fn wear(&self) -> Option<u64> {
+        wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
+    }
+}
+
+/// A plan that a person consented to.
+#[derive(Clone, Debug)]
+pub struct Commit {
+    /// The plan as it was shown.
+    pub prepared: Prepared,
+    /// The consent to it.
+    pub consent: Consent,
+    /// Write although it is not known how many saves there were.
+    pub force_wear: bool,
+}
+
+/// What a commit did.
+pub type Committed = crate::worker::Committed<Written>;
+
+/// What is said on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remark {
+    /// The cyclic connection was lost, and drives stop; what the session's `Motion` says of it tells why.
+    ControlLost,
+    /// What rules a drive in hand cannot be read, and is asked for again and again.
+    RulesUnread(Box<Error>),
+    /// It could be read again.
+    RulesRead,
+}
+
+/// The step that a job is at. Its text is the command line's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Doing {
+    /// A parameter is read.
+    Parameter(ParameterNumber),
+    /// A step of the check.
+    Step(Step),
+    /// An operation of a plan is carried out: what it changes.
+    Operation(String),
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Doing::Parameter(number) => match number.row() {
+                Some(row) => write!(f, "{} ({})", Item(*number), row.name),
+                None => Item(*number).fmt(f),
+            },
+            Doing::Step(step) => step.fmt(f),
+            Doing::Operation(item) => f.write_str(item),
+        }
+    }
+}
+
+/// What a job gives.
+#[derive(Debug)]
+#[expect(missing_docs, reason = "each is the result of the job of that name")]
+pub enum HiperdriveOutput {
+    Hello(Box<Identity>),
+    Surveyed(Box<Survey>),
+    Identity(Box<Identity>),
+    Status(Box<Status>),
+    Check(Vec<Line>),
+    Position(Reading),
+    Value(ParameterNumber, Value),
+    Network(Box<Network>),
+    Saved(Box<HiperdriveProfile>),
+    Prepared(Box<Prepared>),
+    Committed(Box<Committed>),
+    Taken,
+    Given,
+    Watched(DriveNumber),
+}
+
+/// Why a job ended early.
+pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        JobError::Plan(error)
+    }
+}
+
+/// How backups and the logbook know a device: saves are those of the adapter or hub, whatever is plugged into it.
+pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
+    DeviceKey {
+        kind: KIND.to_owned(),
+        device_type: identity.category.clone(),
+        serial_number: identity.serial_number.clone(),
+        is_virtual,
+    }
+}

@@ -1,0 +1,171 @@
+//! What rules drives is read again and again while they may be moved, because somebody else may change it meanwhile: of the
+//! drive that is shown, and of the one that was moved last. It has a pace of its own, whatever else is polled.
+
+use std::time::Duration;
+
+use super::session_watch::REQUEST;
+use super::{Hiperdrive, Remark};
+use crate::devices::hiperdrive::procedures::{Error, GROUPS, Identity, read_rule, read_rules};
+use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::units::Moment;
+use crate::worker::Desk;
+
+/// The time is cut into turns of this length, which belong to one group after the other of the parameters that rule a drive:
+/// all of them have one each second.
+const TURN: Duration = Duration::from_millis(250);
+/// As long is a turn while a drive moves: each is a request, and a device that does not answer ends the motion.
+const TURN_IN_MOTION: Duration = REQUEST;
+/// Behind a look that failed.
+const REST: Duration = Duration::from_millis(500);
+
+/// Whether what rules drives could be read.
+#[derive(Debug, Default)]
+pub(super) struct Looks {
+    /// Until when nothing is asked, behind a look that failed.
+    rests: Option<Moment>,
+}
+
+/// The groups that are to be read now, by when each was read last, the oldest first: those one of whose turns has begun since.
+fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
+    let is_due = |(group, at): &(usize, Moment)| turns(*group, now, turn) > turns(*group, *at, turn);
+    let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
+    groups.sort_by_key(|(_, at)| *at);
+    groups.into_iter().map(|(group, _)| group).collect()
+}
+
+/// How many turns of a group have begun until then.
+fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
+    let begun = at.since_start().as_nanos() / turn.as_nanos();
+    let groups = GROUPS as u128;
+    (begun + groups - group as u128) / groups
+}
+
+impl Hiperdrive {
+    /// While drives may be moved: looks at what rules them where that is due. Where it cannot be read, nothing moves until it
+    /// can, which is told once.
+    pub(super) fn look_at_rules(&mut self, desk: &mut Desk) {
+        let Some(identity) = self.control.held() else { return };
+        if self.control.looks.rests.is_some_and(|until| desk.clock.now() < until) {
+            return;
+        }
+        let moved = self.control.motion().wanted_drive();
+        for drive in [Some(self.watched), Some(moved).filter(|moved| *moved != self.watched)].into_iter().flatten() {
+            if identity.drive(drive).is_none() {
+                continue;
+            }
+            match self.look_at(desk, &identity, drive) {
+                Ok(()) => {}
+                // A job goes first, or another wish has come.
+                Err(error) if error.is_cancelled() => return,
+                Err(error) => return self.cannot_look(desk, drive, error),
+            }
+        }
+        if self.control.looks.rests.take().is_some() {
+            self.remark.get_or_insert(Remark::RulesRead);
+        }
+    }
+
+    fn look_at(&mut self, desk: &mut Desk, identity: &Identity, drive: DriveNumber) -> Result<(), Error> {
+        if self.control.actual(drive).is_some_and(|actual| !actual.status.is_present()) {
+            self.control.forget(drive);
+            return Ok(());
+        }
+        let known = self.control.motion().limits(drive);
+        let Some(mut times) = known.times() else {
+            let began = desk.clock.now();
+            let rules = read_rules(&mut self.master(desk), drive)?;
+            self.control.limit(identity, drive, rules, [began; GROUPS]);
+            return Ok(());
+        };
+        let mut rules = known.rules();
+        let turn = if self.control.motion().is_under_way() { TURN_IN_MOTION } else { TURN };
+        for group in due(times, desk.clock.now(), turn) {
+            let now = desk.clock.now();
+            rules = read_rule(&mut self.master(desk), drive, rules, group)?;
+            if let Some(at) = times.get_mut(group) {
+                *at = now;
+            }
+            self.control.limit(identity, drive, rules, times);
+        }
+        Ok(())
+    }
+
+    fn cannot_look(&mut self, desk: &mut Desk, drive: DriveNumber, error: Error) {
+        tracing::warn!("{error}");
+        // All of it is read before anything moves again.
+        self.control.motion().doubt_limits(drive);
+        if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
+            // Nothing more can be asked: that is told as a loss.
+            return self.control.lose_session();
+        }
+        if self.control.looks.rests.replace(desk.clock.now() + REST).is_none() {
+            self.control.motion().stop();
+            self.remark.get_or_insert(Remark::RulesUnread(Box::new(error)));
+        }
+    }
+
+    /// Reads all that rules a drive before anything else: it is shown from now on.
+    pub(super) fn look_anew(&mut self, desk: &mut Desk, drive: DriveNumber) {
+        self.control.motion().doubt_limits(drive);
+        self.look_at_rules(desk);
+    }
+
+    /// Reads what rules all drives. A wish to end is not heard: whoever has changed something has to know how it is now.
+    ///
+    /// # Errors
+    /// The way.
+    pub(super) fn read_rules(&mut self, desk: &mut Desk, identity: &Identity) -> Result<(), Error> {
+        for drive in &identity.drives {
+            let began = desk.clock.now();
+            let rules = self.master(desk).shielded(|master| read_rules(master, drive.number))?;
+            self.control.limit(identity, drive.number, rules, [began; GROUPS]);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    /// Issue 21.13: while a drive moves, some group is due in every turn of 60 ms.
+    #[test]
+    fn something_is_asked_in_every_turn_of_a_motion() {
+        let mut read = [at(0); GROUPS];
+        let mut last = 0;
+        for now in (0..4000).step_by(20) {
+            for group in due(read, at(now), TURN_IN_MOTION) {
+                read[group] = at(now);
+                last = now;
+            }
+            assert!(now - last <= 80, "{now}: nothing since {last}, looked at every 20 ms");
+        }
+        assert_eq!(TURN_IN_MOTION, Duration::from_millis(60));
+    }
+
+    #[test]
+    fn every_group_comes_once_a_second_however_often_somebody_looks() {
+        for (step, first) in
+            [10, 100, 200, 249, 250, 300, 500, 2000].into_iter().flat_map(|step| [(step, 0), (step, 777)])
+        {
+            let mut read = [at(first); GROUPS];
+            let (mut now, mut asked) = (first, 0);
+            while now < first + 10_000 {
+                now += step;
+                let age = at(now).since(read.into_iter().min().unwrap());
+                assert!(age <= Duration::from_millis(1000 + step), "{step}: {age:?}");
+                let groups = due(read, at(now), TURN);
+                assert!(groups.len() as u64 <= step.div_ceil(250).min(4), "{step}: {groups:?} at once");
+                for group in groups {
+                    read[group] = at(now);
+                    asked += 1;
+                }
+            }
+            assert!((20..=41).contains(&asked), "{step}: {asked} in ten seconds");
+        }
+    }
+}

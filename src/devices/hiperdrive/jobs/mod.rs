@@ -1,0 +1,202 @@
+//! HIPERDRIVE drives behind an adapter or a hub, at the end of a session: its jobs, the cyclic connection that moves them and
+//! the handle for it.
+
+mod commit;
+mod control;
+mod cyclic;
+mod job;
+mod looks;
+mod motion;
+mod open;
+mod prepare;
+mod session_watch;
+
+use std::convert::Infallible;
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+use control::Control;
+pub use cyclic::{Cyclic, Pump};
+pub use job::{
+    Change, ChangeKind, Commit, Committed, Doing, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Remark,
+    WEAR_WARNING, device_key,
+};
+pub use motion::{DriveView, Glance, Motion, View};
+pub use open::{check, open};
+use session_watch::WatchedWire;
+
+use crate::devices::hiperdrive::procedures::check::check as check_device;
+use crate::devices::hiperdrive::procedures::{
+    Error, Master, Reading, Station, identify, network, position, read_status, save, survey,
+};
+use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::devices::hiperdrive::sim::Target;
+use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
+use crate::store::Store;
+use crate::worker::{Desk, Device, IDLE, Progress, Session, Tell, Watched};
+
+/// An adapter or a hub with its drives.
+pub struct Hiperdrive {
+    wire: Box<dyn ByteLink>,
+    station: Station,
+    control: Control,
+    /// Which drive is polled.
+    watched: DriveNumber,
+    /// The virtual one.
+    target: Option<Target>,
+    remark: Option<Remark>,
+}
+
+impl fmt::Debug for Hiperdrive {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Hiperdrive({})", self.station)
+    }
+}
+
+/// How often is looked after drives in control: a fraction of what may pass between two requests.
+const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
+
+/// What a job tells on its way.
+type Told<'t> = &'t mut dyn FnMut(Tell<Remark, Doing>);
+
+impl Hiperdrive {
+    /// The host's side of explicit messages.
+    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    }
+}
+
+/// What a session with an adapter or a hub begins with.
+pub struct Way {
+    /// Explicit messages.
+    pub wire: Box<dyn ByteLink>,
+    /// Where cyclic data begin; `None` for a link that has none.
+    pub port: Option<Box<dyn DatagramPort>>,
+    /// What is known of the device.
+    pub station: Station,
+    /// The device, where it lives in this process.
+    pub target: Option<Target>,
+}
+
+impl Session<Hiperdrive> {
+    /// A session on open wires. With a target the device lives in this process, and its wear counts apart.
+    pub fn to_target(way: Way, clock: Arc<dyn Clock>, store: Store) -> Self {
+        let Way { wire, port, station, target } = way;
+        let is_virtual = target.is_some();
+        let control = Control::new(port, clock.clone());
+        let wire = Box::new(WatchedWire::new(wire, clock.clone(), control.motion()));
+        let device = Hiperdrive { wire, station, control, watched: DriveNumber::FIRST, target, remark: None };
+        Session::with(device, clock, store, is_virtual)
+    }
+
+    /// What moves the drives. It is the same for the whole session; without the cyclic connection nothing comes of it.
+    pub fn motion(&self) -> Motion {
+        self.device.control.motion()
+    }
+
+    /// What is known about the device.
+    pub fn station(&self) -> &Station {
+        &self.device.station
+    }
+
+    /// The device, where it lives in this process.
+    pub fn target(&self) -> Option<Target> {
+        self.device.target.clone()
+    }
+}
+
+impl Device for Hiperdrive {
+    type Job = HiperdriveJob;
+    type Output = HiperdriveOutput;
+    type Error = JobError;
+    type Remark = Remark;
+    type Sample = Reading;
+    type Watch = Infallible;
+    type Doing = Doing;
+
+    fn run(&mut self, desk: &mut Desk, job: HiperdriveJob, tell: Told<'_>) -> Result<HiperdriveOutput, JobError> {
+        use HiperdriveOutput as Out;
+        self.let_go_of_lost(desk);
+        let mut step = |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
+        let mut parameter = |done, total, number| step(done, total, Doing::Parameter(number));
+        Ok(match job {
+            HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)),
+            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(desk, &commit, tell)?)),
+            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Survey => {
+                let began = desk.clock.now();
+                let survey = survey(&mut self.master(desk), &mut parameter)?;
+                self.control.rule_by(&survey, began);
+                Out::Surveyed(Box::new(survey))
+            }
+            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Check => {
+                let told = &mut |done, total, what| step(done, total, Doing::Step(what));
+                Out::Check(check_device(&mut self.master(desk), told)?)
+            }
+            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(desk), drive)?),
+            HiperdriveJob::Read(number) => Out::Value(number, self.master(desk).read(number)?),
+            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(desk))?)),
+            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Take => {
+                self.take(desk, &mut parameter)?;
+                Out::Taken
+            }
+            HiperdriveJob::Give => {
+                self.give(desk)?;
+                Out::Given
+            }
+            HiperdriveJob::Watch(drive) => {
+                self.watched = drive;
+                self.look_anew(desk, drive);
+                Out::Watched(drive)
+            }
+        })
+    }
+
+    fn sample(&mut self, desk: &mut Desk) -> Result<Reading, JobError> {
+        self.let_go_of_lost(desk);
+        let drive = self.watched;
+        if let Some(actual) = self.control.actual(drive) {
+            return Ok(Reading { at: desk.clock.now(), drive, actual });
+        }
+        Ok(position(&mut self.master(desk), drive)?)
+    }
+
+    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Reading>, JobError> {
+        match *what {}
+    }
+
+    fn is_cancelled(error: &JobError) -> bool {
+        error.device().is_some_and(Error::is_cancelled)
+    }
+
+    fn take_remark(&mut self) -> Option<Remark> {
+        self.remark.take()
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check().inspect_err(|_| self.control.lose_session())
+    }
+
+    fn idle_interval(&self) -> Duration {
+        if self.control.held().is_some() { IDLE_IN_CONTROL } else { IDLE }
+    }
+
+    fn idle(&mut self, desk: &mut Desk) -> Option<Remark> {
+        self.let_go_of_lost(desk);
+        self.look_at_rules(desk);
+        self.remark.take()
+    }
+
+    /// Drives that are in control are stopped and let go.
+    fn leave(&mut self, desk: &mut Desk) {
+        self.end(desk);
+    }
+
+    fn is_urgent(&self) -> bool {
+        self.is_to_end()
+    }
+}

@@ -1,0 +1,352 @@
+//! The handle through which a person moves drives: what is wanted goes into a cell, of which the latest counts, and what the
+//! drives say comes back. The thread of the cyclic connection reads the one and fills the other; nobody waits.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::session_watch::SessionWatch;
+use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives, LinkFigures};
+use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, Lock, Permit, Phase, Wish};
+use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
+use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, Setpoint};
+use crate::link::Clock;
+use crate::units::Moment;
+
+/// The motion of a session's drives. Clones share it.
+#[derive(Clone)]
+pub struct Motion(Arc<Shared>);
+
+struct Shared {
+    clock: Arc<dyn Clock>,
+    cell: Mutex<Cell>,
+}
+
+struct Cell {
+    intent: Intent,
+    /// What each drive may do: the only place where it stands.
+    limits: BTreeMap<DriveNumber, DriveLimits>,
+    /// Drives for which a person has allowed an endless run.
+    experts: BTreeSet<DriveNumber>,
+    /// Whether explicit messages are answered.
+    session: SessionWatch,
+    punctual: bool,
+    view: View,
+    /// The program ends: nothing moves any more.
+    leaving: bool,
+    /// The target holds a cyclic connection that was opened here.
+    connected: bool,
+}
+
+/// The drives at one moment: what they do, and what they may do.
+#[derive(Clone, Debug)]
+pub struct Glance {
+    /// The moment.
+    pub at: Moment,
+    /// What they do.
+    pub view: View,
+    /// What they may do.
+    pub limits: BTreeMap<DriveNumber, DriveLimits>,
+}
+
+/// What the drives do, and how well their connection works.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct View {
+    /// The cyclic connection is there.
+    pub open: bool,
+    /// The drives that have a place in it, as they were last; in the order of their numbers.
+    pub drives: Vec<DriveView>,
+    /// The connection.
+    pub link: LinkFigures,
+    /// The system wakes its thread before all ordinary ones.
+    pub punctual: bool,
+    /// Why it is not there any more, where nobody has closed it.
+    pub lost: Option<CyclicLost>,
+}
+
+/// What a drive does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveView {
+    /// Which one.
+    pub number: DriveNumber,
+    /// What it said last.
+    pub actual: Actual,
+    /// When it said that; `None` before it has said anything.
+    pub heard_at: Option<Moment>,
+    /// What it was sent last.
+    pub sent: Setpoint,
+    /// What is done with it.
+    pub phase: Phase,
+    /// The act that is under way, or the last one; 0 for none.
+    pub act: u64,
+    /// The last act that ended, and how.
+    pub ended: Option<(u64, Ended)>,
+}
+
+impl Motion {
+    /// Nothing is wanted, and nothing is permitted.
+    pub fn new(clock: Arc<dyn Clock>) -> Self {
+        let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
+        let cell = Cell {
+            intent,
+            limits: BTreeMap::new(),
+            experts: BTreeSet::new(),
+            session: SessionWatch::default(),
+            punctual: false,
+            view: View::default(),
+            leaving: false,
+            connected: false,
+        };
+        Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
+    }
+
+    /// A person wants something of a drive: an act of its own, whose number comes back. It replaces the one before; what
+    /// moved by that stops. It has to be kept [fresh](Self::refresh). Without a cyclic connection nothing comes of it.
+    pub fn intend(&self, drive: DriveNumber, wish: Wish) -> u64 {
+        let refreshed = self.0.clock.now();
+        let mut cell = self.lock();
+        let number = cell.intent.number + 1;
+        cell.intent = Intent { drive, wish, number, refreshed };
+        number
+    }
+
+    /// What was wanted last is wanted still. To be said every 100 ms while anything moves: 250 ms without it stop the drive,
+    /// and what comes after them is too late, also where the connection's thread stood still as long.
+    pub fn refresh(&self) {
+        let now = self.0.clock.now();
+        let mut cell = self.lock();
+        if !cell.intent.is_stale(now) {
+            cell.intent.refreshed = now;
+        }
+    }
+
+    /// All drives stop.
+    pub fn stop(&self) {
+        let drive = self.lock().intent.drive;
+        self.intend(drive, Wish::Stop);
+    }
+
+    /// The act of this number is the latest.
+    pub fn is_latest(&self, number: u64) -> bool {
+        self.lock().intent.number == number
+    }
+
+    /// What the drives do.
+    pub fn view(&self) -> View {
+        self.lock().view.clone()
+    }
+
+    /// The cyclic connection is there.
+    pub fn is_open(&self) -> bool {
+        self.lock().view.open
+    }
+
+    /// What the drives do and may do, at one moment.
+    pub fn glance(&self) -> Glance {
+        let at = self.0.clock.now();
+        let cell = self.lock();
+        Glance { at, view: cell.view.clone(), limits: cell.limits.clone() }
+    }
+
+    /// What a drive may do, with the time of reading; the default for one of which nothing is known.
+    pub fn limits(&self, drive: DriveNumber) -> DriveLimits {
+        self.lock().limits.get(&drive).cloned().unwrap_or_default()
+    }
+
+    /// Publishes what a drive may do; a session does so by itself.
+    pub fn publish_limits(&self, drive: DriveNumber, limits: DriveLimits) {
+        self.with_limits(drive, |own| *own = limits);
+    }
+
+    /// Changes what a drive may do, as one step: nobody reads or confirms limits in the middle of it.
+    pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
+        change(self.lock().limits.entry(drive).or_default())
+    }
+
+    /// The limits of a drive are to be read before its next motion: another master may have changed them.
+    pub fn doubt_limits(&self, drive: DriveNumber) {
+        let now = self.0.clock.now();
+        self.with_limits(drive, |limits| limits.doubt(now));
+    }
+
+    /// The drive of which something was wanted last.
+    pub(super) fn wanted_drive(&self) -> DriveNumber {
+        self.lock().intent.drive
+    }
+
+    /// The limits of a drive are to be confirmed before it moves.
+    pub fn unconfirm_limits(&self, drive: DriveNumber) {
+        self.with_limits(drive, DriveLimits::unconfirm);
+    }
+
+    /// A person confirms the limits of a drive as they were shown. Returns whether that counts: not where the drive has others
+    /// by now.
+    pub fn confirm_limits(&self, drive: DriveNumber, seen: LimitsSeen) -> bool {
+        self.with_limits(drive, |limits| limits.confirm(seen))
+    }
+
+    /// A person allows an endless run of a drive, or does not any more. It is possible only where limits and scaling are the
+    /// factory's.
+    pub fn allow_endless(&self, drive: DriveNumber, allowed: bool) {
+        let mut cell = self.lock();
+        if allowed {
+            cell.experts.insert(drive);
+        } else {
+            cell.experts.remove(&drive);
+        }
+    }
+
+    /// What a drive may do at the moment, all things considered.
+    pub fn permitted(&self, drive: DriveNumber) -> Permit {
+        let now = self.0.clock.now();
+        self.lock().permitted(drive, now)
+    }
+
+    /// A connection begins: no act up to the number that comes back moves anything over it.
+    pub(super) fn open(&self) -> u64 {
+        let now = self.0.clock.now();
+        let mut cell = self.lock();
+        let number = cell.intent.number + 1;
+        cell.intent = Intent::rest(cell.intent.drive, number, now);
+        cell.view = View { open: true, ..View::default() };
+        number
+    }
+
+    /// What is wanted at this moment, for whoever makes the next packet of it.
+    pub(super) fn with_wanted<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
+        let now = self.0.clock.now();
+        let cell = self.lock();
+        make(&cell.intent, &|drive| cell.permitted(drive, now))
+    }
+
+    /// Notes a request or an answer of the explicit messages.
+    pub(super) fn with_session(&self, note: impl FnOnce(&mut SessionWatch)) {
+        note(&mut self.lock().session);
+    }
+
+    /// A drive was sent a word with which it moves, or is led to where it may.
+    pub(super) fn is_under_way(&self) -> bool {
+        let cell = self.lock();
+        cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
+    }
+
+    /// What has become of the drives.
+    pub(super) fn publish(&self, drives: &Drives) {
+        let of = |man: &DeadMan| DriveView {
+            number: man.drive(),
+            actual: man.actual(),
+            heard_at: man.heard_at(),
+            sent: man.sent(),
+            phase: man.phase(),
+            act: man.act(),
+            ended: man.ended(),
+        };
+        let mut views: Vec<DriveView> = drives.men().map(of).collect();
+        views.sort_by_key(|view| view.number);
+        let view = View {
+            open: !drives.is_ending(),
+            drives: views,
+            link: drives.figures().clone(),
+            punctual: false,
+            lost: drives.lost().cloned(),
+        };
+        let mut cell = self.lock();
+        cell.view = View { punctual: cell.punctual, ..view };
+    }
+
+    /// Whether the system wakes the connection's thread before all ordinary ones.
+    pub(super) fn set_punctual(&self, punctual: bool) {
+        self.lock().punctual = punctual;
+    }
+
+    /// The connection's thread has failed, or never began.
+    pub(super) fn fail(&self) {
+        let mut cell = self.lock();
+        (cell.view.open, cell.view.lost) = (false, Some(CyclicLost::Failed));
+    }
+
+    pub(super) fn lost(&self) -> Option<CyclicLost> {
+        self.lock().view.lost.clone()
+    }
+
+    /// The program ends: all drives stop, are switched off, and their connection is closed. Nothing moves any more.
+    pub fn leave(&self) {
+        self.lock().leaving = true;
+    }
+
+    /// The program ends.
+    pub(super) fn is_leaving(&self) -> bool {
+        self.lock().leaving
+    }
+
+    /// The target holds a cyclic connection that was opened here and has not been closed.
+    pub fn is_connected(&self) -> bool {
+        self.lock().connected
+    }
+
+    /// The cyclic connection was opened, or closed at both ends.
+    pub(super) fn set_connected(&self, connected: bool) {
+        self.lock().connected = connected;
+    }
+
+    /// The session is gone: nothing else has a handle to its drives.
+    pub fn is_left_over(&self) -> bool {
+        Arc::strong_count(&self.0) == 1
+    }
+
+    /// No drive was sent a word with which it moves: a stop that was asked for is on the wire.
+    pub fn is_standing(&self) -> bool {
+        let cell = self.lock();
+        !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Cell> {
+        // Each change is whole: whoever panicked has left nothing half done.
+        self.0.cell.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Cell {
+    fn permitted(&self, drive: DriveNumber, now: Moment) -> Permit {
+        let limits = self.limits.get(&drive);
+        let permit = limits.map(|limits| limits.permit(now, self.experts.contains(&drive)));
+        let mut permit = permit.unwrap_or_default();
+        permit.locks.extend(self.session.is_silent(now).then_some(Lock::NoAnswer));
+        permit
+    }
+}
+
+impl fmt::Debug for Motion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Motion").field(&self.view()).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::devices::hiperdrive::procedures::dead_man::Effort;
+    use crate::link::VirtualClock;
+
+    /// Where the window and the thread of the connection stood still together, the window may be the first to wake up.
+    #[test]
+    fn what_nobody_said_for_too_long_is_not_said_again() {
+        let clock = Arc::new(VirtualClock::default());
+        let motion = Motion::new(clock.clone());
+        let is_stale = || motion.with_wanted(|intent, _| intent.is_stale(clock.now()));
+        let later = |time: Duration| clock.sleep_until(clock.now() + time);
+        motion.intend(DriveNumber::FIRST, Wish::Move { target: 1, effort: Effort::MOVE });
+        for _ in 0..3 {
+            later(Intent::FRESH);
+            motion.refresh();
+        }
+        assert!(!is_stale(), "said in time, again and again");
+        later(Intent::FRESH + Duration::from_millis(1));
+        motion.refresh();
+        assert!(is_stale(), "too late");
+        motion.intend(DriveNumber::FIRST, Wish::Move { target: 1, effort: Effort::MOVE });
+        assert!(!is_stale(), "another act");
+    }
+}

@@ -1,0 +1,116 @@
+//! From a link URL to a session with an adapter or a hub.
+
+use std::net::Ipv4Addr;
+use std::sync::{Arc, Mutex};
+
+use super::{Hiperdrive, Way};
+use crate::bits::MaskedBytes;
+use crate::devices::hiperdrive::procedures::{PARAMETERS, Station};
+use crate::devices::hiperdrive::sim::{Config, Target};
+use crate::link::{
+    Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, SimPort, TcpLink, TraceEntry, UdpPort, Wire,
+};
+use crate::store::Store;
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, read_recording};
+use crate::worker::{OpenError, Session};
+
+/// Link parameters that are the host's and nothing of the virtual device. The order of bytes is both's.
+const LINE_ONLY: [&str; 3] = ["rpi", "udp", "timeout"];
+
+/// Everything about a link to an adapter or a hub that can be told without opening it.
+///
+/// # Errors
+/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    read(url).map(|_| ())
+}
+
+/// Opens a link to an adapter or a hub: `enip:` leads to it, `sim:` to a virtual one, `replay:` to a recording of one, which
+/// has no cyclic connection.
+///
+/// # Errors
+/// See [`OpenError`]; nothing has been sent.
+pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
+    let (station, config) = read(url)?;
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let way = match url.wire() {
+        Wire::File(path) => {
+            let entries = read_recording(path)?.into_iter().map(without_number).collect();
+            let wire = Box::new(ReplayLink::new(path, entries, clock.clone()));
+            Way { wire, port: None, station, target: None }
+        }
+        Wire::Host(target) | Wire::Port(target) => {
+            let wire = Box::new(TcpLink::connect(target, clock.clone())?);
+            let port = Box::new(UdpPort::new(target, clock.clone()));
+            Way { wire, port: Some(port), station, target: None }
+        }
+        Wire::Inside => virtually(&config, station, clock.clone()),
+    };
+    Ok(Session::to_target(way, clock, store))
+}
+
+/// The way to a virtual device in this process.
+fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Way {
+    let target = Target::new(config);
+    let connection = target.connection(Ipv4Addr::UNSPECIFIED);
+    let wire = inside(connection, &clock);
+    let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock));
+    Way { wire, port: Some(port), station, target: Some(target) }
+}
+
+/// The device as the link says, and the virtual one, which counts for a link to it alone.
+fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
+    let config = match url.scheme {
+        Scheme::Sim => Config::from_pairs(&url.query.without(&LINE_ONLY))?,
+        Scheme::Enip | Scheme::Replay => {
+            check_parameters(&url.query, url.scheme, &PARAMETERS)?;
+            Config::default()
+        }
+        Scheme::Serial | Scheme::Tcp | Scheme::Bridge | Scheme::Modbus => {
+            return Err(leads_elsewhere(url.scheme, "sim:, enip:, replay:"));
+        }
+    };
+    let tcp = match url.wire() {
+        Wire::Host(host) => host.rsplit_once(':').and_then(|(_, port)| port.parse().ok()),
+        _ => None,
+    };
+    let mut station = Station::from_query(&url.query, tcp, margin(url.scheme))?;
+    station.recorded = url.scheme == Scheme::Replay;
+    Ok((station, config))
+}
+
+/// Sessions and requests have other numbers every day: a recording answers whatever they are.
+fn without_number(entry: TraceEntry) -> TraceEntry {
+    const NUMBERS: [usize; 12] = [4, 5, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19];
+    let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
+    TraceEntry { bytes: MaskedBytes::masked(&bytes, &NUMBERS), ..entry }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_to_a_device_or_say_why_not() {
+        for text in [
+            "sim:",
+            "sim:?hub=4&drives=1,0,1&order=big&rpi=5&timeout=500",
+            "enip:192.168.1.7",
+            "enip:hub:50123?rpi=100&order=little&udp=2222&timeout=250",
+            "replay:drives.trace",
+        ] {
+            assert!(check(&text.parse().unwrap()).is_ok(), "{text}");
+        }
+        for (text, why) in [
+            ("serial:/dev/ttyUSB0", "serial: links do not lead to this device; those that do are sim:, enip:, replay:"),
+            ("modbus:plc", "modbus: links do not lead to this device; those that do are sim:, enip:, replay:"),
+            ("enip:hub?hub=4", "hub is not a parameter of enip: links; known are rpi, order, udp, timeout"),
+            ("enip:hub?rpi=4", "rpi=4: milliseconds from 5 to 100"),
+            ("sim:?rpi=1000", "rpi=1000: milliseconds from 5 to 100"),
+            ("sim:?what=1", "a virtual"),
+        ] {
+            let error = check(&text.parse().unwrap()).unwrap_err().to_string();
+            assert!(error.starts_with(why), "{text}: {error}");
+        }
+    }
+}

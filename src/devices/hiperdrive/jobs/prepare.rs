@@ -1,0 +1,108 @@
+//! From a change that a user wants to a plan. Reads; writes nothing.
+
+use super::{Change, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
+use crate::devices::hiperdrive::procedures::write::{Remedy, remedy};
+use crate::devices::hiperdrive::procedures::{Error, Identity, Master, read_state, settings};
+use crate::devices::hiperdrive::profile::{
+    HiperdrivePlan, Image, Op, Restore, Service, other_types, plan_edits, plan_network, plan_restore, plan_service,
+    plan_set_position,
+};
+use crate::devices::hiperdrive::protocol::ParameterNumber;
+use crate::worker::commit::cycles_seen;
+use crate::worker::{Desk, Progress, Tell};
+
+pub(super) fn prepare(
+    device: &mut Hiperdrive,
+    desk: &mut Desk,
+    change: &Change,
+    tell: Told<'_>,
+) -> Result<Prepared, JobError> {
+    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let mut master = device.master(desk);
+    let told = &mut |done, total, number| {
+        tell(Tell::Progress(Progress { done, total, what: Doing::Parameter(number) }));
+    };
+    let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
+    let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {
+        let (identity, state) = read_state(master, numbers, told)?;
+        are_there(&identity, change)?;
+        Ok::<_, Error>((identity, state))
+    };
+    let (identity, image, plan) = match change {
+        Change::Restore { profile, options } => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let plan = plan_restore(profile, &state, *options)?;
+            (identity, state.image, plan)
+        }
+        Change::Write(wanted) => {
+            let (identity, state) = state(&mut master, beside(wanted))?;
+            let plan = plan_edits(&state, wanted)?;
+            (identity, state.image, only(plan))
+        }
+        Change::Try(wanted) => {
+            let (identity, state) = state(&mut master, beside(wanted))?;
+            let plan = plan_edits(&state, wanted)?.without_save();
+            (identity, state.image, only(plan))
+        }
+        Change::SetPosition { drive, position, save } => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let plan = plan_set_position(&state, *drive, *position)?;
+            (identity, state.image, only(if *save { plan } else { plan.without_save() }))
+        }
+        Change::Do(service) => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let mut plan = plan_service(&state.image, *service);
+            if let Service::Acknowledge(drive) = service {
+                match remedy(&mut master, *drive)? {
+                    Remedy::Nothing => plan.ops.clear(),
+                    Remedy::Acknowledgement => {}
+                    Remedy::Reset => {
+                        // It concerns all drives, and is shown as what it is.
+                        plan = plan_service(&state.image, Service::Reset);
+                        plan.ops.push(Op::Service(*service));
+                    }
+                }
+            }
+            (identity, state.image, only(plan))
+        }
+        Change::Network(wanted) => {
+            let (identity, state) = state(&mut master, Vec::new())?;
+            let now = settings(&mut master)?;
+            let switch = ParameterNumber::new(12).map(|number| master.read_number(number)).transpose()?;
+            let plan = plan_network(&now, switch, wanted)?;
+            (identity, state.image, only(plan))
+        }
+    };
+    let cycles_seen = cycles_seen(&store, &device_key(&identity, is_virtual));
+    let other_types = match change {
+        Change::Restore { profile, .. } => other_types(&profile.identity, &identity.profile()),
+        _ => Vec::new(),
+    };
+    let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
+    Ok(Prepared {
+        kind: change.kind(),
+        plan,
+        identity,
+        image,
+        cycles_seen,
+        unchanged,
+        missing,
+        mounting_left,
+        other_types,
+        mounting_written,
+    })
+}
+
+/// That there are the drives which a person has named. A profile may have more of them.
+fn are_there(identity: &Identity, change: &Change) -> Result<(), Error> {
+    let named = match change {
+        Change::Write(wanted) | Change::Try(wanted) => wanted.drives(),
+        Change::SetPosition { drive, .. } | Change::Do(Service::Acknowledge(drive)) => vec![*drive],
+        Change::Restore { .. } | Change::Do(_) | Change::Network(_) => Vec::new(),
+    };
+    named.into_iter().try_for_each(|drive| identity.named(drive).map(|_| ()))
+}
+
+fn only(plan: HiperdrivePlan) -> Restore {
+    Restore { plan, unchanged: 0, missing: Vec::new(), mounting_left: Vec::new(), mounting_written: Vec::new() }
+}

@@ -1,0 +1,259 @@
+//! The watch over explicit messages while drives are in control: how long the device has left a request without an answer. A
+//! device that is silent there ends a motion as fast as any other loss, though its cyclic packets go on.
+//!
+//! | what | time |
+//! |---|---|
+//! | a request, at least, while a drive moves ([`REQUEST`]) | 60 ms |
+//! | without an answer, at most ([`PATIENCE`]), or twice what the device has taken lately | 130 ms |
+//! | together | 190 ms |
+//!
+//! What counts is for how long somebody has listened: a thread that a busy computer kept from looking cannot say that there was
+//! no answer. Beyond [`UNHEARD`] that counts as none.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::Motion;
+use crate::buses::ethernet_ip::protocol::Receiver;
+use crate::link::{ByteLink, Clock, LinkError};
+use crate::units::{CharacterFormat, Moment};
+
+/// While a drive moves, something is asked at least so often.
+pub(super) const REQUEST: Duration = Duration::from_millis(60);
+/// How long a device may leave a request unanswered while a drive moves.
+const PATIENCE: Duration = Duration::from_millis(130);
+/// Without a look at the line for so much longer, there is no answer either.
+const UNHEARD: Duration = Duration::from_millis(250);
+/// While an answer is awaited, the line is looked at so often.
+const LOOK: Duration = Duration::from_millis(10);
+/// No device is given more, however slow it was.
+const MOST_PATIENCE: Duration = Duration::from_secs(1);
+
+/// Requests and answers over one connection.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct SessionWatch {
+    /// When the first request was sent that has no answer yet.
+    asked: Option<Moment>,
+    /// When the line was looked at last without finding anything.
+    looked: Moment,
+    /// The slowest answer, fading with each faster one.
+    slowest: Duration,
+    /// What came last was no frame.
+    broken: bool,
+}
+
+impl SessionWatch {
+    /// A request goes out.
+    pub(super) const fn ask(&mut self, now: Moment) {
+        if self.asked.is_none() {
+            self.asked = Some(now);
+        }
+    }
+
+    /// A frame came.
+    pub(super) fn answer(&mut self, now: Moment) {
+        self.broken = false;
+        // A parameter that takes seconds says nothing of the others.
+        if let Some(took) = self.asked.take().map(|asked| now.since(asked)).filter(|took| *took <= MOST_PATIENCE) {
+            self.slowest = took.max(self.slowest * 7 / 8);
+        }
+    }
+
+    /// Nothing has come until now.
+    pub(super) const fn look(&mut self, now: Moment) {
+        self.looked = now;
+    }
+
+    /// Bytes came that are no frame.
+    pub(super) const fn break_off(&mut self) {
+        self.broken = true;
+    }
+
+    /// The device has not answered for too long to move anything, or with bytes that are no frame.
+    pub(super) fn is_silent(&self, now: Moment) -> bool {
+        let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
+        let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNHEARD;
+        self.broken || self.asked.is_some_and(is_late)
+    }
+}
+
+/// A wire on which requests and answers are watched.
+pub(super) struct WatchedWire {
+    wire: Box<dyn ByteLink>,
+    clock: Arc<dyn Clock>,
+    motion: Motion,
+    frames: Receiver,
+}
+
+impl WatchedWire {
+    pub(super) fn new(wire: Box<dyn ByteLink>, clock: Arc<dyn Clock>, motion: Motion) -> Self {
+        WatchedWire { wire, clock, motion, frames: Receiver::default() }
+    }
+}
+
+impl ByteLink for WatchedWire {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let now = self.clock.now();
+        self.motion.with_session(|session| session.ask(now));
+        self.wire.send(bytes)
+    }
+
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+        let before = into.len();
+        let mut now = self.clock.now();
+        loop {
+            let began = now;
+            self.wire.receive((began + LOOK).min(until), into)?;
+            now = self.clock.now();
+            if into.len() > before {
+                break;
+            }
+            self.motion.with_session(|session| session.look(now));
+            // A line whose time does not go on has nothing more to give.
+            if now >= until || now <= began {
+                return Ok(());
+            }
+        }
+        self.frames.push(into.get(before..).unwrap_or_default());
+        loop {
+            match self.frames.next_frame() {
+                Ok(Some(_)) => self.motion.with_session(|session| session.answer(now)),
+                Ok(None) => return Ok(()),
+                Err(_) => {
+                    self.frames = Receiver::default();
+                    self.motion.with_session(SessionWatch::break_off);
+                }
+            }
+        }
+    }
+
+    fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError> {
+        self.wire.set_format(format)
+    }
+
+    fn sets_format(&self) -> bool {
+        self.wire.sets_format()
+    }
+
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.wire.check()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperdrive::procedures::dead_man::Lock;
+    use crate::devices::hiperdrive::protocol::DriveNumber;
+    use crate::link::VirtualClock;
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    /// Issue 21.13: 130 ms of listening in silence are too long, counted from the first request without an answer.
+    #[test]
+    fn silence_counts_from_the_first_request_without_an_answer() {
+        let mut watch = SessionWatch::default();
+        assert!(!watch.is_silent(at(10_000)), "nothing was asked");
+        watch.ask(at(100));
+        watch.ask(at(180));
+        watch.look(at(230));
+        assert!(!watch.is_silent(at(260)), "listened for 130 ms");
+        watch.look(at(231));
+        assert!(watch.is_silent(at(231)));
+        watch.answer(at(250));
+        assert!(!watch.is_silent(at(1000)), "it was answered");
+        watch.break_off();
+        assert!(watch.is_silent(at(1000)), "with bytes that are no frame");
+        watch.answer(at(1001));
+        assert!(!watch.is_silent(at(1001)));
+    }
+
+    /// A line on which nothing comes but what is put there.
+    #[derive(Default)]
+    struct Line(Vec<u8>);
+
+    impl ByteLink for Line {
+        fn send(&mut self, _: &[u8]) -> Result<(), LinkError> {
+            Ok(())
+        }
+
+        fn receive(&mut self, _: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
+            into.append(&mut self.0);
+            Ok(())
+        }
+
+        fn set_format(&mut self, _: CharacterFormat) -> Result<(), LinkError> {
+            Ok(())
+        }
+
+        fn check(&mut self) -> Result<(), LinkError> {
+            Ok(())
+        }
+    }
+
+    /// Issue 21.13: a motion is locked by a request without an answer, and by bytes that are no frame; a reply frees it. The
+    /// reply is the reference's to RegisterSession (9), which comes in two portions.
+    #[test]
+    fn a_silent_session_locks_motion() {
+        let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];
+        reply.extend([0; 16]);
+        reply.extend([1, 0, 0, 0]);
+        let clock = Arc::new(VirtualClock::default());
+        let motion = Motion::new(clock.clone());
+        let locked = || {
+            let locks = motion.with_wanted(|_, permit| permit(DriveNumber::FIRST).locks);
+            assert_eq!(motion.permitted(DriveNumber::FIRST).locks, locks, "the window shows what the dead-man asks");
+            locks.contains(&Lock::NoAnswer)
+        };
+        let later = |ms| clock.sleep_until(clock.now() + Duration::from_millis(ms));
+        let receive = |bytes: &[u8]| {
+            let mut wire = WatchedWire::new(Box::new(Line(bytes.to_vec())), clock.clone(), motion.clone());
+            wire.receive(clock.now(), &mut Vec::new()).unwrap();
+        };
+        let mut wire = WatchedWire::new(Box::new(Line::default()), clock.clone(), motion.clone());
+        wire.send(&[0]).unwrap();
+        later(130);
+        let _ = wire.receive(clock.now(), &mut Vec::new());
+        assert!(!locked());
+        later(1);
+        let _ = wire.receive(clock.now(), &mut Vec::new());
+        assert!(locked());
+        receive(&reply[..20]);
+        assert!(locked(), "half a frame is no answer");
+        receive(&reply);
+        assert!(!locked());
+        receive(&[0xFF; 64]);
+        assert!(locked(), "no frame");
+        receive(&reply);
+        assert!(!locked());
+    }
+
+    /// A device that takes 300 ms for each answer is given 600, and less again when it has become fast.
+    #[test]
+    fn a_slow_device_is_given_more_time() {
+        let mut watch = SessionWatch::default();
+        watch.ask(at(0));
+        watch.answer(at(300));
+        watch.ask(at(1000));
+        // Nobody looks at the line: 250 ms more.
+        assert!(!watch.is_silent(at(1850)) && watch.is_silent(at(1851)));
+        watch.answer(at(1900));
+        watch.ask(at(7000));
+        assert!(!watch.is_silent(at(8250)) && watch.is_silent(at(8251)), "never more than a second");
+        for step in 0..40 {
+            watch.answer(at(8100 + step * 100));
+            watch.ask(at(8190 + step * 100));
+        }
+        watch.look(at(12_090 + 131));
+        assert!(watch.is_silent(at(12_090 + 131)), "{watch:?}");
+        // A presence test takes eight seconds on a hub, and says nothing of what comes behind it.
+        let mut watch = SessionWatch::default();
+        watch.ask(at(0));
+        watch.answer(at(8000));
+        watch.ask(at(9000));
+        watch.look(at(9131));
+        assert!(watch.is_silent(at(9131)));
+    }
+}

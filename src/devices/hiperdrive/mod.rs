@@ -1,0 +1,10 @@
+//! HIPERDRIVE positioning drives.
+
+pub mod commands;
+pub mod jobs;
+pub mod procedures;
+pub mod profile;
+pub mod protocol;
+pub mod sim;
+pub mod state;
+pub mod views;

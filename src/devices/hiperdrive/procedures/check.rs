@@ -1,0 +1,349 @@
+//! The device check: what an adapter or a hub and its drives say, with a verdict a line. It sets nothing and moves nothing.
+
+use std::fmt;
+use std::time::Duration;
+
+use super::identify::{drive_status, identify, of, own};
+use super::limits::ends_by_itself;
+use super::network::network;
+use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
+use crate::buses::ethernet_ip::protocol::AddressSource;
+use crate::device::check;
+use crate::devices::hiperdrive::protocol::{
+    AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, Reach, State, StatusBit, Topology, Travel,
+    Variant,
+};
+
+pub use crate::device::check::Verdict;
+
+/// One line of the check.
+pub type Line = check::Line<Step, Finding>;
+
+/// A step of the check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Explicit messages are answered.
+    Messages,
+    /// Which device it is.
+    Device,
+    /// The control supply.
+    Supply,
+    /// How warm the device is.
+    Temperature,
+    /// Where its address comes from.
+    Address,
+    /// Parameter 47: what was saved is whole, and nothing is being saved.
+    Memory,
+    /// What is plugged in.
+    Drives,
+    /// Whether a drive is requested.
+    Request(DriveNumber),
+    /// RS-485 to a drive.
+    Line(DriveNumber),
+    /// The time-out of RS-485, which stops a drive that is left alone.
+    Timeout(DriveNumber),
+    /// State and errors of a drive.
+    Errors(DriveNumber),
+    /// How warm a drive is.
+    DriveTemperature(DriveNumber),
+    /// Scaling, limits and position of a drive.
+    Range(DriveNumber),
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of_drive =
+            |f: &mut fmt::Formatter<'_>, what, drive: &DriveNumber| write!(f, "drive {}: {what}", drive.get());
+        match self {
+            Step::Messages => f.write_str("messages"),
+            Step::Device => f.write_str("device"),
+            Step::Supply => f.write_str("supply"),
+            Step::Temperature => f.write_str("temperature"),
+            Step::Address => f.write_str("address"),
+            Step::Memory => f.write_str("memory"),
+            Step::Drives => f.write_str("drives"),
+            Step::Request(drive) => of_drive(f, "requested", drive),
+            Step::Line(drive) => of_drive(f, "RS-485", drive),
+            Step::Timeout(drive) => of_drive(f, "time-out", drive),
+            Step::Errors(drive) => of_drive(f, "state and errors", drive),
+            Step::DriveTemperature(drive) => of_drive(f, "temperature", drive),
+            Step::Range(drive) => of_drive(f, "scaling and limits", drive),
+        }
+    }
+}
+
+/// One fact that the check found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// A value was read so often, within so long a reply each.
+    Replies {
+        /// How often.
+        asked: u32,
+        /// The longest, in milliseconds.
+        slowest_ms: u64,
+        /// Frames that came after somebody had waited for them.
+        late: u64,
+    },
+    /// What it is.
+    Category(String),
+    /// Its serial number.
+    SerialNumber(String),
+    /// Its software.
+    Version(String),
+    /// Tenths of a volt.
+    Supply(i64),
+    /// Degrees Celsius.
+    Temperature(i64),
+    /// What the address switches say.
+    Switch(AddressSwitch),
+    /// The address switches say what there is not.
+    UnknownSwitch(i64),
+    /// Where the address comes from with the switches at 0.
+    Source(AddressSource),
+    /// Nothing is being saved, and what was saved is whole.
+    Saved,
+    /// Parameter 47 is not 0: the memory is bad, or the device is busy.
+    NotSaved(i64),
+    /// A drive is plugged in.
+    Drive {
+        /// Where.
+        number: DriveNumber,
+        /// Which one.
+        variant: Variant,
+        /// Its serial number.
+        serial_number: String,
+    },
+    /// No drive is plugged in.
+    NoDrives,
+    /// Parameter 152 is 1.
+    Requested,
+    /// Parameter 152 is 0.
+    NotRequested,
+    /// Of a hub switch S3 has to be at 0 for drives to move; it cannot be read.
+    LookAtS3,
+    /// Parameter 118 is 0.
+    LineGood,
+    /// Parameter 118: FFFFh for no drive, or what went wrong.
+    LineWord(u16),
+    /// Parameter 186: tenths of a second.
+    Timeout(i64),
+    /// Parameter 186 is no time: a drive that is left alone goes on.
+    NoTimeout,
+    /// Where it is in the state machine.
+    State(State),
+    /// Its status word cannot be: process data may have another byte order.
+    StrayStatus(u16),
+    /// Parameter 116 is not 0.
+    DriveWord(u16),
+    /// Parameter 117 is not 0.
+    MotionWord(u16),
+    /// An error in its buffer.
+    Error(ErrorCode),
+    /// Faults since the last acknowledgement.
+    Faults(u8),
+    /// Numerator and denominator of the position scale, and the limits.
+    Range {
+        /// Parameter 154.
+        numerator: i64,
+        /// Parameter 156.
+        denominator: i64,
+        /// Parameter 158.
+        lower: i64,
+        /// Parameter 160.
+        upper: i64,
+    },
+    /// Numerator or denominator make no scale.
+    BadScale {
+        /// Parameter 154.
+        numerator: i64,
+        /// Parameter 156.
+        denominator: i64,
+    },
+    /// The upper limit is not above the lower one.
+    LimitsCrossed {
+        /// Parameter 158.
+        lower: i64,
+        /// Parameter 160.
+        upper: i64,
+    },
+    /// A limit lies farther from 0 than the drive turns.
+    BeyondTravel {
+        /// Parameter 158 or 160.
+        limit: i64,
+        /// Its place in turns.
+        turns: f64,
+        /// The turns that it has either way.
+        most: i32,
+    },
+    /// The position lies between the limits.
+    Within(i64),
+    /// The position lies outside of the limits.
+    Outside {
+        /// Where it is.
+        position: i64,
+        /// Parameter 158.
+        lower: i64,
+        /// Parameter 160.
+        upper: i64,
+    },
+}
+
+/// So often a value is read, to see how the device answers.
+const LOOKS: u32 = 20;
+/// Tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
+const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;
+/// Degrees that a device or a drive stands (`U`: the manual contradicts itself, reference 8.9).
+const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
+
+/// Carries out the check. It ends early only when the device fails.
+///
+/// # Errors
+/// [`Error::NotHiperdrive`]; the way.
+pub fn check(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, Step)) -> Result<Vec<Line>, Error> {
+    let mut lines = Vec::new();
+    told(0, 1, Step::Messages);
+    let identity = identify(master, &mut |_, _, _| {})?;
+    lines.push(messages(master)?);
+    lines.push(device(&identity));
+    lines.push(Line::of(Step::Supply, vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, Finding::Supply)]));
+    let celsius = master.read_number(own(11)?)?;
+    lines.push(Line::of(Step::Temperature, vec![in_range(celsius, &TEMPERATURES, Finding::Temperature)]));
+    lines.push(Line::of(Step::Address, address(&network(master)?)));
+    let saved = match master.read_number(ParameterNumber::SAVE)? {
+        0 => (Verdict::Good, Finding::Saved),
+        other => (Verdict::Attention, Finding::NotSaved(other)),
+    };
+    lines.push(Line::of(Step::Memory, vec![saved]));
+    lines.push(Line::of(Step::Drives, drives(&identity)));
+    let total = identity.drives.len() as u64 + 1;
+    for (at, drive) in identity.drives.iter().enumerate() {
+        told(at as u64 + 1, total, Step::Errors(drive.number));
+        lines.extend(check_drive(master, &identity, drive)?);
+    }
+    Ok(lines)
+}
+
+fn in_range(value: i64, range: &std::ops::RangeInclusive<i64>, of: fn(i64) -> Finding) -> (Verdict, Finding) {
+    (if range.contains(&value) { Verdict::Good } else { Verdict::Attention }, of(value))
+}
+
+fn messages(master: &mut Master<'_>) -> Result<Line, Error> {
+    let mut slowest = Duration::ZERO;
+    for _ in 0..LOOKS {
+        let begun = master.now();
+        master.read_number(own(9)?)?;
+        slowest = slowest.max(master.now().since(begun));
+    }
+    let late = master.station().late();
+    let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
+    let replies = Finding::Replies { asked: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
+    Ok(Line::of(Step::Messages, vec![(verdict, replies)]))
+}
+
+fn device(identity: &Identity) -> Line {
+    let findings = [
+        Finding::Category(identity.category.clone()),
+        Finding::SerialNumber(identity.serial_number.clone()),
+        Finding::Version(identity.version.clone()),
+    ];
+    Line::of(Step::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
+}
+
+fn address(network: &Network) -> Vec<(Verdict, Finding)> {
+    let Some(switch) = network.address_switch() else {
+        return vec![(Verdict::Attention, Finding::UnknownSwitch(network.switch))];
+    };
+    let mut findings = vec![(Verdict::Good, Finding::Switch(switch))];
+    if switch == AddressSwitch::Object {
+        findings.extend(network.control.map(|control| (Verdict::Good, Finding::Source(control.source()))));
+    }
+    findings
+}
+
+fn drives(identity: &Identity) -> Vec<(Verdict, Finding)> {
+    if identity.drives.is_empty() {
+        return vec![(Verdict::Bad, Finding::NoDrives)];
+    }
+    let found = |drive: &DriveIdentity| {
+        let DriveIdentity { number, variant, serial_number, .. } = drive;
+        (Verdict::Good, Finding::Drive { number: *number, variant: *variant, serial_number: serial_number.clone() })
+    };
+    identity.drives.iter().map(found).collect()
+}
+
+fn check_drive(master: &mut Master<'_>, identity: &Identity, drive: &DriveIdentity) -> Result<Vec<Line>, Error> {
+    let number = drive.number;
+    let status = drive_status(master, number)?;
+    let mut request = match drive.requested {
+        true => vec![(Verdict::Good, Finding::Requested)],
+        false => vec![(Verdict::Attention, Finding::NotRequested)],
+    };
+    request.extend((identity.topology != Topology::Adapter).then_some((Verdict::Good, Finding::LookAtS3)));
+    let [_, _, communication] = status.words;
+    let rs485 = match communication {
+        0 => (Verdict::Good, Finding::LineGood),
+        other => (Verdict::Bad, Finding::LineWord(other)),
+    };
+    let timeout = match master.read_number(of(186, number)?)? {
+        tenths if ends_by_itself(tenths) => (Verdict::Good, Finding::Timeout(tenths)),
+        _ => (Verdict::Bad, Finding::NoTimeout),
+    };
+    let temperature = in_range(status.temperature, &TEMPERATURES, Finding::Temperature);
+    Ok(vec![
+        Line::of(Step::Request(number), request),
+        Line::of(Step::Line(number), vec![rs485]),
+        Line::of(Step::Timeout(number), vec![timeout]),
+        Line::of(Step::Errors(number), errors(&status)),
+        Line::of(Step::DriveTemperature(number), vec![temperature]),
+        Line::of(Step::Range(number), range(master, drive)?),
+    ])
+}
+
+fn errors(status: &DriveStatus) -> Vec<(Verdict, Finding)> {
+    let DriveStatus { status: word, words: [drive, motion, _], buffer, faults, .. } = status;
+    let mut findings = Vec::new();
+    if word.is_plausible() {
+        let state = word.state();
+        let is_bad = matches!(state, State::Fault | State::Locked) || word.has(StatusBit::Fault);
+        findings.push((if is_bad { Verdict::Bad } else { Verdict::Good }, Finding::State(state)));
+    } else {
+        findings.push((Verdict::Attention, Finding::StrayStatus(word.word())));
+    }
+    findings.extend((*drive != 0).then_some((Verdict::Attention, Finding::DriveWord(*drive))));
+    findings.extend((*motion != 0).then_some((Verdict::Attention, Finding::MotionWord(*motion))));
+    // What is in the buffer may be old: the count of faults says whether it matters.
+    let of_buffer = if *faults == 0 { Verdict::Good } else { Verdict::Attention };
+    findings.extend(buffer.iter().map(|code| (of_buffer, Finding::Error(*code))));
+    findings.extend((*faults != 0).then_some((Verdict::Attention, Finding::Faults(*faults))));
+    findings
+}
+
+fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict, Finding)>, Error> {
+    let mut read = |base| master.read_number(of(base, drive.number)?);
+    let (numerator, denominator) = (read(154)?, read(156)?);
+    let (lower, upper, position) = (read(158)?, read(160)?, read(107)?);
+    let mut findings = vec![(Verdict::Good, Finding::Range { numerator, denominator, lower, upper })];
+    if upper <= lower {
+        findings.push((Verdict::Bad, Finding::LimitsCrossed { lower, upper }));
+    }
+    findings.push(match (lower..=upper).contains(&position) {
+        true => (Verdict::Good, Finding::Within(position)),
+        false => (Verdict::Bad, Finding::Outside { position, lower, upper }),
+    });
+    let scale = u16::try_from(numerator).ok().zip(u16::try_from(denominator).ok());
+    match scale.and_then(|(numerator, denominator)| PositionScale::new(numerator, denominator).ok()) {
+        None => findings.push((Verdict::Bad, Finding::BadScale { numerator, denominator })),
+        Some(scale) => {
+            let family = drive.variant.row().map(|row| row.family);
+            let travel = Travel { family, scale: Some(scale) };
+            if let Some((family, steps)) = family.zip(travel.steps(Reach::Position)) {
+                let beyond = [lower, upper].into_iter().filter(|limit| limit.abs() > steps);
+                findings.extend(beyond.map(|limit| {
+                    let (turns, most) = (limit as f64 / scale.steps_per_turn(), family.most_turns());
+                    (Verdict::Bad, Finding::BeyondTravel { limit, turns, most })
+                }));
+            }
+        }
+    }
+    Ok(findings)
+}

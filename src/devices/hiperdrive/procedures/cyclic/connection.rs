@@ -1,0 +1,143 @@
+//! Packets of a cyclic connection: numbered and timed on their way out, looked at on their way in (reference 7).
+
+use std::time::Duration;
+
+use super::LinkFigures;
+use crate::buses::ethernet_ip::protocol::{Arrival, Arrivals, IoPacket, RealTimeFormat, RunIdle};
+use crate::devices::hiperdrive::procedures::Opened;
+use crate::devices::hiperdrive::protocol::{InImage, Layout, OutImage};
+use crate::units::Moment;
+
+/// One end of a cyclic connection that was opened.
+#[derive(Clone, Debug)]
+pub struct Connection {
+    to_target: u32,
+    to_originator: u32,
+    layout: Layout,
+    send_interval: Duration,
+    come_interval: Duration,
+    next: Moment,
+    sequence: u32,
+    count: u16,
+    arrivals: Arrivals,
+    /// When something that counts came last, or when the connection was opened.
+    heard: Moment,
+    /// Since when somebody has listened without a gap.
+    awake: Moment,
+    /// Until the target gives us up.
+    timeout: Duration,
+    began: bool,
+    figures: LinkFigures,
+}
+
+/// Without a packet for so many intervals, nothing moves, and a connection over which something moves is lost.
+const LOST: u32 = 3;
+/// Until the first packet comes.
+const FIRST: Duration = Duration::from_secs(1);
+/// Before the data of a target that sends it: its description would say so (`U`).
+const HEADER: usize = 4;
+
+impl Connection {
+    /// At the moment at which it was opened; the first packet is due at once.
+    pub fn new(opened: &Opened, now: Moment) -> Self {
+        // An interval of nothing would never end.
+        let interval = |interval: Duration| interval.max(Duration::from_millis(1));
+        let come_interval = interval(opened.to_originator_interval);
+        Connection {
+            to_target: opened.to_target_id,
+            to_originator: opened.to_originator_id,
+            layout: opened.layout,
+            send_interval: interval(opened.to_target_interval),
+            come_interval,
+            next: now,
+            sequence: 0,
+            count: 0,
+            arrivals: Arrivals::default(),
+            heard: now,
+            awake: now,
+            timeout: opened.timeout,
+            began: false,
+            figures: LinkFigures { interval: come_interval, ..LinkFigures::default() },
+        }
+    }
+
+    /// What is measured.
+    pub const fn figures(&self) -> &LinkFigures {
+        &self.figures
+    }
+
+    /// How process data are laid out.
+    pub const fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// When the next packet is due.
+    pub const fn poll_at(&self) -> Moment {
+        self.next
+    }
+
+    /// Nothing has come for three intervals, whoever is to blame: where the drives are is not known.
+    pub fn is_quiet(&self, now: Moment) -> bool {
+        self.began && now.since(self.heard) > self.come_interval * LOST
+    }
+
+    /// How long nothing has come, where that is too long. While something moves that is three intervals of listening: whoever
+    /// was kept from listening by a busy computer cannot tell whether nothing came, and what came may still be on its way to
+    /// him. At rest, and in any case, it is as long as the target itself waits for a packet of ours.
+    pub fn silent(&mut self, now: Moment, moves: bool) -> Option<Duration> {
+        if now.since(self.next) > self.come_interval {
+            self.awake = now;
+        }
+        let intervals = self.come_interval * LOST;
+        let silence = now.since(self.heard);
+        let listened = now.since(self.heard.max(self.awake));
+        let most = if self.began { self.timeout.max(intervals) } else { FIRST.max(self.timeout) };
+        (moves && self.began && listened > intervals || silence > most).then_some(silence)
+    }
+
+    /// A packet has come: what it says, where it counts.
+    pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> Option<InImage> {
+        let packet = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok();
+        let packet = packet.filter(|packet| packet.connection == self.to_originator);
+        let image = packet.as_ref().and_then(|packet| self.image(&packet.data));
+        let Some((packet, image)) = packet.zip(image) else {
+            self.figures.malformed += 1;
+            return None;
+        };
+        match self.arrivals.take(packet.sequence) {
+            Arrival::Stale => {
+                self.figures.stale += 1;
+                None
+            }
+            Arrival::New { missing } => {
+                if self.began {
+                    self.figures.missed += u64::from(missing);
+                    self.figures.intervals.count(self.come_interval, now.since(self.heard));
+                }
+                self.figures.received += 1;
+                (self.heard, self.began) = (now, true);
+                Some(image)
+            }
+        }
+    }
+
+    /// A packet is due with this. Whoever comes late sends one, not all that were left out.
+    pub fn packet(&mut self, now: Moment, image: &OutImage) -> Vec<u8> {
+        self.next = self.next + self.send_interval;
+        if self.next <= now {
+            self.next = now + self.send_interval;
+        }
+        self.sequence = self.sequence.wrapping_add(1);
+        self.count = self.count.wrapping_add(1);
+        self.figures.sent += 1;
+        let data = image.emit(self.layout);
+        let header = Some(RunIdle::RUN);
+        IoPacket { connection: self.to_target, sequence: self.sequence, count: self.count, header, data }.emit()
+    }
+
+    fn image(&self, data: &[u8]) -> Option<InImage> {
+        let bare = data.len().checked_sub(HEADER).filter(|length| *length == self.layout.length());
+        let data = if bare.is_some() { data.get(HEADER..)? } else { data };
+        InImage::parse(data, self.layout).ok()
+    }
+}

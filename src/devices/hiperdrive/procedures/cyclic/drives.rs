@@ -1,0 +1,152 @@
+//! All drives of a cyclic connection with their dead-men, from its opening to its end.
+
+use std::time::Duration;
+
+use super::{Connection, CyclicLost, LinkFigures};
+use crate::devices::hiperdrive::procedures::Opened;
+use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Intent, Permit};
+use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, OutData, OutImage};
+use crate::units::Moment;
+
+/// The drives behind a cyclic connection.
+#[derive(Clone, Debug)]
+pub struct Drives {
+    connection: Connection,
+    men: Vec<Man>,
+    /// What the image has beyond those.
+    places: usize,
+    lost: Option<CyclicLost>,
+    ending: Option<Ending>,
+}
+
+#[derive(Clone, Debug)]
+struct Man {
+    dead_man: DeadMan,
+    /// What was heard since the last packet.
+    heard: Option<Actual>,
+}
+
+/// The way to the end: they stand, then they are off, then nothing is sent any more.
+#[derive(Clone, Copy, Debug)]
+struct Ending {
+    since: Moment,
+    /// Packets that say off.
+    off: u32,
+}
+
+/// As long as the ladder is, and what the drives need to brake.
+const LADDER: Duration = Duration::from_millis(700);
+/// One of them may be lost.
+const OFF: u32 = 3;
+
+impl Drives {
+    /// At the moment at which the connection was opened. No act up to `spent` moves anything.
+    pub fn new(opened: &Opened, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
+        let places = opened.layout.topology.drives();
+        let placed = drives.iter().filter(|drive| drive.get() <= places);
+        let men = placed.map(|drive| Man { dead_man: DeadMan::new(*drive, spent), heard: None }).collect();
+        Drives { connection: Connection::new(opened, now), men, places: places.into(), lost: None, ending: None }
+    }
+
+    /// The drives' dead-men.
+    pub fn men(&self) -> impl Iterator<Item = &DeadMan> {
+        self.men.iter().map(|man| &man.dead_man)
+    }
+
+    /// What is measured.
+    pub const fn figures(&self) -> &LinkFigures {
+        self.connection.figures()
+    }
+
+    /// Why it has ended, where nobody has closed it.
+    pub const fn lost(&self) -> Option<&CyclicLost> {
+        self.lost.as_ref()
+    }
+
+    /// Nothing may begin any more.
+    pub const fn is_ending(&self) -> bool {
+        self.ending.is_some()
+    }
+
+    /// Nothing is to be sent any more: the connection is to be closed.
+    pub fn is_over(&self) -> bool {
+        let off = self.ending.is_some_and(|ending| ending.off >= OFF);
+        off || matches!(self.lost, Some(CyclicLost::DoesNotStand(_) | CyclicLost::Port(_)))
+    }
+
+    /// The connection is to end: the drives stop, then they are off.
+    pub fn close(&mut self, now: Moment) {
+        if self.ending.is_none() {
+            self.ending = Some(Ending { since: now, off: 0 });
+            self.men.iter_mut().for_each(|man| man.dead_man.lose(now));
+        }
+    }
+
+    /// The connection has ended without being asked to. The drives are told to stop as long as they may hear it.
+    pub fn lose(&mut self, now: Moment, why: CyclicLost) {
+        if self.lost.is_none() && !self.is_over() {
+            self.lost = Some(why);
+        }
+        self.close(now);
+    }
+
+    /// A packet has come. Whether it counted.
+    pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> bool {
+        let Some(image) = self.connection.on_packet(now, bytes) else { return false };
+        for man in &mut self.men {
+            man.heard = image.drives.get(place(man.dead_man.drive())).copied();
+        }
+        true
+    }
+
+    /// When [`poll`](Self::poll) has something to send.
+    pub const fn poll_at(&self) -> Moment {
+        self.connection.poll_at()
+    }
+
+    /// The packet that is due now, where one is. Everything that has come until now has been handed over before.
+    pub fn poll(&mut self, now: Moment, intent: &Intent, permit: impl Fn(DriveNumber) -> Permit) -> Option<Vec<u8>> {
+        if now < self.poll_at() || self.is_over() {
+            return None;
+        }
+        let moves = self.men().any(|man| !man.is_idle());
+        if let Some(after) = self.connection.silent(now, moves) {
+            self.lose(now, CyclicLost::Silent { after });
+        }
+        if self.connection.is_quiet(now) {
+            self.men.iter_mut().for_each(|man| man.dead_man.fall_deaf(now));
+        }
+        let rest = Intent::rest(intent.drive, intent.number, now);
+        let intent = if self.is_ending() { &rest } else { intent };
+        let mut drives = vec![OutData::default(); self.places];
+        for man in &mut self.men {
+            let number = man.dead_man.drive();
+            let setpoint = man.dead_man.next(now, man.heard.take(), intent, &permit(number));
+            if let Some(out) = drives.get_mut(place(number)) {
+                *out = setpoint.into();
+            }
+        }
+        self.look_whether_it_ends(now, &mut drives);
+        let moving_on = self.men().find(|man| man.gives_up()).map(DeadMan::drive);
+        if let Some(number) = moving_on {
+            self.lost.get_or_insert(CyclicLost::DoesNotStand(number));
+            self.close(now);
+        }
+        Some(self.connection.packet(now, &OutImage { drives, pkw: None }))
+    }
+
+    fn look_whether_it_ends(&mut self, now: Moment, drives: &mut [OutData]) {
+        let idle = self.men().all(DeadMan::is_idle);
+        let Some(ending) = &mut self.ending else { return };
+        if idle || ending.off > 0 || now.since(ending.since) >= LADDER {
+            ending.off += 1;
+            for out in drives {
+                out.control = 0;
+            }
+        }
+    }
+}
+
+fn place(number: DriveNumber) -> usize {
+    usize::from(number.get()) - 1
+}

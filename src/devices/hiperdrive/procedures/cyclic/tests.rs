@@ -1,0 +1,359 @@
+//! The engine with packets of the reference (section 9), and with any.
+
+use std::time::Duration;
+
+use proptest::prelude::*;
+
+use super::{Connection, CyclicLost, Drives};
+use crate::buses::ethernet_ip::protocol::{ForwardClose, Owner, Path, RequestTimeout};
+use crate::devices::hiperdrive::procedures::Opened;
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, Intent, Permit, Wish};
+use crate::devices::hiperdrive::protocol::{ByteOrder, Direction, DriveNumber, Layout, OutData, OutImage, Topology};
+use crate::units::Moment;
+
+fn at(ms: u64) -> Moment {
+    Moment::START + Duration::from_millis(ms)
+}
+
+/// As the reference's packets have it (section 9): 00020001 both ways; 10 ms.
+fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> Opened {
+    let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
+    let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: Path::assemblies(104, 100, 101) };
+    let interval = Duration::from_millis(10);
+    Opened {
+        to_target_id: 0x0002_0001,
+        to_originator_id: 0x0002_0001,
+        to_target_interval: interval,
+        to_originator_interval: interval,
+        timeout: interval * 8,
+        layout: Layout { topology, pkw, order },
+        port: 2222,
+        group: None,
+        close,
+    }
+}
+
+fn hex(text: &str) -> Vec<u8> {
+    text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
+}
+
+const TO_TARGET: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 \
+                         00 00 00 00 00 00 00 00";
+const TO_ORIGINATOR: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 \
+                             00 00 00 00 00 00 00 00";
+
+/// A report of the first drive with its sequence number.
+fn report(sequence: u32, status: u16, position: i32) -> Vec<u8> {
+    let mut bytes = hex(TO_ORIGINATOR);
+    bytes[10..14].copy_from_slice(&sequence.to_le_bytes());
+    bytes[20..22].copy_from_slice(&status.to_le_bytes());
+    bytes[24..28].copy_from_slice(&position.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn packets_of_the_reference() {
+    let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));
+    let out = OutData { control: 0x0439, speed: 100, torque: 100, target: 163_840 };
+    let image = OutImage { drives: vec![out], pkw: None };
+    assert_eq!(connection.packet(at(0), &image), hex(TO_TARGET));
+    let came = connection.on_packet(at(4), &hex(TO_ORIGINATOR)).unwrap();
+    assert_eq!((came.drives[0].status.word(), came.drives[0].position), (0x2A37, 163_840));
+    // The next one: both counts are one higher.
+    let second = connection.packet(at(10), &image);
+    assert_eq!((second[10], second[18]), (2, 2));
+    // A target that has a header before its data.
+    let mut with = hex(TO_ORIGINATOR);
+    with.splice(20..20, [1, 0, 0, 0]);
+    (with[10], with[16]) = (2, 0x16);
+    assert_eq!(connection.on_packet(at(14), &with).unwrap().drives[0].position, 163_840);
+    assert_eq!((connection.figures().sent, connection.figures().received), (2, 2));
+}
+
+/// Reference 2: 8 bytes a drive, and 8 of parameter words at the end where they are; sizes 14 to 78 of the packet's data.
+#[test]
+fn images_are_laid_out_by_the_connection() {
+    for (topology, pkw, data) in [
+        (Topology::Adapter, false, 8),
+        (Topology::Adapter, true, 16),
+        (Topology::Hub4, false, 32),
+        (Topology::Hub4, true, 40),
+        (Topology::Hub8, false, 64),
+        (Topology::Hub8, true, 72),
+    ] {
+        for (order, word) in [(ByteOrder::Little, [0x01, 0x04]), (ByteOrder::Big, [0x04, 0x01])] {
+            let mut connection = Connection::new(&opened(topology, pkw, order), at(0));
+            let mut drives = vec![OutData::default(); topology.drives().into()];
+            drives.last_mut().unwrap().control = 0x0401;
+            let packet = connection.packet(at(0), &OutImage { drives, pkw: None });
+            // 14 bytes of addresses, 4 of the item, 6 of count and header.
+            assert_eq!(packet.len(), 24 + data, "{topology:?} {pkw}");
+            let place = 24 + 8 * (usize::from(topology.drives()) - 1);
+            assert_eq!(packet[place..place + 2], word, "{topology:?} {pkw} {order:?}");
+        }
+    }
+}
+
+/// Each deadline is an interval behind the last one, however late the packet before it was; after a long pause one packet
+/// goes, not all of them.
+#[test]
+fn deadlines_do_not_drift() {
+    let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(5));
+    let image = OutImage { drives: vec![OutData::default()], pkw: None };
+    let mut due = Vec::new();
+    for late in [0, 3, 9, 0, 25, 0] {
+        let now = connection.poll_at() + Duration::from_millis(late);
+        connection.packet(now, &image);
+        due.push(connection.poll_at().since(Moment::START).as_millis());
+    }
+    assert_eq!(due, [15, 25, 35, 45, 80, 90]);
+}
+
+fn permit(_: DriveNumber) -> Permit {
+    Permit::within(-1_000_000, 1_000_000)
+}
+
+/// An adapter whose drive follows at once, cycle by cycle.
+struct Bench {
+    drives: Drives,
+    intent: Intent,
+    ms: u64,
+    sequence: u32,
+    status: u16,
+    answers: bool,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let drives = Drives::new(&opened(Topology::Adapter, true, ByteOrder::Little), &[DriveNumber::FIRST], 0, at(0));
+        let intent = Intent::rest(DriveNumber::FIRST, 0, at(0));
+        Bench { drives, intent, ms: 0, sequence: 0, status: 0x2A30, answers: true }
+    }
+
+    fn act(&mut self, wish: Wish) {
+        self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
+    }
+
+    /// The control word of the interval.
+    fn cycle(&mut self) -> Option<u16> {
+        if self.answers {
+            self.sequence += 1;
+            let report = report(self.sequence, self.status, 0);
+            assert!(self.drives.on_packet(at(self.ms), &report) || self.drives.is_over());
+        }
+        self.intent.refreshed = at(self.ms);
+        let packet = self.drives.poll(at(self.ms), &self.intent, permit);
+        self.ms += 10;
+        let word = packet.map(|packet| u16::from_le_bytes([packet[24], packet[25]]));
+        if let Some(word) = word {
+            let ready = [(0x0400, 1), (0x0001, 2), (0x0008, 4)]
+                .into_iter()
+                .map_while(|(bit, set)| (word & bit != 0).then_some(set));
+            let moves = word & 0x1048 == 0x1048;
+            self.status = 0x0A30 | ready.sum::<u16>() | if moves { 0x1000 } else { 0x2000 };
+        }
+        word
+    }
+
+    fn cycles(&mut self, count: usize) -> Vec<String> {
+        let words = (0..count).filter_map(|_| self.cycle());
+        let mut words: Vec<String> = words.map(|word| format!("{word:04X}")).collect();
+        words.dedup();
+        words
+    }
+
+    fn jogs() -> Self {
+        let mut bench = Bench::new();
+        bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+        assert_eq!(bench.cycles(40).join(" "), "0400 0401 0409 1419 1459");
+        bench
+    }
+}
+
+/// Reference, issue and manual: three intervals without a packet are a loss. The stop word goes out all the same: it may be
+/// only the way back that is cut. Then off, then nothing any more, whatever comes.
+#[test]
+fn a_loss_stops_and_stays() {
+    let mut bench = Bench::jogs();
+    bench.answers = false;
+    assert_eq!(bench.cycles(3).join(" "), "1459");
+    assert!(bench.drives.lost().is_none());
+    assert_eq!(bench.cycles(1).join(" "), "1419");
+    assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(40) }));
+    assert_eq!(bench.drives.men().next().unwrap().ended(), Some((1, Ended::Lost)));
+    bench.act(Wish::Lead(Goal::Enabled));
+    assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
+    assert!(bench.drives.is_over());
+    bench.answers = true;
+    bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+    assert_eq!(bench.cycles(100), Vec::<String>::new());
+}
+
+/// A computer that was busy for 70 ms has heard nothing, and cannot say that nothing came: what came is still to be looked at.
+/// Beyond the target's time-out (80 ms here) the drives have stopped by themselves.
+#[test]
+fn whoever_was_kept_from_listening_listens_before_giving_up() {
+    for (away, lost) in [(70, false), (100, true)] {
+        let mut bench = Bench::jogs();
+        // What came stands in line behind whoever wakes up.
+        bench.answers = false;
+        bench.ms += away;
+        assert_eq!(bench.cycles(1).join(" "), "1419", "the first word that leaves again");
+        bench.answers = true;
+        bench.cycles(3);
+        assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");
+        // Without knowing where the drive is nothing moves on.
+        let how = if lost { Ended::Lost } else { Ended::Deaf };
+        assert_eq!(bench.drives.men().next().unwrap().ended(), Some((1, how)), "{away} ms");
+    }
+    // Nothing comes after it either.
+    let mut bench = Bench::jogs();
+    bench.answers = false;
+    bench.ms += 40;
+    bench.cycles(3);
+    assert!(bench.drives.lost().is_none(), "listened for 20 ms");
+    bench.cycles(2);
+    assert!(bench.drives.lost().is_some(), "listened for 40 ms");
+}
+
+/// Issue 21.13: at rest the connection is kept until the target's own time-out (80 ms here), whatever is missing before.
+#[test]
+fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
+    let mut bench = Bench::new();
+    bench.act(Wish::Lead(Goal::Enabled));
+    bench.cycles(20);
+    for missing in [3, 5, 7] {
+        bench.answers = false;
+        bench.cycles(missing);
+        assert!(bench.drives.lost().is_none(), "{missing} missing");
+        bench.answers = true;
+        bench.cycles(3);
+    }
+    // Nothing begins meanwhile.
+    bench.answers = false;
+    bench.cycles(4);
+    bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+    assert_eq!(bench.cycles(3).join(" "), "0409");
+    assert_eq!(bench.drives.men().next().unwrap().ended(), Some((2, Ended::Deaf)));
+    bench.cycles(2);
+    assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(90) }));
+}
+
+/// Closing is: stop, stand, off three times.
+#[test]
+fn an_end_stops_and_switches_off() {
+    let mut bench = Bench::jogs();
+    bench.drives.close(at(bench.ms));
+    let begun = bench.ms;
+    let words: Vec<u16> = std::iter::from_fn(|| bench.cycle()).collect();
+    assert_eq!(words.first(), Some(&0x1419));
+    assert_eq!(words.iter().filter(|word| **word == 0).count(), 3);
+    assert!(bench.drives.is_over() && bench.drives.lost().is_none());
+    assert!(bench.ms - begun <= 250, "{} ms", bench.ms - begun);
+}
+
+/// A drive that goes on moving: after the ladder the connection is to be closed.
+#[test]
+fn a_drive_that_does_not_stand_ends_the_connection() {
+    let mut bench = Bench::jogs();
+    bench.act(Wish::Stop);
+    let mut words = Vec::new();
+    while let Some(word) = bench.cycle() {
+        bench.status = 0x1A37;
+        words.push(word);
+    }
+    words.dedup();
+    assert_eq!(words, [0x1419, 0x0401, 0x0000]);
+    assert_eq!(bench.drives.lost(), Some(&CyclicLost::DoesNotStand(DriveNumber::FIRST)));
+}
+
+/// One drive moves at a time: an act for another one stops the first.
+#[test]
+fn the_others_rest() {
+    let second = DriveNumber::new(2).unwrap();
+    let mut drives =
+        Drives::new(&opened(Topology::Hub4, false, ByteOrder::Little), &[DriveNumber::FIRST, second], 0, at(0));
+    let effort = Effort::JOG;
+    let mut intent = Intent::rest(DriveNumber::FIRST, 1, at(0));
+    let mut moves = [false; 4];
+    for ms in (0..3000).step_by(10) {
+        intent = match ms {
+            500 => Intent { wish: Wish::Move { target: 9999, effort }, number: 2, ..intent },
+            1500 => Intent { drive: second, number: 3, ..intent },
+            _ => intent,
+        };
+        intent.refreshed = at(ms);
+        let Some(packet) = drives.poll(at(ms), &intent, permit) else { continue };
+        let words = [0, 8, 16, 24].map(|place| u16::from_le_bytes([packet[24 + place], packet[25 + place]]));
+        // Of every place, also of those without a drive, what follows from its word.
+        let mut image = Vec::new();
+        for (word, moves) in words.into_iter().zip(&mut moves) {
+            let level = [(0x0400, 1), (0x0001, 2), (0x0008, 4)]
+                .into_iter()
+                .map_while(|(bit, set)| (word & bit != 0).then_some(set));
+            *moves = word & 0x0078 == 0x0078;
+            let status = 0x0A30u16 | level.sum::<u16>() | if *moves { 0x1000 } else { 0x2000 };
+            image.extend(status.to_le_bytes());
+            image.extend([0; 6]);
+        }
+        let mut report = hex(TO_ORIGINATOR);
+        report.truncate(20);
+        report[10..14].copy_from_slice(&(ms as u32 + 1).to_le_bytes());
+        report[16] = 34;
+        report.extend(image);
+        assert!(drives.on_packet(at(ms + 1), &report));
+        assert!(!(moves[0] && moves[1]), "both at {ms}");
+        assert_eq!((words[2], words[3]), (0, 0));
+        match ms {
+            1000..1500 => assert_eq!(moves, [true, false, false, false], "{ms}"),
+            2000.. => assert_eq!(moves, [false, true, false, false], "{ms}"),
+            _ => {}
+        }
+    }
+}
+
+proptest! {
+    /// Whatever comes is counted, and nothing of it moves a drive or keeps the connection alive.
+    #[test]
+    fn any_packets(packets in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..80), 1..40)) {
+        let mut bench = Bench::new();
+        bench.cycles(5);
+        bench.answers = false;
+        let before = bench.drives.figures().clone();
+        for packet in &packets {
+            bench.drives.on_packet(at(bench.ms), packet);
+        }
+        let after = bench.drives.figures();
+        prop_assert_eq!(after.malformed + after.received + after.stale, before.malformed + before.received + packets.len() as u64);
+        prop_assert_eq!(after.received, before.received);
+        // At rest it is kept for as long as the target waits, which is eight intervals here.
+        bench.cycles(8);
+        prop_assert!(bench.drives.lost().is_none());
+        bench.cycles(2);
+        prop_assert!(bench.drives.lost().is_some());
+    }
+
+    /// A report that is cut, that has a bit flipped, that comes twice or late: no panic, and it counts once at most.
+    #[test]
+    fn damaged_reports(
+        reports in prop::collection::vec((0u32..40, 0usize..37, 0usize..400, 0u8..4), 1..60)
+    ) {
+        let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));
+        let mut counted = Vec::new();
+        for (sequence, cut, bit, damage) in &reports {
+            let mut packet = report(*sequence, 0x2A37, 0);
+            match damage {
+                1 => packet.truncate(*cut),
+                2 => packet[bit / 8 % 36] ^= 1 << (bit % 8),
+                _ => {}
+            }
+            let came = connection.on_packet(at(1), &packet);
+            if came.is_some() && *damage != 2 {
+                counted.push(*sequence);
+            }
+        }
+        prop_assert!(counted.is_sorted_by(|one, other| one < other) || reports.iter().any(|report| report.3 == 2));
+        let figures = connection.figures();
+        prop_assert_eq!(figures.received + figures.stale + figures.malformed, reports.len() as u64);
+    }
+}

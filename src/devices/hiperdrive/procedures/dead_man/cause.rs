@@ -1,0 +1,100 @@
+//! Why what is under way ends before its time.
+
+use super::{DEAF, DeadMan, Ended, Intent, Lock, Motive, Permit, Refusal, Stage, Wish};
+use crate::devices::hiperdrive::protocol::{Actual, StatusBit};
+use crate::units::Moment;
+
+impl DeadMan {
+    /// Ends the act that is under way where there is a reason to.
+    pub(super) fn look_for_an_end(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
+        if self.act.is_none() {
+            return;
+        }
+        self.follow(intent, permit, now);
+        if let Some(how) = self.cause(now, actual, intent, permit) {
+            if self.stage.has_motion() {
+                self.stop(now, how);
+            } else {
+                self.end(how);
+                self.hold_what_is(actual.status.state());
+            }
+        }
+    }
+
+    /// A pause or its end is an act that carries the job on, where it is the very next one: between others a stop may have been
+    /// said while nobody looked.
+    fn follow(&mut self, intent: &Intent, permit: &Permit, now: Moment) {
+        let mark = self.mark(now);
+        let Some(act) = &mut self.act else { return };
+        let fresh = intent.drive == self.drive && intent.number == act.number + 1 && !intent.is_stale(now);
+        let job = matches!(act.motion, Some(motion) if matches!(motion.motive, Motive::Job { .. }));
+        if !fresh || !job {
+            return;
+        }
+        match (self.stage, intent.wish) {
+            (Stage::Go { acknowledged, .. }, Wish::Pause) => {
+                (act.number, act.said) = (intent.number, intent.wish);
+                self.stage = Stage::Paused { since: mark, acknowledged };
+            }
+            (Stage::Paused { acknowledged, .. }, Wish::Resume) if permit.locks.is_empty() && !permit.doubted => {
+                (act.number, act.said) = (intent.number, intent.wish);
+                self.stage = Stage::Go { since: mark, acknowledged, stands: None };
+            }
+            _ => {}
+        }
+    }
+
+    fn cause(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) -> Option<Ended> {
+        let act = self.act?;
+        let status = actual.status;
+        let state = status.state();
+        let deaf = self.heard.is_none_or(|(at, _)| now.since(at) > DEAF);
+        let (down, acknowledges) = match (self.stage, act.said) {
+            (Stage::Lead(lead), Wish::Lead(_)) => (lead.only_down(state), lead.goal() == super::Goal::Off),
+            (_, Wish::Acknowledge) => (false, true),
+            _ => (false, false),
+        };
+        let moves = self.stage.has_motion();
+        if status.has(StatusBit::Fault) && !acknowledges {
+            return Some(Ended::Fault);
+        }
+        if deaf {
+            return Some(Ended::Deaf);
+        }
+        if let Some(how) = self.overtaken(act.number, act.said, intent, permit) {
+            return Some(how);
+        }
+        if intent.is_stale(now) && !down {
+            return Some(Ended::Stale);
+        }
+        if moves && !status.has(StatusBit::OperationEnabled) {
+            return Some(Ended::Left(state));
+        }
+        if let (Stage::Go { acknowledged, .. } | Stage::Paused { acknowledged, .. }, false) = (self.stage, self.runs())
+            && status.has(StatusBit::SetpointAcknowledged) == acknowledged
+        {
+            // The drive has begun anew: the word on the wire would start the job again.
+            return Some(Ended::Left(state));
+        }
+        let motion = act.motion?;
+        match permit.check(motion.wish, motion.motive.target()) {
+            Ok(()) => self.watch_motion(now, actual, permit),
+            Err(Refusal::Locked(lock)) => Some(Ended::Locked(lock)),
+            Err(refusal) => Some(Ended::Refused(refusal)),
+        }
+    }
+
+    /// What is wanted is not this act any more.
+    fn overtaken(&self, number: u64, said: Wish, intent: &Intent, permit: &Permit) -> Option<Ended> {
+        let rests = matches!(intent.wish, Wish::Rest | Wish::Stop | Wish::Pause | Wish::Resume);
+        if intent.drive == self.drive && intent.number == number && intent.wish == said {
+            None
+        } else if intent.wish == Wish::Resume && permit.doubted {
+            Some(Ended::Refused(Refusal::Locked(Lock::Outdated)))
+        } else if rests || intent.number < number {
+            Some(Ended::Stopped)
+        } else {
+            Some(Ended::Replaced)
+        }
+    }
+}

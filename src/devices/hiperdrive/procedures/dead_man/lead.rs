@@ -1,0 +1,171 @@
+//! Leading a drive through its states: one word after the other, each until the drive has followed, with a limit (reference 3,
+//! and the recipes of `protocol/hiperdrive`).
+
+use super::{Act, DeadMan, Ended, Goal, Mark, Motive, Refusal, SETTLE, STEP, Stage};
+use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
+use crate::units::Moment;
+
+/// A drive on its way to a state.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lead {
+    goal: Goal,
+    acknowledges: bool,
+    /// What is sent, and since when.
+    word: Option<(ControlWord, Mark)>,
+}
+
+/// How a drive is to go on.
+enum Way {
+    /// With this word.
+    By(ControlWord),
+    /// It is there.
+    There,
+    /// It does not follow.
+    Lost,
+}
+
+impl Goal {
+    /// How far up a word leads.
+    pub(super) const fn of_word(word: ControlWord) -> Goal {
+        if !word.has(ControlBit::Control) {
+            Goal::Off
+        } else if !word.has(ControlBit::On) {
+            Goal::Ready
+        } else if !word.has(ControlBit::Enable) {
+            Goal::Operational
+        } else {
+            Goal::Enabled
+        }
+    }
+
+    /// The word that holds it.
+    pub(super) const fn word(self) -> ControlWord {
+        match self {
+            Goal::Off => ControlWord::OFF,
+            Goal::Ready => ControlWord::READY,
+            Goal::Operational => ControlWord::OPERATIONAL,
+            Goal::Enabled => ControlWord::ENABLED,
+        }
+    }
+}
+
+impl Lead {
+    pub(super) const fn to(goal: Goal) -> Self {
+        Lead { goal, acknowledges: false, word: None }
+    }
+
+    /// Out of a fault or the lock, to ready.
+    const fn out() -> Self {
+        Lead { goal: Goal::Ready, acknowledges: true, word: None }
+    }
+
+    pub(super) const fn goal(&self) -> Goal {
+        self.goal
+    }
+
+    /// It takes torque away or leaves it away: nobody has to keep it fresh.
+    pub(super) fn only_down(&self, state: State) -> bool {
+        self.goal <= Goal::of(state) || self.goal == Goal::Off
+    }
+
+    /// What is sent; nothing before the first step.
+    pub(super) fn word(&self) -> ControlWord {
+        self.word.map_or(ControlWord::OFF, |(word, _)| word)
+    }
+
+    fn way(&self, now: Mark, status: StatusWord, after_run: bool) -> Way {
+        use ControlWord as W;
+        let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
+        // The drive has seen a word for long enough to have taken it: an edge follows that it must not miss.
+        let seen =
+            |word: ControlWord| self.word.is_some_and(|(sent, since)| sent == word && now.is_past(since, SETTLE));
+        let state = status.state();
+        let word = match (state, self.goal) {
+            (State::Fault | State::Locked, Goal::Off) => return Way::There,
+            (State::Fault, _) if !self.acknowledges => return Way::Lost,
+            (State::Fault, _) if seen(W::ACKNOWLEDGE) || sends(W::OPERATIONAL) => W::OPERATIONAL,
+            (State::Fault, _) => W::ACKNOWLEDGE,
+            (State::Locked, _) if seen(W::OPERATIONAL) || sends(W::READY) => W::READY,
+            (State::Locked, _) => W::OPERATIONAL,
+            // Below operational the drive forgets the run.
+            (_, goal) if after_run && goal > Goal::Ready => W::READY,
+            (_, goal) => match Goal::of(state) {
+                level if level > goal => goal.word(),
+                level if level < goal => level.above().word(),
+                // Nothing else begins before it stands.
+                _ if state == State::Moving => W::ENABLED,
+                _ if after_run && goal == Goal::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
+                _ => return Way::There,
+            },
+        };
+        let patience = |(sent, since): (ControlWord, Mark)| sent == word && now.is_past(since, STEP);
+        if self.word.is_some_and(patience) { Way::Lost } else { Way::By(word) }
+    }
+}
+
+impl DeadMan {
+    /// Leads the drive as it was asked for.
+    pub(super) fn lead(&mut self, now: Moment, actual: Actual, goal: Goal) -> Result<(), Refusal> {
+        if actual.status.has(StatusBit::Fault) && goal != Goal::Off {
+            return Err(Refusal::Fault);
+        }
+        self.stage = Stage::Lead(Lead::to(goal));
+        self.advance(now, actual);
+        Ok(())
+    }
+
+    pub(super) fn acknowledge(&mut self, now: Moment, actual: Actual) -> Result<(), Refusal> {
+        if matches!(actual.status.state(), State::Fault | State::Locked) {
+            self.stage = Stage::Lead(Lead::out());
+            self.advance(now, actual);
+        } else {
+            self.end(Ended::Done);
+        }
+        Ok(())
+    }
+
+    /// A step of the way.
+    pub(super) fn go_on(&mut self, now: Moment, actual: Actual, mut lead: Lead) {
+        let mark = self.mark(now);
+        match lead.way(mark, actual.status, self.after_run) {
+            Way::By(word) => {
+                if lead.word.is_none_or(|(sent, _)| sent != word) {
+                    lead.word = Some((word, mark));
+                }
+                self.stage = Stage::Lead(lead);
+            }
+            Way::There => {
+                self.level = lead.goal;
+                self.stage = Stage::Rest { moves: None };
+                match self.act {
+                    Some(Act { motion: Some(motion), .. }) => self.arm(now, actual, motion.motive),
+                    _ => self.end(Ended::Done),
+                }
+            }
+            Way::Lost => {
+                self.hold_what_is(actual.status.state());
+                self.end(Ended::NoAnswer(actual.status.state()));
+            }
+        }
+    }
+
+    /// Nothing begins yet, but the word is one from which it can.
+    fn arm(&mut self, now: Moment, actual: Actual, motive: Motive) {
+        let acknowledged = actual.status.has(StatusBit::SetpointAcknowledged);
+        self.after_run |= matches!(motive, Motive::Run { .. });
+        self.stage = Stage::Arm { since: self.mark(now), acknowledged };
+    }
+
+    /// The drive stays where it is, or goes down: a way was given up.
+    pub(super) fn hold_what_is(&mut self, state: State) {
+        let highest = if self.after_run { Goal::Ready } else { Goal::Enabled };
+        self.level = match state {
+            // Bit 0 stays for the acknowledgement.
+            State::Fault | State::Locked => Goal::Operational,
+            state => Goal::of(state),
+        }
+        .min(highest)
+        .min(Goal::of_word(self.sent.control));
+        self.stage = Stage::Rest { moves: None };
+    }
+}

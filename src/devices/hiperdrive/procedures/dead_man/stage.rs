@@ -1,0 +1,253 @@
+//! Where an act is: armed, started, under way, to be stopped; and the word that goes with it.
+
+use std::time::Duration;
+
+use super::lead::Lead;
+use super::{DeadMan, Effort, Ended, Goal, Motion, Motive, RUNG, Rung, SETTLE, SHORT, START};
+use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, Setpoint, State, StatusBit};
+use crate::units::Moment;
+
+/// What is done with the drive.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stage {
+    /// Its level is held.
+    Rest {
+        /// Since when it moves all the same.
+        moves: Option<Moment>,
+    },
+    /// It is led to another state.
+    Lead(Lead),
+    /// It has the set-points of a motion, and the word from which that begins.
+    Arm {
+        since: Mark,
+        /// What the drive said of status bit 12 before.
+        acknowledged: bool,
+    },
+    /// The motion begins.
+    Start { since: Mark, acknowledged: bool },
+    /// It is under way.
+    Go {
+        since: Mark,
+        acknowledged: bool,
+        /// Since when the drive stands.
+        stands: Option<Mark>,
+    },
+    /// A job waits.
+    Paused { since: Mark, acknowledged: bool },
+    /// The drive is to stand.
+    Stop {
+        rung: Rung,
+        /// On this rung.
+        since: Moment,
+        begun: Mark,
+        /// The stop of its mode.
+        word: ControlWord,
+    },
+}
+
+/// A moment, and how often something had been heard then.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mark {
+    pub(super) at: Moment,
+    pub(super) report: u64,
+}
+
+/// What was heard twice since a mark, and late enough, is of after it.
+const REPORTS: u64 = 2;
+
+impl Mark {
+    /// Something has been heard since `earlier`, which is so long ago.
+    pub(super) fn is_past(self, earlier: Mark, time: Duration) -> bool {
+        self.at.since(earlier.at) >= time && self.report >= earlier.report + REPORTS
+    }
+}
+
+impl Stage {
+    /// A motion is meant.
+    pub(super) const fn moves(&self) -> bool {
+        matches!(self, Stage::Arm { .. } | Stage::Start { .. } | Stage::Go { .. })
+    }
+
+    /// A motion is meant or waits.
+    pub(super) const fn has_motion(&self) -> bool {
+        self.moves() || matches!(self, Stage::Paused { .. })
+    }
+}
+
+impl Rung {
+    const fn next(self) -> Rung {
+        match self {
+            Rung::Mode => Rung::Operational,
+            Rung::Operational => Rung::Off,
+            Rung::Off | Rung::Close => Rung::Close,
+        }
+    }
+}
+
+impl DeadMan {
+    /// What comes by itself: by what the drive says, and by time.
+    pub(super) fn advance(&mut self, now: Moment, actual: Actual) {
+        let mark = self.mark(now);
+        let has = |bit| actual.status.has(bit);
+        let toggled = |acknowledged| has(StatusBit::SetpointAcknowledged) != acknowledged;
+        match self.stage {
+            Stage::Rest { moves } => self.watch(now, actual, moves),
+            Stage::Lead(lead) => self.go_on(now, actual, lead),
+            Stage::Arm { since, acknowledged } => {
+                if self.runs() || !toggled(acknowledged) {
+                    // It has seen the word.
+                    if mark.is_past(since, Duration::ZERO) {
+                        self.stage = Stage::Start { since: mark, acknowledged };
+                    }
+                } else {
+                    self.stop(now, Ended::NotStarted);
+                }
+            }
+            Stage::Start { since, acknowledged } => {
+                let moves = actual.status.state() == State::Moving;
+                let begun = if self.runs() {
+                    moves || (has(StatusBit::SetpointAcknowledged) && !acknowledged)
+                } else {
+                    toggled(acknowledged)
+                };
+                if begun {
+                    self.stage = Stage::Go { since: mark, acknowledged, stands: None };
+                } else if now.since(since.at) >= START {
+                    let at_end = self.act.and_then(|act| act.watch).is_some_and(|watch| watch.at_end);
+                    self.stop(now, if at_end { Ended::RangeEnd } else { Ended::NotStarted });
+                }
+            }
+            Stage::Go { since, acknowledged, stands } => {
+                let stands = has(StatusBit::StandingStill).then(|| stands.unwrap_or(mark));
+                self.stage = Stage::Go { since, acknowledged, stands };
+                if let Some(stands) = stands {
+                    self.look_whether_it_is_over(mark, actual, stands);
+                }
+            }
+            Stage::Paused { .. } => {}
+            Stage::Stop { .. } => self.climb(mark, actual),
+        }
+    }
+
+    fn look_whether_it_is_over(&mut self, mark: Mark, actual: Actual, stands: Mark) {
+        let Stage::Go { since, .. } = self.stage else { return };
+        // A word from before the beginning may still say that it stands, or has arrived at another target.
+        let late = mark.is_past(since, SETTLE);
+        if self.runs() {
+            if late && mark.is_past(stands, SETTLE) {
+                self.stop(mark.at, Ended::RangeEnd);
+            }
+        } else if actual.status.has(StatusBit::TargetReached) {
+            if late {
+                self.end(Ended::Arrived);
+                self.hold_what_is(actual.status.state());
+            }
+        } else if mark.is_past(stands, SHORT) {
+            self.stop(mark.at, Ended::Short);
+        }
+    }
+
+    /// The motion is one in speed mode.
+    pub(super) fn runs(&self) -> bool {
+        self.act.and_then(|act| act.motion).is_some_and(|motion| matches!(motion.motive, Motive::Run { .. }))
+    }
+
+    /// The act has ended, and what moves is to stand.
+    pub(super) fn stop(&mut self, now: Moment, how: Ended) {
+        let moved = self.stage.has_motion();
+        self.end(how);
+        if moved {
+            let (begun, word) = (self.mark(now), self.sent.control.stopped());
+            self.stage = Stage::Stop { rung: Rung::Mode, since: now, begun, word };
+        }
+    }
+
+    /// Up the ladder while it does not stand; what is held when it does. Behind a run that is ready, from where the next
+    /// motion leads up again.
+    fn climb(&mut self, mark: Mark, actual: Actual) {
+        let Stage::Stop { rung, since, begun, word } = self.stage else { return };
+        if rung == Rung::Close {
+            return;
+        }
+        if mark.is_past(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
+            // No higher than the rung's own word.
+            self.hold_what_is(actual.status.state());
+        } else if mark.at.since(since) >= RUNG {
+            let rung = rung.next();
+            self.stage = Stage::Stop { rung, since: mark.at, begun, word };
+        }
+    }
+
+    /// A drive at rest: what is held follows it down, and it has to stand.
+    fn watch(&mut self, now: Moment, actual: Actual, moves: Option<Moment>) {
+        match actual.status.state() {
+            State::Fault | State::Locked => self.level = self.level.min(Goal::Operational),
+            state => self.level = self.level.min(Goal::of(state)),
+        }
+        let moves = (actual.status.state() == State::Moving).then(|| moves.unwrap_or(now));
+        self.stage = Stage::Rest { moves };
+        if moves.is_some_and(|since| now.since(since) >= RUNG) {
+            let rung = match self.level {
+                Goal::Enabled => Rung::Operational,
+                Goal::Operational | Goal::Ready => Rung::Off,
+                Goal::Off => Rung::Close,
+            };
+            let (begun, word) = (self.mark(now), self.resting());
+            self.stage = Stage::Stop { rung, since: now, begun, word };
+        }
+    }
+
+    /// The word of an enabled drive at rest: a stop, and bit 6 as it was.
+    fn resting(&self) -> ControlWord {
+        let sent = self.sent.control;
+        let enabled = Goal::of_word(sent) == Goal::Enabled;
+        match self.level {
+            Goal::Enabled if enabled && !sent.has(ControlBit::SpeedMode) => sent.stopped().paused(),
+            level => level.word(),
+        }
+    }
+
+    /// What goes with the stage.
+    pub(super) fn setpoint(&self, actual: Actual) -> Setpoint {
+        let motion = self.act.and_then(|act| act.motion);
+        let control = match (&self.stage, motion) {
+            (Stage::Rest { .. }, _) => self.resting(),
+            (Stage::Lead(lead), _) => lead.word(),
+            (Stage::Stop { rung: Rung::Mode, word, .. }, _) => *word,
+            (Stage::Stop { rung: Rung::Operational, .. }, _) => ControlWord::OPERATIONAL,
+            (Stage::Stop { rung: Rung::Off | Rung::Close, .. }, _) => ControlWord::OFF,
+            (stage, Some(Motion { motive, .. })) => moving(stage, motive, actual),
+            // There is no motion in these stages without an act.
+            (_, None) => ControlWord::READY,
+        };
+        let target = match (&self.stage, motion.and_then(|motion| motion.motive.target())) {
+            (Stage::Stop { .. }, _) => self.sent.target,
+            (stage, Some(target)) if stage.has_motion() => target,
+            _ => actual.position,
+        };
+        let Effort { speed, torque } =
+            if matches!(self.stage, Stage::Stop { .. }) || Goal::of_word(control) == Goal::Enabled {
+                self.effort
+            } else {
+                Effort::NONE
+            };
+        Setpoint { control, speed, torque, target }
+    }
+}
+
+fn moving(stage: &Stage, motive: Motive, actual: Actual) -> ControlWord {
+    let toggled = |acknowledged: &bool, toggle: bool| {
+        let status = actual.status.with(StatusBit::SetpointAcknowledged, acknowledged != &toggle);
+        ControlWord::holding(status)
+    };
+    match (stage, motive) {
+        (Stage::Arm { .. }, Motive::Run { direction, end }) => ControlWord::speed_mode(direction, end),
+        (_, Motive::Run { direction, end }) => ControlWord::running(direction, end),
+        (Stage::Arm { acknowledged, .. }, Motive::Job { .. }) => toggled(acknowledged, false),
+        (Stage::Start { acknowledged, .. } | Stage::Go { acknowledged, .. }, Motive::Job { .. }) => {
+            toggled(acknowledged, true)
+        }
+        (Stage::Paused { acknowledged, .. }, Motive::Job { .. }) => toggled(acknowledged, true).paused(),
+        _ => ControlWord::READY,
+    }
+}

@@ -1,0 +1,179 @@
+//! ARCHITECTURE.md says how a motion ends, as a table of phases and events; here it is read and played (issue 21, *What must
+//! hold*).
+
+use std::time::Duration;
+
+use super::{DeadMan, Effort, Goal, Intent, Lock, Permit, Phase, Wish};
+use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, StatusWord};
+use crate::units::Moment;
+
+const ARCHITECTURE: &str = include_str!("../../../../../ARCHITECTURE.md");
+const CHAPTER: &str = "## How a motion ends";
+
+/// A drive and its dead-man, interval by interval.
+struct Bench {
+    man: DeadMan,
+    now: Moment,
+    intent: Intent,
+    permit: Permit,
+    status: u16,
+    position: i32,
+    /// Somebody says all the time that it is still wanted.
+    refreshes: bool,
+    heard: bool,
+}
+
+/// Enabled and standing; enabled and moving, with the acknowledgement of a job or a run.
+const READY: u16 = 0x2A31;
+const ENABLED: u16 = 0x2A37;
+const MOVING: u16 = 0x1A37;
+const STANDING: u16 = 0x3A37;
+
+impl Bench {
+    fn new(status: u16) -> Self {
+        Bench {
+            man: DeadMan::new(DriveNumber::FIRST, 0),
+            now: Moment::START,
+            intent: Intent::rest(DriveNumber::FIRST, 0, Moment::START),
+            permit: Permit::within(-10_000, 10_000),
+            status,
+            position: 0,
+            refreshes: true,
+            heard: true,
+        }
+    }
+
+    fn act(&mut self, wish: Wish) {
+        self.intent = Intent { wish, number: self.intent.number + 1, refreshed: self.now, ..self.intent };
+    }
+
+    fn cycle(&mut self) {
+        self.now = self.now + Duration::from_millis(10);
+        if self.refreshes {
+            self.intent.refreshed = self.now;
+        }
+        let actual = Actual { status: StatusWord::new(self.status), speed: 0, position: self.position };
+        self.man.next(self.now, self.heard.then_some(actual), &self.intent, &self.permit);
+    }
+
+    fn cycles(&mut self, count: u32) {
+        (0..count).for_each(|_| self.cycle());
+    }
+
+    /// In this phase of the table.
+    fn in_phase(name: &str) -> Self {
+        let job = Wish::Move { target: 5000, effort: Effort::JOG };
+        let jog = Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
+        let is_below = matches!(name, "at rest" | "leading" | "up to a motion");
+        let mut bench = Bench::new(if is_below { READY } else { ENABLED });
+        bench.cycles(3);
+        match name {
+            "at rest" => {}
+            "leading" => bench.act(Wish::Lead(Goal::Enabled)),
+            "up to a motion" | "moving (run)" | "stopping" => bench.act(jog),
+            _ => bench.act(job),
+        }
+        // Armed, then started: two reports each.
+        bench.cycles(5);
+        if !is_below && name != "starting" {
+            bench.status = MOVING;
+            bench.cycles(20);
+        }
+        match name {
+            "paused" => {
+                bench.act(Wish::Pause);
+                bench.status = STANDING;
+                bench.cycles(3);
+            }
+            "stopping" => {
+                bench.act(Wish::Stop);
+                bench.cycles(2);
+            }
+            _ => {}
+        }
+        let phase = bench.man.phase();
+        let is_so = match name {
+            "at rest" => phase == Phase::Idle,
+            "leading" | "up to a motion" => matches!(phase, Phase::Leading(_)),
+            "starting" => matches!(phase, Phase::Starting(_)),
+            "moving (job)" | "moving (run)" => matches!(phase, Phase::Moving(_)),
+            "paused" => matches!(phase, Phase::Paused { .. }),
+            "stopping" => matches!(phase, Phase::Stopping(_)),
+            other => panic!("{other} is no phase"),
+        };
+        assert!(is_so, "{name}: {phase:?}");
+        bench
+    }
+
+    fn play(&mut self, event: &str) {
+        let paused = matches!(self.man.phase(), Phase::Paused { .. });
+        match event.split(['(', ',']).next().unwrap_or_default().trim() {
+            "released" => self.act(Wish::Stop),
+            "not said again for 250 ms" => {
+                self.refreshes = false;
+                // The packet after 250 ms is the first that may end it.
+                self.cycles(25);
+                let moves = self.man.ended().is_none() || matches!(self.man.phase(), Phase::Stopping(_));
+                assert!(moves, "not before");
+            }
+            "another act" => self.act(Wish::Lead(Goal::Operational)),
+            "the drive is not heard" => {
+                self.heard = false;
+                self.man.fall_deaf(self.now);
+                // What is only led waits longer.
+                let leads = matches!(self.man.phase(), Phase::Leading(_));
+                self.cycles(if leads { 36 } else { 0 });
+            }
+            "the connection is lost or closed" => self.man.lose(self.now),
+            "fault" => self.status = 0x2AB8,
+            "a lock" => self.permit.locks.push(Lock::NoAnswer),
+            "parameters that are to be read again" => self.permit.doubted = true,
+            "operation no longer enabled" => self.status = 0x2A33,
+            "beyond a limit" => {
+                self.position = 10_400;
+                self.status |= 0x8000;
+            }
+            "the other way than it should by more than 1°" => self.position = -400,
+            "moves on by more than 1°" => {
+                self.cycles(60);
+                self.position = 400;
+            }
+            "stands without having arrived" => {
+                self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDING };
+                // A start is given a second, a drive that stands half of one.
+                self.cycles(if paused { 0 } else { 110 });
+            }
+            other => panic!("{other} is no event"),
+        }
+    }
+}
+
+/// The rows of the table, with its head: cells without blanks around them.
+fn table() -> Vec<Vec<&'static str>> {
+    let chapter = ARCHITECTURE.split(CHAPTER).nth(1).expect("the chapter");
+    let lines = chapter.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
+    lines.filter(|line| !line.starts_with("|---")).map(cells).collect()
+}
+
+#[test]
+fn motions_end_as_the_architecture_says() {
+    let rows = table();
+    let (head, events) = rows.split_first().unwrap();
+    assert_eq!((head.len(), events.len()), (9, 13), "all phases and all events");
+    for row in events {
+        for (phase, expected) in head.iter().zip(row).skip(1) {
+            let mut bench = Bench::in_phase(phase);
+            let before = bench.man.ended();
+            bench.play(row[0]);
+            bench.cycle();
+            let ended = bench.man.ended().filter(|_| bench.man.ended() != before);
+            let name = ended.map_or("–".to_owned(), |(_, how)| {
+                format!("{how:?}").split([' ', '(', '{']).next().unwrap_or_default().to_owned()
+            });
+            assert_eq!(&name, expected, "{} while {phase}", row[0]);
+            // Whatever has ended, the word on the wire stands.
+            assert!(ended.is_none() || bench.man.sent().control.is_standing(), "{} while {phase}", row[0]);
+        }
+    }
+}

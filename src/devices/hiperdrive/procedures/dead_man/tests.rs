@@ -1,0 +1,338 @@
+//! The dead-man with anything: whatever a drive says, a person wants and the clock does.
+
+use std::time::Duration;
+
+use proptest::prelude::*;
+
+use super::{DeadMan, Effort, Ended, Goal, Intent, Lock, Outside, Permit, Phase, RUNG, Refusal, Side, Wish};
+use crate::devices::hiperdrive::protocol::{
+    Actual, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
+};
+use crate::units::Moment;
+
+const FULL: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
+
+/// Bits 1, 2, 11 and 13 to 15, and those of jog steps.
+const NEVER: u16 = 0b1110_1011_0000_0110;
+
+/// What happens in an interval.
+#[derive(Clone, Debug)]
+struct Tick {
+    ms: u64,
+    /// `None`: nothing was heard. Status word and position.
+    heard: Option<(u16, i32)>,
+    /// A new act, of this drive or another.
+    act: Option<(bool, Wish)>,
+    /// It is said that the act is wanted still.
+    refreshed: bool,
+    locked: bool,
+    endless: bool,
+    /// The number falls back, or the wish changes under its number.
+    meddled: Option<Wish>,
+}
+
+fn wish() -> impl Strategy<Value = Wish> {
+    let direction = prop_oneof![Just(Direction::Clockwise), Just(Direction::Counterclockwise)];
+    let effort = prop_oneof![3 => Just(FULL), 1 => Just(Effort::NONE)];
+    let end = prop_oneof![Just(RunEnd::RangeEnd), Just(RunEnd::Endless)];
+    prop_oneof![
+        Just(Wish::Rest),
+        Just(Wish::Stop),
+        Just(Wish::Pause),
+        Just(Wish::Resume),
+        Just(Wish::Acknowledge),
+        (0usize..4).prop_map(|goal| Wish::Lead(Goal::ALL[goal])),
+        (any::<i32>(), effort.clone()).prop_map(|(target, effort)| Wish::Move { target: target % 2000, effort }),
+        (any::<i32>(), effort.clone()).prop_map(|(by, effort)| Wish::Step { by: by % 500, effort }),
+        (direction.clone(), effort.clone()).prop_map(|(direction, effort)| Wish::Jog {
+            direction,
+            effort,
+            outward: false
+        }),
+        (direction, end, effort).prop_map(|(direction, end, effort)| Wish::Run { direction, end, effort }),
+    ]
+}
+
+/// Words that drives really say come more often than any.
+fn status() -> impl Strategy<Value = u16> {
+    let said = [0x2A30, 0x2A31, 0x2A33, 0x2A37, 0x3A37, 0x1A37, 0x0A37, 0x3E37, 0x2E37, 0x2AB8, 0x2A70, 0, 0x0A30];
+    prop_oneof![8 => prop::sample::select(said.to_vec()), 1 => any::<u16>()]
+}
+
+fn tick() -> impl Strategy<Value = Tick> {
+    let heard = prop::option::weighted(0.9, (status(), -900i32..900));
+    let act = prop::option::weighted(0.15, (prop::bool::weighted(0.9), wish()));
+    let rare = || prop::bool::weighted(0.05);
+    (1u64..60, heard, act, prop::bool::weighted(0.95), rare(), rare(), prop::option::weighted(0.03, wish())).prop_map(
+        |(ms, heard, act, refreshed, locked, endless, meddled)| Tick {
+            ms,
+            heard,
+            act,
+            refreshed,
+            locked,
+            endless,
+            meddled,
+        },
+    )
+}
+
+fn heard(said: Option<(u16, i32)>) -> Option<Actual> {
+    said.map(|(status, position)| Actual { status: StatusWord::new(status), speed: 0, position })
+}
+
+/// Each status that matters, before any word that matters: nothing begins with a word that stands.
+#[test]
+fn nothing_begins_with_a_word_that_stands() {
+    let befores: Vec<ControlWord> =
+        (0..=u16::MAX).step_by(0x40).filter_map(|word| ControlWord::parse(word | 0x0439).ok()).collect();
+    let mut standing = 0;
+    for word in (0..=u16::MAX).filter_map(|word| ControlWord::parse(word).ok()).filter(|word| word.is_standing()) {
+        standing += 1;
+        for acknowledged in [false, true] {
+            let status = StatusWord::new(0x2A37).with(StatusBit::SetpointAcknowledged, acknowledged);
+            for before in [ControlWord::OFF, ControlWord::ENABLED].iter().chain(&befores) {
+                assert_eq!(word.begins(*before, status), None, "{word:?} behind {before:?}");
+            }
+        }
+    }
+    // Ten bits that may be set: half of them without bit 3; with it and without jog (32 of 128 · 4): of positioning three
+    // quarters of bits 4 and 5, of speed mode half of bit 6.
+    assert_eq!(standing, 512 + 48 + 32);
+}
+
+/// The trap of reference 3: behind a run, no word on the way clears bit 12 while the drive is enabled and bits 4 and 5 are
+/// set, and the drive is below operational before it is enabled again.
+#[test]
+fn out_of_speed_mode_through_ready() {
+    let mut man = DeadMan::new(DriveNumber::FIRST, 0);
+    let permit = Permit::within(-1000, 1000);
+    let jog = Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
+    let mut status = 0x2A37;
+    let mut words = Vec::new();
+    for at in 0..100u64 {
+        let now = Moment::START + Duration::from_millis(at * 10);
+        let wish = if at < 20 { jog } else { Wish::Stop };
+        let intent = Intent { drive: DriveNumber::FIRST, wish, number: 1 + u64::from(at >= 20), refreshed: now };
+        let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.word();
+        // It acknowledges a run with bit 12, and forgets it below operational alone.
+        status = match word {
+            0x1459 => 0x1A37,
+            0x1419 if status & 0x1000 != 0 => 0x3A37,
+            0x0400 => 0x2A31,
+            0x0401 => 0x2A33 | status & 0x1000,
+            _ => 0x2A37 | status & 0x1000,
+        };
+        words.push(word);
+    }
+    words.dedup();
+    assert_eq!(words, [0x1419, 0x1459, 0x1419, 0x0400]);
+    assert_eq!((man.sent().target, man.ended()), (77, Some((1, Ended::Stopped))));
+}
+
+/// Between two looks of a thread that was kept from looking, a stop may have been said, and something else behind it.
+#[test]
+fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
+    let permit = Permit::within(-1000, 1000);
+    for (waits, next) in [(true, Wish::Resume), (false, Wish::Pause)] {
+        let mut man = DeadMan::new(DriveNumber::FIRST, 0);
+        let mut now = Moment::START;
+        let mut look = |man: &mut DeadMan, number: u64, wish: Wish, status: u16| {
+            now = now + Duration::from_millis(10);
+            let intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: now };
+            man.next(now, heard(Some((status, 0))), &intent, &permit).control
+        };
+        let job = Wish::Move { target: 500, effort: FULL };
+        for status in [0x2A37, 0x2A37, 0x2A37, 0x1A37, 0x1A37] {
+            look(&mut man, 1, job, status);
+        }
+        assert!(matches!(man.phase(), Phase::Moving(_)), "{:?}", man.phase());
+        let mut number = 1;
+        if waits {
+            number = 2;
+            look(&mut man, number, Wish::Pause, 0x1A37);
+            assert!(matches!(man.phase(), Phase::Paused { .. }));
+        }
+        // The one between them was a stop.
+        let word = look(&mut man, number + 2, next, 0x1A37);
+        assert!(word.is_standing() && matches!(man.phase(), Phase::Stopping(_)), "{:?}", man.phase());
+        assert_eq!(man.ended(), Some((number, Ended::Stopped)));
+    }
+}
+
+/// A drive that answers as it is told to, ten milliseconds a look; somebody says all the time that it is still wanted.
+struct Looks {
+    man: DeadMan,
+    now: Moment,
+    intent: Intent,
+    permit: Permit,
+}
+
+impl Looks {
+    fn new() -> Self {
+        let intent = Intent::rest(DriveNumber::FIRST, 0, Moment::START);
+        let man = DeadMan::new(DriveNumber::FIRST, 0);
+        Looks { man, now: Moment::START, intent, permit: Permit::within(-1000, 1000) }
+    }
+
+    fn act(&mut self, wish: Wish) {
+        self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
+    }
+
+    /// So many looks at a drive that says this.
+    fn look(&mut self, times: u32, status: u16, position: i32) -> Setpoint {
+        for _ in 0..times {
+            self.now = self.now + Duration::from_millis(10);
+            self.intent.refreshed = self.now;
+            self.man.next(self.now, heard(Some((status, position))), &self.intent, &self.permit);
+        }
+        self.man.sent()
+    }
+}
+
+const CLOCKWISE: Wish = Wish::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
+
+/// Issue 21.3: parameters that somebody doubts while a drive is still led to where it may move are read before it does; what
+/// moves goes on, and what waits does not begin again.
+#[test]
+fn a_doubt_keeps_a_motion_from_its_beginning() {
+    let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
+    for wish in [CLOCKWISE, Wish::Move { target: 500, effort: FULL }] {
+        let mut looks = Looks::new();
+        looks.look(3, 0x2A31, 0);
+        looks.act(wish);
+        looks.look(1, 0x2A31, 0);
+        assert_eq!(looks.man.phase(), Phase::Leading(Goal::Enabled));
+        looks.permit.doubted = true;
+        looks.look(1, 0x2A33, 0);
+        assert_eq!(looks.man.ended(), Some((1, doubted)), "{wish:?}");
+        assert!(looks.look(100, 0x2A37, 0).control.is_standing());
+    }
+    let mut looks = Looks::new();
+    looks.act(Wish::Move { target: 500, effort: FULL });
+    looks.look(5, 0x2A37, 0);
+    looks.look(5, 0x1A37, 100);
+    looks.permit.doubted = true;
+    looks.look(5, 0x1A37, 200);
+    assert!(matches!(looks.man.phase(), Phase::Moving(_)), "{:?}", looks.man.ended());
+    looks.act(Wish::Pause);
+    looks.look(3, 0x3A37, 200);
+    assert!(matches!(looks.man.phase(), Phase::Paused { .. }), "{:?}", looks.man.ended());
+    looks.act(Wish::Resume);
+    assert!(looks.look(1, 0x3A37, 200).control.is_standing());
+    assert_eq!(looks.man.ended(), Some((2, doubted)));
+}
+
+/// Issue 21.4: limits that another master writes, or a shaft that is pushed, between the last word on the way up and the first
+/// of the motion: a drive that is outside then did not begin there, and goes no further out.
+#[test]
+fn a_drive_that_gets_outside_before_it_moves_does_not_begin() {
+    for (wish, direction) in [
+        (CLOCKWISE, Direction::Clockwise),
+        (
+            Wish::Jog { direction: Direction::Counterclockwise, effort: FULL, outward: false },
+            Direction::Counterclockwise,
+        ),
+    ] {
+        let position = if direction == Direction::Clockwise { 700 } else { -700 };
+        let mut looks = Looks::new();
+        looks.look(3, 0x2A37, position);
+        looks.act(wish);
+        let mut count = 0;
+        while !matches!(looks.man.phase(), Phase::Starting(_)) {
+            looks.look(1, 0x2A37, position);
+            count += 1;
+            assert!(count < 100);
+        }
+        looks.permit = Permit::within(-100, 100);
+        assert!(looks.look(1, 0x2A37, position).control.is_standing());
+        let refused = Ended::Refused(Refusal::Outward { position, low: -100, high: 100 });
+        assert_eq!(looks.man.ended(), Some((1, refused)));
+    }
+}
+
+/// Issue 21.4: status bit 15 between limits that are both within a degree does not tell at which of them the drive is.
+#[test]
+fn near_both_limits_bit_15_does_not_tell_the_way_in() {
+    let at = |position| Permit::within(-150, 150).outside(heard(Some((0xAA37, position))).unwrap());
+    assert_eq!((at(-20), at(0), at(20)), (Some(Outside::Unclear), Some(Outside::Unclear), Some(Outside::Unclear)));
+    assert_eq!((at(-34), at(34)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
+    assert_eq!((at(-151), at(151)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
+}
+
+/// Issue 21.6b: the first packets of a connection are no position (a hub first asks all its drives), so that a step from there
+/// would lead somewhere else. It begins once positions have come for 250 ms.
+#[test]
+fn a_step_is_not_counted_from_the_first_packets() {
+    let mut looks = Looks::new();
+    looks.permit = Permit::within(-100_000, 100_000);
+    looks.act(Wish::Step { by: 100, effort: FULL });
+    looks.look(24, 0x2A37, 0);
+    assert_eq!(looks.man.phase(), Phase::Idle);
+    let sent = looks.look(20, 0x2A37, 50_000);
+    assert_eq!((sent.target, looks.man.ended()), (50_100, None));
+    assert!(matches!(looks.man.phase(), Phase::Starting(_)));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    #[test]
+    fn whatever_happens(ticks in prop::collection::vec(tick(), 1..120)) {
+        let mut man = DeadMan::new(DriveNumber::FIRST, 5);
+        let mut now = Moment::START;
+        let mut intent = Intent::rest(DriveNumber::FIRST, 5, now);
+        let mut before = Setpoint::default();
+        // Acts up to this one have ended, by our own book.
+        let mut over = 5;
+        let mut unmet = Duration::ZERO;
+        for Tick { ms, heard: said, act, refreshed, locked, endless, meddled } in ticks {
+            let step = Duration::from_millis(ms);
+            now = now + step;
+            if let Some((own, wish)) = act {
+                let other = DriveNumber::new(2).unwrap();
+                // A pause and its end carry a job on; any other act, and a gap of time, ends the one before.
+                let carries = matches!(wish, Wish::Pause | Wish::Resume) && own && !intent.is_stale(now);
+                over = if carries { over } else { intent.number };
+                let drive = if own { DriveNumber::FIRST } else { other };
+                intent = Intent { drive, wish, number: intent.number + 1, refreshed: now };
+            }
+            if let (Some(wish), None) = (meddled, act) {
+                // Of an act that has been taken; one that still waits may be another.
+                let taken = man.act() == intent.number && wish != intent.wish;
+                over = if taken { intent.number } else { over };
+                intent.wish = wish;
+            }
+            if intent.is_stale(now) {
+                over = intent.number;
+            }
+            if refreshed {
+                intent.refreshed = now;
+            }
+            let locks = if locked { vec![Lock::NotRequested] } else { Vec::new() };
+            let permit = Permit { locks, endless, ..Permit::within(-1000, 1000) };
+            let sent = man.next(now, heard(said), &intent, &permit);
+            let word = sent.control;
+            prop_assert_eq!(word.word() & NEVER, 0);
+            let own = intent.drive == DriveNumber::FIRST;
+            let wanted = own && intent.wish.moves() && !intent.is_stale(now) && !locked;
+            let faulty = said.is_some_and(|(status, _)| status & 8 != 0);
+            if !word.is_standing() {
+                prop_assert!(wanted && intent.number > over, "{:?} for {:?}, over: {}", word, intent, over);
+                prop_assert!(!faulty && sent.speed.get() > 0 && sent.torque.get() > 0);
+                prop_assert!(!word.has(ControlBit::SpeedMode) || !word.has(ControlBit::NoPause) || endless);
+                let job = !word.has(ControlBit::SpeedMode);
+                prop_assert!(!job || (-1000..=1000).contains(&sent.target), "{:?}", sent);
+            }
+            if let Some((ended, _)) = man.ended() {
+                over = over.max(ended);
+            }
+            // Out of speed mode: never by clearing bit 12 alone.
+            let leaves = before.control.has(ControlBit::SpeedMode) && !word.has(ControlBit::SpeedMode);
+            prop_assert!(!leaves || !word.has(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
+            // A drive that does not stand goes up the ladder to its end.
+            unmet = if matches!(man.phase(), Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
+            prop_assert!(unmet < RUNG * 3 + Duration::from_millis(240) || man.gives_up());
+            before = sent;
+        }
+    }
+}

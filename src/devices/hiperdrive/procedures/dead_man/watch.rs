@@ -1,0 +1,234 @@
+//! The watch over a motion: the position of every report is held against the limits and the target, so that a drive that
+//! ignores its limits or turns the wrong way is stopped with the very next packet.
+//!
+//! | case | what holds |
+//! |---|---|
+//! | endless run | an expert's run without an end is held against its direction alone: there is no limit that it obeys |
+//! | unread limits | nothing moves, and what moves is stopped: the permit says so |
+//! | already outside | the way back in is free; further out only where that was freed for this press |
+//! | outside by status bit 15 alone, more than a degree inside or near both limits | nothing moves but what was freed for this press: the way in is not known |
+//! | overrun while braking | a stop that is under way goes on; its reason stays |
+//!
+//! Within one degree beyond a limit the motion ended at the end of its range: a drive repeats a position no better than
+//! ±1° (manual, technical data; reference 5).
+
+use super::{DeadMan, Ended, Lock, Motion, Motive, Permit, Refusal, SHORT, Stage, Wish};
+use crate::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, State, StatusBit};
+use crate::units::Moment;
+
+/// A side of the range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Below the lower limit.
+    Below,
+    /// Above the upper limit.
+    Above,
+}
+
+/// Where a drive is beyond its limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// On this side.
+    At(Side),
+    /// The drive says so by status bit 15, and its position is more than a degree inside both limits, or near both.
+    Unclear,
+}
+
+/// How a motion has gone so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch {
+    /// It began outside the limits, here, and has not been inside since.
+    outside: Option<Outside>,
+    /// The least distance so far: of a job to its target, of a run to where it leads.
+    best: i64,
+    /// Where a job that waits stood once it had braked.
+    waits_at: Option<i32>,
+    /// A person has freed the way further out, from outside, for this press.
+    freed: bool,
+    /// A run began at the end of the range to which it leads: there may be nowhere to go.
+    pub(super) at_end: bool,
+}
+
+/// Degrees of accuracy: ±2.5° (manual, technical data; reference 5), as whole degrees.
+const ACCURACY: i64 = 3;
+
+impl Outside {
+    /// This direction may lead further out.
+    pub fn is_outward(self, direction: Direction) -> bool {
+        match self {
+            Outside::At(side) => side.outward() == direction,
+            Outside::Unclear => true,
+        }
+    }
+}
+
+impl Permit {
+    /// Where a drive is beyond its limits: by its position, or else by status bit 15, at the one limit that is within a degree then.
+    /// `None` inside, and where no limits are known.
+    pub fn outside(&self, actual: Actual) -> Option<Outside> {
+        let (limits, degree) = (self.limits?, i64::from(self.degree));
+        let by_status = || {
+            // Of a range so narrow that both limits are within a degree it may be either.
+            match [Side::Below, Side::Above].map(|side| side.beyond(actual.position, limits) >= -degree) {
+                [true, false] => Outside::At(Side::Below),
+                [false, true] => Outside::At(Side::Above),
+                _ => Outside::Unclear,
+            }
+        };
+        let beyond = side(actual.position, limits).map(Outside::At);
+        beyond.or_else(|| actual.status.has(StatusBit::PositionLimit).then(by_status))
+    }
+}
+
+fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
+    (position > high).then_some(Side::Above).or_else(|| (position < low).then_some(Side::Below))
+}
+
+impl Side {
+    /// Steps beyond the limit of this side; negative inside.
+    pub fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
+        match self {
+            Side::Above => i64::from(position) - i64::from(high),
+            Side::Below => i64::from(low) - i64::from(position),
+        }
+    }
+
+    /// The direction that leads further out. Clockwise counts up (manual 7.2: the step of parameter 170, +4096, is clockwise).
+    pub const fn outward(self) -> Direction {
+        match self {
+            Side::Above => Direction::Clockwise,
+            Side::Below => Direction::Counterclockwise,
+        }
+    }
+}
+
+impl Motion {
+    /// The limits that this motion has to obey: none for an endless run.
+    fn limits(&self, permit: &Permit) -> Option<(i32, i32)> {
+        let endless = matches!(self.motive, Motive::Run { end: RunEnd::Endless, .. });
+        permit.limits.filter(|_| !endless)
+    }
+
+    /// Steps to the target of a job; of a run, which has none, how the distance changes as it goes the way it should.
+    fn distance(&self, actual: Actual) -> i64 {
+        let position = i64::from(actual.position);
+        match self.motive {
+            Motive::Job { target } => (position - i64::from(target)).abs(),
+            Motive::Run { direction: Direction::Clockwise, .. } => -position,
+            Motive::Run { direction: Direction::Counterclockwise, .. } => position,
+        }
+    }
+}
+
+impl Watch {
+    /// At the beginning of a motion.
+    pub(super) fn begin(motion: &Motion, actual: Actual, permit: &Permit) -> Self {
+        let limits = motion.limits(permit);
+        let outside = limits.and_then(|_| permit.outside(actual));
+        let best = motion.distance(actual);
+        let at_end = match (motion.motive, limits) {
+            (Motive::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
+                side.outward() == direction && side.beyond(actual.position, limits) >= -i64::from(permit.degree)
+            }),
+            _ => false,
+        };
+        let freed = matches!(motion.wish, Wish::Jog { outward: true, .. }) && outside.is_some();
+        Watch { outside, best, waits_at: None, freed, at_end }
+    }
+
+    /// Holds a report against the limits and the target. Returns how the motion ends, where it has to.
+    pub(super) fn look(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+        let degree = i64::from(permit.degree);
+        let distance = motion.distance(actual);
+        self.best = self.best.min(distance);
+        let is_job = matches!(motion.motive, Motive::Job { .. });
+        // The target of a job lies within the limits: a degree beside it is no overrun.
+        let beyond = if is_job && distance <= degree { None } else { self.look_at_limits(motion, actual, permit) };
+        // Where a job arrives it may overshoot by its accuracy.
+        let arrives = is_job && self.best <= ACCURACY * degree;
+        let allowed = if arrives { ACCURACY * degree } else { degree };
+        // Who frees the way out watches the axis: a drive that counts the other way comes in by it.
+        let leaves = distance > self.best.saturating_add(allowed) && !self.freed;
+        beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
+    }
+
+    /// Whether a job that waits moves on: by more than a degree from where it stood once it had braked.
+    fn wait(&mut self, has_braked: bool, actual: Actual, permit: &Permit) -> Option<Ended> {
+        if !has_braked {
+            self.waits_at = None;
+            return None;
+        }
+        let at = i64::from(*self.waits_at.get_or_insert(actual.position));
+        let moves = i64::from(actual.position).abs_diff(at) > u64::from(permit.degree);
+        moves.then_some(Ended::Left(State::Moving))
+    }
+
+    fn look_at_limits(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+        let (limits, degree) = (motion.limits(permit)?, i64::from(permit.degree));
+        let runs = matches!(motion.motive, Motive::Run { .. });
+        let beyond = Some(Ended::Beyond { position: actual.position });
+        let Some(began) = self.outside else {
+            let is_end = match permit.outside(actual)? {
+                Outside::At(side) => side.beyond(actual.position, limits).abs() <= degree,
+                Outside::Unclear => false,
+            };
+            return if runs && is_end { Some(Ended::RangeEnd) } else { beyond };
+        };
+        match side(actual.position, limits) {
+            // Through the whole range, and out at the other side.
+            Some(side) if Outside::At(side) != began => return beyond,
+            // Status bit 15 may be late.
+            None if !actual.status.has(StatusBit::PositionLimit) => self.outside = None,
+            _ => {}
+        }
+        None
+    }
+}
+
+impl Permit {
+    /// Whether a motion may begin where the drive is: from outside its limits only back in, unless the way further out was
+    /// freed for this press.
+    ///
+    /// # Errors
+    /// [`Refusal::Outward`], [`Refusal::Unclear`].
+    pub fn check_place(&self, wish: Wish, actual: Actual) -> Result<(), Refusal> {
+        let direction = match wish {
+            Wish::Jog { outward: true, .. } | Wish::Run { end: RunEnd::Endless, .. } => return Ok(()),
+            Wish::Jog { direction, .. } | Wish::Run { direction, .. } => Some(direction),
+            Wish::Move { .. } | Wish::Step { .. } => None,
+            _ => return Ok(()),
+        };
+        let (Some((low, high)), Some(outside), position) = (self.limits, self.outside(actual), actual.position) else {
+            return Ok(());
+        };
+        match outside {
+            Outside::Unclear => Err(Refusal::Unclear { position, low, high }),
+            Outside::At(side) if direction == Some(side.outward()) => Err(Refusal::Outward { position, low, high }),
+            Outside::At(_) => Ok(()),
+        }
+    }
+}
+
+impl DeadMan {
+    /// Holds what the drive says now against the limits and the target of its motion.
+    pub(super) fn watch_motion(&mut self, now: Moment, actual: Actual, permit: &Permit) -> Option<Ended> {
+        let mark = self.mark(now);
+        let act = self.act.as_mut()?;
+        let motion = act.motion.as_ref()?;
+        if !self.stage.has_motion() {
+            act.watch = None;
+        }
+        let Some(watch) = &mut act.watch else {
+            // Before it begins, with the first report behind the way up as well: what holds at the beginning holds there.
+            let doubted = permit.doubted.then_some(Refusal::Locked(Lock::Outdated));
+            let refusal = doubted.or_else(|| permit.check_place(motion.wish, actual).err());
+            if refusal.is_none() && self.stage.has_motion() {
+                act.watch = Some(Watch::begin(motion, actual, permit));
+            }
+            return refusal.map(Ended::Refused);
+        };
+        let has_braked = matches!(self.stage, Stage::Paused { since, .. } if mark.is_past(since, SHORT));
+        let waits = watch.wait(has_braked, actual, permit);
+        watch.look(motion, actual, permit).or(waits)
+    }
+}

@@ -1,0 +1,63 @@
+//! Who is there: ListIdentity, asked of all at once, and what is answered within a second. Nothing is opened for it.
+
+use core::net::Ipv4Addr;
+use std::time::Duration;
+
+use super::Error;
+use crate::buses::ethernet_ip::protocol::{Body, Command, Frame, IdentityItem};
+use crate::devices::hiperdrive::protocol::VENDOR;
+use crate::link::{Cancel, Clock, Shout};
+
+/// A device that has answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// Where it answers from.
+    pub address: Ipv4Addr,
+    /// Where it takes explicit messages.
+    pub port: u16,
+    /// Who it is.
+    pub identity: IdentityItem,
+}
+
+impl Found {
+    /// It is of the maker of HIPERDRIVE.
+    pub const fn is_hiperdrive(&self) -> bool {
+        self.identity.identity.vendor == VENDOR
+    }
+}
+
+/// So long answers are gathered: a device may wait for as long as it likes within what it is asked, and is not asked.
+const GATHER: Duration = Duration::from_secs(1);
+/// A wish to end is heard at least so often.
+const SLICE: Duration = Duration::from_millis(50);
+
+/// Asks who is there, and gathers answers for a second; each device once, in the order of their addresses.
+///
+/// # Errors
+/// The network; [`Error::Cancelled`].
+pub fn discover(shout: &mut dyn Shout, clock: &dyn Clock, cancel: &Cancel) -> Result<Vec<Found>, Error> {
+    shout.shout(&Frame::list_identity([0; 8]).emit())?;
+    let until = clock.now() + GATHER;
+    let mut found: Vec<Found> = Vec::new();
+    let mut packet = Vec::new();
+    while clock.now() < until {
+        if cancel.is_requested() {
+            return Err(Error::Cancelled);
+        }
+        let Some(address) = shout.hear((clock.now() + SLICE).min(until), &mut packet)? else { continue };
+        let identity = answer(&packet).map(|identity| Found { address, port: identity.socket.port, identity });
+        found
+            .extend(identity.filter(|new| !found.iter().any(|old| old.address == new.address && old.port == new.port)));
+    }
+    found.sort_by_key(|found| (found.address, found.port));
+    Ok(found)
+}
+
+/// Who answers in a packet; `None` for what is no answer.
+fn answer(packet: &[u8]) -> Option<IdentityItem> {
+    let frame = Frame::parse(packet).ok().filter(|frame| frame.command == Command::LIST_IDENTITY)?;
+    match frame.body().ok()? {
+        Body::List(items) => items.identity().cloned(),
+        _ => None,
+    }
+}

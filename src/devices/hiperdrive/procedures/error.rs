@@ -1,0 +1,369 @@
+//! What can go wrong with drives behind EtherNet/IP, with the facts a person needs.
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::buses::ethernet_ip::protocol::{
+    EncapsulationStatus, ExtendedStatusRow, GeneralStatus, PacketError, Service, extended_row,
+};
+use crate::device::line::LineError;
+use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, Topology, ValueError};
+use crate::link::LinkError;
+
+/// What a device was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// A session.
+    Session,
+    /// A parameter's value.
+    Parameter(ParameterNumber),
+    /// To take a parameter's value.
+    Set(ParameterNumber),
+    /// Who it is: the identity object.
+    Identity,
+    /// An attribute of the TCP/IP object.
+    Network {
+        /// Which.
+        attribute: u16,
+    },
+    /// To take an attribute of the TCP/IP object.
+    SetNetwork {
+        /// Which.
+        attribute: u16,
+    },
+    /// The address of its network card.
+    Mac,
+    /// The cyclic connection.
+    Open,
+    /// An end of the cyclic connection.
+    Close,
+}
+
+impl fmt::Display for Asked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = |number: ParameterNumber| number.row().map_or("unknown", |row| row.name);
+        match *self {
+            Asked::Session => f.write_str("opening a session"),
+            Asked::Parameter(number) => write!(f, "reading parameter {number} ({})", named(number)),
+            Asked::Set(number) => write!(f, "writing parameter {number} ({})", named(number)),
+            Asked::Identity => f.write_str("reading the identity object"),
+            Asked::Network { attribute } => write!(f, "reading attribute {attribute} of the TCP/IP object"),
+            Asked::SetNetwork { attribute } => write!(f, "writing attribute {attribute} of the TCP/IP object"),
+            Asked::Mac => f.write_str("reading the address of the network card"),
+            Asked::Open => f.write_str("opening the cyclic connection"),
+            Asked::Close => f.write_str("closing the cyclic connection"),
+        }
+    }
+}
+
+/// A reply that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Damage {
+    /// It is no packet.
+    #[error(transparent)]
+    Packet(#[from] PacketError),
+    /// It is no value of its parameter.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// There is no message in it.
+    #[error("a frame without a message")]
+    Empty,
+    /// It answers another service.
+    #[error("a reply to service {got:02X}h where one to {asked:02X}h was expected")]
+    Service {
+        /// The service that was asked.
+        asked: u8,
+        /// The one that is answered.
+        got: u8,
+    },
+    /// Its end did not come.
+    #[error("a frame that was cut off after {bytes} bytes")]
+    Cut {
+        /// So much had come.
+        bytes: usize,
+    },
+}
+
+/// Replies that came when nobody waited for them any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Late {
+    /// The slowest of them.
+    pub took: Duration,
+    /// So long one may take, beside the margin of the line.
+    pub waited: Duration,
+}
+
+/// Why a request was not done, as the device says it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// What was asked.
+    pub service: Service,
+    /// What it says.
+    pub status: GeneralStatus,
+    /// The words behind it.
+    pub extended: Vec<u16>,
+}
+
+impl Refusal {
+    /// What the first word behind the status says; `None` where there is none or it is not known.
+    pub fn row(&self) -> Option<&'static ExtendedStatusRow> {
+        extended_row(self.service, self.status, *self.extended.first()?)
+    }
+
+    /// What to do: of the word behind the status where that is known, else of the status.
+    pub fn remedy(&self) -> Option<&'static str> {
+        self.row().map(|row| row.remedy).or_else(|| self.status.row().map(|row| row.remedy))
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.status)?;
+        match (self.extended.as_slice(), self.row()) {
+            ([], _) => Ok(()),
+            ([first, ..], Some(row)) => write!(f, ", 0x{first:04X} {}", row.meaning),
+            (words, None) => words.iter().try_for_each(|word| write!(f, ", 0x{word:04X}")),
+        }
+    }
+}
+
+/// A parameter's number that came with another length than its type has: it is shown nowhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
+pub struct WrongLength {
+    /// Which.
+    pub number: ParameterNumber,
+    /// What it is.
+    pub name: &'static str,
+    /// Bytes of its type.
+    pub expected: usize,
+    /// Bytes that came.
+    pub got: usize,
+}
+
+/// Why something failed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The wire.
+    #[error(transparent)]
+    Link(LinkError),
+    /// The user wished it.
+    #[error("cancelled")]
+    Cancelled,
+    /// Bytes keep coming that are no frames.
+    #[error("bytes keep arriving that are no EtherNet/IP frames")]
+    NeverSilent,
+    /// Nobody answers.
+    #[error("no answer: {asked}, tried {tries} times")]
+    NoReply {
+        /// What was asked.
+        asked: Asked,
+        /// How often.
+        tries: u32,
+        /// It did, but too late; `None` where nothing came.
+        late: Option<Late>,
+    },
+    /// It answers, and not as it should.
+    #[error("{asked}: {cause}, tried {tries} times")]
+    Damaged {
+        /// What was asked.
+        asked: Asked,
+        /// How often.
+        tries: u32,
+        /// What came last.
+        cause: Damage,
+    },
+    /// The frame was refused.
+    #[error("{asked}: {status}")]
+    Encapsulation {
+        /// What was asked.
+        asked: Asked,
+        /// What the device says.
+        status: EncapsulationStatus,
+    },
+    /// The request was refused.
+    #[error("{asked}: {refusal}")]
+    Refused {
+        /// What was asked.
+        asked: Asked,
+        /// What the device says.
+        refusal: Refusal,
+    },
+    /// Another master has the cyclic connection.
+    #[error("another master is connected: 0x{extended:04X}")]
+    OtherMaster {
+        /// The word behind the status: 0100h or 0106h.
+        extended: u16,
+    },
+    /// The device wants to send or to hear more seldom than was asked for: too seldom to stop a drive in time.
+    #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
+    TooSlow {
+        /// The interval that was asked for, in milliseconds.
+        asked_ms: u64,
+        /// The longer of those that it gives.
+        got_ms: u64,
+    },
+    /// This session has the cyclic connection.
+    #[error("the cyclic connection is open")]
+    InControl,
+    /// There is no cyclic connection over such a link: a recording has none.
+    #[error("this link has no cyclic connection")]
+    NoCyclic,
+    /// The manual has no such parameter.
+    #[error("there is no parameter {0}")]
+    Unknown(ParameterNumber),
+    /// A number that no parameter has.
+    #[error("{0} is no parameter's number")]
+    NoNumber(u16),
+    /// The place does not exist.
+    #[error("there is no drive {}: {} has {}", drive.get(), topology.category(), topology.drives())]
+    NoPlace {
+        /// The drive that was meant.
+        drive: DriveNumber,
+        /// What it is.
+        topology: Topology,
+    },
+    /// No drive is plugged in there.
+    #[error("no drive is connected at place {}", drive.get())]
+    NoDrive {
+        /// The place.
+        drive: DriveNumber,
+    },
+    /// Parameter 152 is 0.
+    #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
+    NotRequested {
+        /// Which.
+        drive: DriveNumber,
+    },
+    /// A value that it may not be; nothing was sent.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// A value that the device refuses, with what it may be at the moment.
+    #[error("{0}")]
+    Refuses(OutOfRange),
+    /// A parameter's number came with another length than its type has.
+    #[error(transparent)]
+    Length(#[from] WrongLength),
+    /// The value does not fit its parameter; nothing was sent.
+    #[error("parameter {number}: {cause}")]
+    Value {
+        /// Which.
+        number: ParameterNumber,
+        /// Why.
+        cause: ValueError,
+    },
+    /// It can only be read; nothing was sent.
+    #[error("parameter {number} ({name}) can only be read")]
+    ReadOnly {
+        /// Which.
+        number: ParameterNumber,
+        /// What it is.
+        name: &'static str,
+    },
+    /// It can only be written.
+    #[error("parameter {number} ({name}) can only be written")]
+    WriteOnly {
+        /// Which.
+        number: ParameterNumber,
+        /// What it is.
+        name: &'static str,
+    },
+    /// It moves the drive: over the cyclic connection alone; nothing was sent.
+    #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
+    Motion {
+        /// Which.
+        number: ParameterNumber,
+        /// What it is.
+        name: &'static str,
+    },
+    /// The drive moves where it must stand still.
+    #[error("drive {} moves", drive.get())]
+    Moving {
+        /// Which.
+        drive: DriveNumber,
+    },
+    /// What it says of itself is no HIPERDRIVE's.
+    #[error("this is no HIPERDRIVE: {says:?}")]
+    NotHiperdrive {
+        /// Its category, or the name in its identity object.
+        says: String,
+    },
+    /// What was written does not read back.
+    #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]
+    NotTaken {
+        /// Which.
+        number: ParameterNumber,
+        /// What it should be.
+        wanted: i64,
+        /// What it is.
+        reads: i64,
+    },
+    /// Network settings that were written do not read back.
+    #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
+    NetworkNotTaken {
+        /// Which.
+        attribute: u16,
+    },
+    /// Parameter 47 does not become 0.
+    #[error("parameter 47 is still {reads} after {milliseconds} ms")]
+    Busy {
+        /// What it says.
+        reads: i64,
+        /// So long it was waited for.
+        milliseconds: u64,
+    },
+    /// What was read changed between the plan and its execution.
+    #[error("{item} has changed since the plan was made")]
+    Changed {
+        /// What changed.
+        item: String,
+    },
+    /// The consent is for another plan.
+    #[error("the consent is for another plan")]
+    OtherPlan,
+}
+
+fn named(number: ParameterNumber) -> &'static str {
+    number.row().map_or("unknown", |row| row.name)
+}
+
+impl From<LineError> for Error {
+    fn from(error: LineError) -> Self {
+        match error {
+            LineError::Cancelled => Error::Cancelled,
+            LineError::NeverSilent => Error::NeverSilent,
+            LineError::Link(error) => Error::Link(error),
+        }
+    }
+}
+
+impl From<LinkError> for Error {
+    fn from(error: LinkError) -> Self {
+        Error::Link(error)
+    }
+}
+
+impl Error {
+    /// The device can no longer be reached: trying anything else makes no sense.
+    pub const fn is_lost(&self) -> bool {
+        matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
+    }
+
+    /// The user wished it.
+    pub const fn is_cancelled(&self) -> bool {
+        matches!(self, Error::Cancelled)
+    }
+
+    /// It is not said at the moment, or by this device: other parameters may be.
+    pub const fn is_unsaid(&self) -> bool {
+        matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
+    }
+
+    /// The device has answered, and does not do it.
+    pub const fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            Error::Refused { refusal, .. } => Some(refusal),
+            _ => None,
+        }
+    }
+}

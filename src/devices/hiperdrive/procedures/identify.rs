@@ -1,0 +1,327 @@
+//! Who is there, what it says, and everything that can be read (reference 4). Nothing is set for it.
+
+use std::collections::BTreeMap;
+
+use super::network::{Network, network};
+use super::{Error, Master, WrongLength};
+use crate::devices::hiperdrive::protocol::{
+    Access, Actual, DriveNumber, ErrorCode, PARAMETERS, ParameterNumber, StatusWord, Topology, Value, Variant,
+};
+use crate::units::Moment;
+
+/// Who an adapter or a hub is, and its drives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Places for drives.
+    pub topology: Topology,
+    /// Parameter 13.
+    pub category: String,
+    /// Parameter 15.
+    pub name: String,
+    /// Parameter 16.
+    pub article_number: String,
+    /// Parameter 17.
+    pub serial_number: String,
+    /// Parameter 18: week and year.
+    pub production_date: String,
+    /// Parameter 19.
+    pub version: String,
+    /// Those that are plugged in.
+    pub drives: Vec<DriveIdentity>,
+}
+
+/// Who a drive is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DriveIdentity {
+    /// Its place.
+    pub number: DriveNumber,
+    /// Parameter 120.
+    pub variant: Variant,
+    /// Parameter 121.
+    pub name: String,
+    /// Parameter 122.
+    pub article_number: String,
+    /// Parameter 123.
+    pub serial_number: String,
+    /// Parameter 125.
+    pub version: String,
+    /// Parameter 152: it takes part.
+    pub requested: bool,
+}
+
+/// Everything that can be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Survey {
+    /// Who is there.
+    pub identity: Identity,
+    /// Its address and where it has it from.
+    pub network: Network,
+    /// Every parameter of the device and of its drives; what it refuses is left out.
+    pub values: BTreeMap<ParameterNumber, Value>,
+    /// Parameters whose numbers came with another length than their types have; they are in no values.
+    pub wrong_lengths: Vec<WrongLength>,
+}
+
+/// What a device and its drives say of themselves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// Those that are plugged in.
+    pub drives: Vec<DriveStatus>,
+    /// Parameter 9: tenths of a volt of the control supply.
+    pub supply_tenths: i64,
+    /// Parameter 11: degrees Celsius in the device.
+    pub temperature: i64,
+}
+
+/// What a drive says of itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DriveStatus {
+    /// Its place.
+    pub number: DriveNumber,
+    /// Parameter 105.
+    pub status: StatusWord,
+    /// Parameters 108 to 115 that hold an error, the newest first. After power-up they may be old (reference 4).
+    pub buffer: Vec<ErrorCode>,
+    /// Parameters 116 to 118: drive, motion, communication. 0 is well, FFFFh is no drive.
+    pub words: [u16; 3],
+    /// Parameter 197: faults since the last acknowledgement.
+    pub faults: u8,
+    /// Parameter 119: degrees Celsius in the drive.
+    pub temperature: i64,
+    /// Parameter 152: it takes part.
+    pub requested: bool,
+}
+
+/// Who is told what is read next, and how many of how many have been read.
+pub(super) type Told<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
+
+/// What is read, one after the other.
+struct Steps<'t> {
+    done: u64,
+    total: u64,
+    told: Told<'t>,
+}
+
+impl Steps<'_> {
+    /// This is read next.
+    fn next(&mut self, number: ParameterNumber) -> ParameterNumber {
+        (self.told)(self.done, self.total, number);
+        self.done += 1;
+        number
+    }
+
+    /// So many are not read.
+    fn skip(&mut self, count: u64) {
+        self.done += count;
+    }
+}
+
+/// Where a drive is and how fast, read at a moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// When.
+    pub at: Moment,
+    /// Which drive.
+    pub drive: DriveNumber,
+    /// Parameters 105 to 107.
+    pub actual: Actual,
+}
+
+impl Identity {
+    /// A drive that is plugged in.
+    pub fn drive(&self, number: DriveNumber) -> Option<&DriveIdentity> {
+        self.drives.iter().find(|drive| drive.number == number)
+    }
+
+    /// A drive that somebody has named.
+    ///
+    /// # Errors
+    /// [`Error::NoPlace`], [`Error::NoDrive`].
+    pub fn named(&self, drive: DriveNumber) -> Result<&DriveIdentity, Error> {
+        let topology = self.topology;
+        let is_place = drive.get() <= topology.drives();
+        let missing = if is_place { Error::NoDrive { drive } } else { Error::NoPlace { drive, topology } };
+        self.drive(drive).ok_or(missing)
+    }
+}
+
+/// Reads who is there.
+///
+/// # Errors
+/// [`Error::NotHiperdrive`]; what the device refuses; the way.
+pub fn identify(master: &mut Master<'_>, told: Told<'_>) -> Result<Identity, Error> {
+    // Parameters of a drive, and of the device.
+    const DRIVE: u64 = 6;
+    const DEVICE: u64 = 5;
+    let category = category(master)?;
+    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { says: category.clone() })?;
+    let mut steps = Steps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, told };
+    let mut drives = Vec::new();
+    for number in DriveNumber::of(topology) {
+        let variant = master.read_number(steps.next(of(120, number)?))?;
+        let variant = Variant::new(u16::try_from(variant).unwrap_or(Variant::OTHER.number()));
+        if variant == Variant::NONE {
+            steps.skip(DRIVE - 1);
+            continue;
+        }
+        let mut text = |base| {
+            steps.next(of(base, number)?);
+            drive_text(master, base, number)
+        };
+        let (name, article_number, serial_number, version) = (text(121)?, text(122)?, text(123)?, text(125)?);
+        steps.next(of(152, number)?);
+        let requested = is_requested(master, number)?;
+        drives.push(DriveIdentity { number, variant, name, article_number, serial_number, version, requested });
+    }
+    master.learn(topology);
+    let mut text = |number| master.read_text(steps.next(own(number)?));
+    let (name, article_number, production_date, version) = (text(15)?, text(16)?, text(18)?, text(19)?);
+    let serial_number = master.read_number(steps.next(own(17)?))?.to_string();
+    Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
+}
+
+/// What a drive says of itself; nothing where it does not say it, as one of which nothing is wanted may (`U`).
+pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
+    match master.read_text(of(base, drive)?) {
+        Err(error) if error.is_unsaid() => Ok(String::new()),
+        ended => ended,
+    }
+}
+
+/// What it says to be. What has no such parameter tells its name.
+fn category(master: &mut Master<'_>) -> Result<String, Error> {
+    match master.read_text(own(13)?) {
+        Err(Error::Refused { .. }) => {
+            let says = master.identity_object()?.product_name;
+            Err(Error::NotHiperdrive { says })
+        }
+        ended => ended,
+    }
+}
+
+/// Reads everything.
+///
+/// # Errors
+/// As [`identify`].
+pub fn survey(master: &mut Master<'_>, told: Told<'_>) -> Result<Survey, Error> {
+    let identity = identify(master, told)?;
+    let numbers: Vec<ParameterNumber> = readable(&identity).collect();
+    let total = numbers.len() as u64;
+    let (mut values, mut wrong_lengths) = (BTreeMap::new(), Vec::new());
+    for (done, number) in numbers.into_iter().enumerate() {
+        told(done as u64, total, number);
+        match master.read(number) {
+            Ok(value) => {
+                values.insert(number, value);
+            }
+            Err(Error::Length(error)) => wrong_lengths.push(error),
+            Err(error) if error.is_unsaid() => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let network = network(master)?;
+    Ok(Survey { identity, network, values, wrong_lengths })
+}
+
+/// Every parameter that can be read of a device and its drives.
+fn readable(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
+    let rows = || PARAMETERS.iter().filter(|row| row.access != Access::Write);
+    let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
+    let drives = identity
+        .drives
+        .iter()
+        .flat_map(move |drive| rows().filter_map(|row| ParameterNumber::of_drive(row.number, drive.number)));
+    device.chain(drives)
+}
+
+/// Parameters that tell the status of a drive.
+const OF_STATUS: u64 = 15;
+
+/// Reads errors and states of all drives.
+///
+/// # Errors
+/// As [`identify`].
+pub fn read_status(master: &mut Master<'_>, told: Told<'_>) -> Result<Status, Error> {
+    let topology = topology(master)?;
+    // Of each drive whether it is there, and the rest.
+    let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, told };
+    let mut drives = Vec::new();
+    for number in DriveNumber::of(topology) {
+        if master.read_number(steps.next(of(120, number)?))? == i64::from(Variant::NONE.number()) {
+            steps.skip(OF_STATUS);
+        } else {
+            drives.push(status_of(master, number, &mut steps)?);
+        }
+    }
+    let mut device = |number| master.read_number(steps.next(own(number)?));
+    let (supply_tenths, temperature) = (device(9)?, device(11)?);
+    Ok(Status { drives, supply_tenths, temperature })
+}
+
+pub(super) fn drive_status(master: &mut Master<'_>, number: DriveNumber) -> Result<DriveStatus, Error> {
+    status_of(master, number, &mut Steps { done: 0, total: OF_STATUS, told: &mut |_, _, _| {} })
+}
+
+fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>) -> Result<DriveStatus, Error> {
+    let mut read = |base| master.read_number(steps.next(of(base, number)?));
+    // A number of 16 bits, as bits.
+    let mut word = |base| Ok::<_, Error>(read(base)? as u16);
+    let mut buffer = Vec::new();
+    for error in 108..=115 {
+        let code = word(error)?;
+        buffer.extend((code != 0).then_some(ErrorCode::new(code)));
+    }
+    let status = StatusWord::new(word(105)?);
+    let words = [word(116)?, word(117)?, word(118)?];
+    Ok(DriveStatus {
+        number,
+        status,
+        buffer,
+        words,
+        faults: u8::try_from(read(197)?).unwrap_or(u8::MAX),
+        temperature: read(119)?,
+        requested: read(152)? != 0,
+    })
+}
+
+/// Reads where a drive is: 105, 106, 107, one after the other.
+///
+/// # Errors
+/// [`Error::NoPlace`], [`Error::NoDrive`]; the way.
+pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<Reading, Error> {
+    let status = StatusWord::new(word(master, 105, drive)?);
+    // Both are of that many bits.
+    let speed = master.read_number(of(106, drive)?)? as i16;
+    let position = master.read_number(of(107, drive)?)? as i32;
+    Ok(Reading { at: master.now(), drive, actual: Actual { status, speed, position } })
+}
+
+/// What it is, asked for once a session.
+pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
+    if let Some(topology) = master.station().topology() {
+        return Ok(topology);
+    }
+    let category = category(master)?;
+    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { says: category })?;
+    master.learn(topology);
+    Ok(topology)
+}
+
+fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Error> {
+    Ok(master.read_number(of(152, drive)?)? != 0)
+}
+
+/// A number of 16 bits, as bits.
+fn word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {
+    Ok(master.read_number(of(base, drive)?)? as u16)
+}
+
+/// A parameter of the device.
+pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
+    ParameterNumber::new(number).ok_or(Error::NoNumber(number))
+}
+
+/// A parameter of a drive, by its number of drive 1.
+pub(super) fn of(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
+    ParameterNumber::of_drive(base, drive).ok_or(Error::NoNumber(base))
+}

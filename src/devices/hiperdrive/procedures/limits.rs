@@ -1,0 +1,318 @@
+//! The limits of a drive's motion, with one owner: scale, limits, confirmation, locks and the time of reading are one value.
+//!
+//! The worker writes it as it reads parameters, the dead-man asks it for a [`Permit`] at each packet, the window shows it, and
+//! the settings keep the part that has to survive a session (limits that are to be confirmed).
+
+use std::time::Duration;
+
+use super::dead_man::{Lock, Permit};
+use super::rules::{GROUPS, Rules};
+use crate::devices::hiperdrive::protocol::{ParameterNumber, PositionScale, Topology, Variant};
+use crate::units::Moment;
+
+/// What one drive may do.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DriveLimits {
+    rules: Rules,
+    /// Scale and limits are those of the factory, as far as the drive's family is known.
+    is_factory: bool,
+    /// The scale has changed since a person confirmed the limits.
+    unconfirmed: bool,
+    /// When each group of parameters was read; `None`: not since they may have changed.
+    read: Option<[Moment; GROUPS]>,
+    /// Since then all of them are to be read again before the next motion begins.
+    doubted: Option<Moment>,
+}
+
+/// The limits as a person saw them, with the scale that gives them their meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LimitsSeen {
+    /// Parameters 154 and 156.
+    pub scale: (i64, i64),
+    /// Parameters 158 and 160, in steps as scaled.
+    pub limits: (i64, i64),
+}
+
+/// How long a reading of the limits stays valid: longer than a slow device may take to answer for all of them.
+const VALID: Duration = Duration::from_secs(4);
+/// Parameter 186: a drive that hears nothing goes on.
+const NEVER: i64 = 255;
+
+/// A drive with this parameter 186 stops where it hears nothing any more: what the manual does not know proves nothing.
+pub(super) fn ends_by_itself(timeout: i64) -> bool {
+    let row = ParameterNumber::new(186).and_then(ParameterNumber::row);
+    timeout != NEVER && row.is_some_and(|row| row.range.holds(timeout))
+}
+
+impl DriveLimits {
+    /// The limits of a drive whose parameters were all read at this moment.
+    pub fn of(rules: Rules, (topology, variant): (Topology, Variant), at: Moment) -> Self {
+        let mut limits = DriveLimits::default();
+        limits.take(rules, (topology, variant), [at; GROUPS]);
+        limits
+    }
+
+    /// Takes over what was read; `times` says when the reading of each group of parameters began. Where the scale has changed,
+    /// the limits lie elsewhere: they have to be confirmed. What was read before a doubt does not settle it.
+    pub fn take(&mut self, rules: Rules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
+        self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
+        self.is_factory = rules.are_factory(topology, variant);
+        self.rules = rules;
+        self.read = Some(times);
+        self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
+    }
+
+    /// The parameters as they were read last.
+    pub const fn rules(&self) -> Rules {
+        self.rules
+    }
+
+    /// When each group of parameters was read; `None` where all of them are to be read at once.
+    pub fn times(&self) -> Option<[Moment; GROUPS]> {
+        self.read.filter(|_| self.doubted.is_none())
+    }
+
+    /// The parameters have to be read before the next motion begins: somebody else may have changed them. A motion that is
+    /// under way goes on for as long as the last reading is valid.
+    pub fn doubt(&mut self, now: Moment) {
+        // Who doubts reads the clock first: of two threads the later doubt may come first.
+        self.doubted = self.doubted.max(Some(now));
+    }
+
+    /// Nothing is known of the parameters any more. Limits that have to be confirmed stay so.
+    pub fn forget(&mut self) {
+        // The scale stays, to see whether the next one is another.
+        let rules = Rules { scale: self.rules.scale, ..Rules::default() };
+        *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
+    }
+
+    /// The limits have to be confirmed before the drive moves.
+    pub const fn unconfirm(&mut self) {
+        self.unconfirmed = true;
+    }
+
+    /// The limits have to be confirmed before the drive moves.
+    pub const fn is_unconfirmed(&self) -> bool {
+        self.unconfirmed
+    }
+
+    /// A person confirms the limits as they were shown. Returns whether that counts: not where the drive has others by now.
+    pub fn confirm(&mut self, seen: LimitsSeen) -> bool {
+        let counts = self.seen() == Some(seen);
+        self.unconfirmed &= !counts;
+        counts
+    }
+
+    /// The limits as they are to be shown for a confirmation; `None` where they were not read.
+    pub fn seen(&self) -> Option<LimitsSeen> {
+        Some(LimitsSeen { scale: self.rules.scale?, limits: self.rules.limits? })
+    }
+
+    /// Parameters 158 and 160, in steps as scaled; `None` where they were not read, or make no range.
+    pub fn limits(&self) -> Option<(i32, i32)> {
+        let (lower, upper) = self.rules.limits?;
+        let limits = (i32::try_from(lower).ok()?, i32::try_from(upper).ok()?);
+        (limits.0 < limits.1).then_some(limits)
+    }
+
+    /// Parameters 154 and 156; `None` where they were not read, or make no scale.
+    pub fn scale(&self) -> Option<PositionScale> {
+        let (numerator, denominator) = self.rules.scale?;
+        PositionScale::new(u16::try_from(numerator).ok()?, u16::try_from(denominator).ok()?).ok()
+    }
+
+    /// A motion may begin by what was read: within the last seconds, and not doubted since.
+    pub fn is_valid(&self, now: Moment) -> bool {
+        self.doubted.is_none() && self.is_fresh(now)
+    }
+
+    fn is_fresh(&self, now: Moment) -> bool {
+        self.read.is_some_and(|times| times.into_iter().all(|at| now.since(at) <= VALID))
+    }
+
+    /// Scale and limits are the factory's: an endless run is possible.
+    pub const fn allows_endless(&self) -> bool {
+        self.is_factory
+    }
+
+    /// Why nothing may move, the weightiest reason first.
+    pub fn locks(&self) -> Vec<Lock> {
+        let Rules { requested, timeout, .. } = self.rules;
+        // Numbers that make no scale and no range say no more than none.
+        let unread = requested.is_none() || self.scale().is_none() || self.limits().is_none() || timeout.is_none();
+        [
+            (Lock::Unread, unread),
+            (Lock::NotRequested, requested.is_some_and(|value| value != 1)),
+            (Lock::NoTimeout, timeout.is_some_and(|value| !ends_by_itself(value))),
+            (Lock::LimitsUnconfirmed, self.unconfirmed),
+        ]
+        .into_iter()
+        .filter_map(|(lock, holds)| holds.then_some(lock))
+        .collect()
+    }
+
+    /// What the drive may do at this moment; `expert`: a person has allowed an endless run.
+    pub fn permit(&self, now: Moment, expert: bool) -> Permit {
+        let mut locks = self.locks();
+        locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
+        let endless = self.is_factory && expert;
+        Permit { limits: self.limits(), locks, endless, doubted: self.doubted.is_some(), degree: self.degree() }
+    }
+
+    /// Steps of one degree as scaled, at least 1; 1 as well where the scale was not read.
+    pub fn degree(&self) -> u32 {
+        self.scale().map_or(1, |scale| scale.steps_of_degrees(1.0))
+    }
+}
+
+impl Rules {
+    fn are_factory(&self, topology: Topology, variant: Variant) -> bool {
+        let factory = |number| {
+            let row = ParameterNumber::new(number).and_then(ParameterNumber::row)?;
+            row.factory_value(topology, variant.row()?.family)
+        };
+        let (scale, limits) = (factory(154).zip(factory(156)), factory(158).zip(factory(160)));
+        scale.is_some() && limits.is_some() && (self.scale, self.limits) == (scale, limits)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HDA30A: (Topology, Variant) = (Topology::Adapter, Variant::new(7));
+
+    /// An HDA30A from the factory: ±511 turns of 65536 steps (reference 5).
+    fn factory(number: u16) -> Option<i64> {
+        Some(match number {
+            152 => 1,
+            154 => 256,
+            156 => 1,
+            158 => -33_488_896,
+            160 => 33_488_896,
+            186 => 20,
+            _ => return None,
+        })
+    }
+
+    fn rules(changed: &[(u16, Option<i64>)]) -> Rules {
+        Rules::by(|number| {
+            let own = changed.iter().find(|(own, _)| *own == number);
+            own.map_or_else(|| factory(number), |(_, value)| *value)
+        })
+    }
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    #[test]
+    fn parameters_lock_and_permit() {
+        let whole = Some((-33_488_896, 33_488_896));
+        // A degree of 65536 steps a turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
+        let permit = |limits, locks: &[Lock], endless, degree| Permit {
+            limits,
+            locks: locks.to_vec(),
+            endless,
+            doubted: false,
+            degree,
+        };
+        type Case<'c> = (&'c str, &'c [(u16, Option<i64>)], Permit);
+        let cases: [Case<'_>; 8] = [
+            ("factory", &[], permit(whole, &[], true, 183)),
+            ("given up", &[(152, Some(0))], permit(whole, &[Lock::NotRequested], true, 183)),
+            ("no time-out", &[(186, Some(255))], permit(whole, &[Lock::NoTimeout], true, 183)),
+            ("scaled", &[(156, Some(400))], permit(whole, &[], false, 1)),
+            ("limited", &[(160, Some(65536))], permit(Some((-33_488_896, 65536)), &[], false, 183)),
+            ("unread", &[(186, None)], permit(whole, &[Lock::Unread], true, 183)),
+            ("no limit", &[(158, None)], permit(None, &[Lock::Unread], false, 183)),
+            ("no scale", &[(154, None)], permit(whole, &[Lock::Unread], false, 1)),
+        ];
+        for (label, changed, expected) in cases {
+            let limits = DriveLimits::of(rules(changed), HDA30A, at(0));
+            assert_eq!(limits.permit(at(0), true), expected, "{label}");
+            assert!(!limits.permit(at(0), false).endless, "{label}: only for an expert");
+        }
+        let other = DriveLimits::of(rules(&[]), (Topology::Adapter, Variant::OTHER), at(0));
+        assert!(!other.allows_endless(), "its factory values are not known");
+    }
+
+    /// Issue 21.3: numbers that make no scale, no range or no time-out are as good as unread. Type and range are the manual's:
+    /// 152 is 0 or 1, 160 is above 158, 186 is 1 to 100, 255 for never (reference 4).
+    #[test]
+    fn numbers_that_mean_nothing_permit_nothing() {
+        type Case<'c> = (&'c [(u16, Option<i64>)], Lock);
+        let cases: [Case<'_>; 8] = [
+            (&[(154, Some(0))], Lock::Unread),
+            (&[(156, Some(0))], Lock::Unread),
+            (&[(154, Some(65_536))], Lock::Unread),
+            (&[(158, Some(1000)), (160, Some(1000))], Lock::Unread),
+            (&[(158, Some(1000)), (160, Some(-1000))], Lock::Unread),
+            (&[(152, Some(2))], Lock::NotRequested),
+            (&[(186, Some(0))], Lock::NoTimeout),
+            (&[(186, Some(101))], Lock::NoTimeout),
+        ];
+        for (changed, lock) in cases {
+            let limits = DriveLimits::of(rules(changed), HDA30A, at(0));
+            assert_eq!(limits.permit(at(0), true).locks, [lock], "{changed:?}");
+        }
+        for tenths in [1, 100] {
+            assert_eq!(DriveLimits::of(rules(&[(186, Some(tenths))]), HDA30A, at(0)).locks(), [], "{tenths}");
+        }
+    }
+
+    /// Issue 21.3: of two doubts the later one counts, in whichever order they come.
+    #[test]
+    fn an_earlier_doubt_takes_no_later_one_back() {
+        let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
+        limits.doubt(at(100));
+        limits.doubt(at(50));
+        limits.take(rules(&[]), HDA30A, [at(70); GROUPS]);
+        assert!(!limits.is_valid(at(100)), "read before the later one");
+        limits.take(rules(&[]), HDA30A, [at(100); GROUPS]);
+        assert!(limits.is_valid(at(100)));
+    }
+
+    /// Issue 21.3: the time of reading belongs to the same value, and the dead-man sees it.
+    #[test]
+    fn a_reading_is_valid_for_four_seconds() {
+        let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
+        limits.take(rules(&[]), HDA30A, [at(1000), at(500), at(1000), at(1000)]);
+        for (ms, locks) in [(4500, vec![]), (4501, vec![Lock::Outdated])] {
+            assert_eq!(limits.permit(at(ms), false).locks, locks, "{ms}");
+            assert_eq!(limits.is_valid(at(ms)), locks.is_empty(), "{ms}");
+        }
+        limits.doubt(at(1000));
+        assert!(!limits.is_valid(at(1000)) && limits.permit(at(1000), false).doubted, "nothing begins");
+        assert_eq!((limits.permit(at(1000), false).locks, limits.times()), (vec![], None), "what moves goes on");
+        // A group whose reading was under way when the doubt came.
+        limits.take(rules(&[]), HDA30A, [at(999), at(1100), at(1100), at(1100)]);
+        assert_eq!((limits.times(), limits.is_valid(at(1100))), (None, false));
+        limits.take(rules(&[]), HDA30A, [at(1200); GROUPS]);
+        assert_eq!((limits.times(), limits.is_valid(at(1200))), (Some([at(1200); GROUPS]), true));
+        limits.forget();
+        assert_eq!(limits.permit(at(1000), false).locks, [Lock::Unread]);
+        assert_eq!(limits.limits(), None);
+    }
+
+    /// Issue 21.3: a confirmation counts for the limits and the scale that were shown, and falls with the scale.
+    #[test]
+    fn limits_are_confirmed_as_they_were_shown() {
+        let scaled = rules(&[(154, Some(400)), (156, Some(256)), (158, Some(-1000)), (160, Some(1000))]);
+        let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
+        assert!(!limits.is_unconfirmed(), "as it was found");
+        let before = limits.seen().unwrap();
+        limits.forget();
+        limits.take(scaled, HDA30A, [at(1); GROUPS]);
+        assert_eq!(limits.locks(), [Lock::LimitsUnconfirmed]);
+        assert!(!limits.confirm(before), "shown under the scale of before");
+        let seen = limits.seen().unwrap();
+        for other in [LimitsSeen { limits: (-1000, 1001), ..seen }, LimitsSeen { scale: (400, 255), ..seen }] {
+            assert!(!limits.confirm(other) && limits.is_unconfirmed(), "{other:?}");
+        }
+        limits.forget();
+        assert!(limits.is_unconfirmed() && !limits.confirm(seen), "nothing is known that could be confirmed");
+        limits.take(scaled, HDA30A, [at(2); GROUPS]);
+        assert!(limits.confirm(seen) && limits.locks().is_empty());
+    }
+}

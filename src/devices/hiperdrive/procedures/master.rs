@@ -1,0 +1,424 @@
+//! The host's side of explicit messages (reference 7): a session, once a wire; a request and its reply, known by the context
+//! that numbers them. What comes late is let pass and counted.
+//!
+//! Reading is tried again. What sets something is sent once: where its reply is lost, what it was to set is read back, which a
+//! stream answers behind it.
+
+mod connection;
+mod refused;
+
+use std::time::Duration;
+
+pub use connection::Opened;
+
+use super::error::{Asked, Damage, Late, Refusal, WrongLength};
+use super::{Error, Station};
+use crate::bits::MaskedBytes;
+use crate::buses::ethernet_ip::protocol::{
+    Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
+    Request,
+};
+use crate::device::line::{Line, TRIES};
+use crate::devices::hiperdrive::protocol::{
+    Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError,
+};
+use crate::link::Ctx;
+use crate::units::Moment;
+
+/// Behind bytes that are no frame: silence for so long, and what comes next is one again.
+const QUIET: Duration = Duration::from_millis(50);
+/// A wish to end is heard at least so often.
+const SLICE: Duration = Duration::from_millis(50);
+/// Beyond what the manual promises of something that takes long.
+const SPARE: Duration = Duration::from_millis(500);
+
+/// The host's side of the explicit messages of a device, for one job.
+pub struct Master<'a> {
+    line: Line<'a>,
+    station: &'a mut Station,
+}
+
+/// An exchange that gave nothing.
+enum Trouble {
+    Silence,
+    Damage(Damage),
+    Status(EncapsulationStatus),
+}
+
+impl<D: Into<Damage>> From<D> for Trouble {
+    fn from(damage: D) -> Self {
+        Trouble::Damage(damage.into())
+    }
+}
+
+/// Whether what is asked may be asked again blindly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Repeats {
+    Always,
+    /// It is asked once, and its reply may take so long where that is longer than usual.
+    Never {
+        takes: Option<Duration>,
+    },
+}
+
+/// What is asked once, and answered as soon as anything else.
+const ONCE: Repeats = Repeats::Never { takes: None };
+
+impl<'a> Master<'a> {
+    /// A master over a station's wire, for one job.
+    pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
+        station.line.begin_job();
+        Master { line: Line::new(ctx), station }
+    }
+
+    /// Now.
+    pub fn now(&self) -> Moment {
+        self.line.now()
+    }
+
+    /// What is known of the connection.
+    pub fn station(&self) -> &Station {
+        self.station
+    }
+
+    /// What it says to be.
+    pub(super) fn learn(&mut self, topology: Topology) {
+        self.station.known.topology = Some(topology);
+    }
+
+    /// Waits; ends early when the user wishes.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
+        Ok(self.line.wait(duration)?)
+    }
+
+    /// Whether the user wishes an end.
+    pub(super) fn check_cancel(&self) -> Result<(), Error> {
+        Ok(self.line.check_cancel()?)
+    }
+
+    /// Does what leads to a safe end: in it, a wish to end is not heard.
+    pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.line.shield(true);
+        let result = work(self);
+        self.line.shield(before);
+        result
+    }
+
+    /// Reads a parameter. A number has the length of its type, or is none.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`],
+    /// [`Error::Length`]; the way.
+    pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
+        let row = number.row().ok_or(Error::Unknown(number))?;
+        if row.access == Access::Write {
+            return Err(Error::WriteOnly { number, name: row.name });
+        }
+        let asked = Asked::Parameter(number);
+        let request = Request::get(number.class(), 1, number.attribute());
+        let data = match self.request(asked, &request, Repeats::Always) {
+            Err(Error::Refused { refusal, .. }) => return Err(self.why_refused(asked, number, refusal)?),
+            ended => ended?.data,
+        };
+        row.kind.parse(&data).map_err(|cause| match cause {
+            ValueError::Length { expected, got } => WrongLength { number, name: row.name, expected, got }.into(),
+            cause => Error::Damaged { asked, tries: 1, cause: cause.into() },
+        })
+    }
+
+    /// Reads a parameter that is a number.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_number(&mut self, number: ParameterNumber) -> Result<i64, Error> {
+        match self.read(number)? {
+            Value::Number(value) => Ok(value),
+            Value::Text(_) => Err(Error::Value { number, cause: ValueError::Kind("a number is expected, not a text") }),
+        }
+    }
+
+    /// Reads a parameter that is a text.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_text(&mut self, number: ParameterNumber) -> Result<String, Error> {
+        match self.read(number)? {
+            Value::Text(text) => Ok(text),
+            Value::Number(_) => {
+                Err(Error::Value { number, cause: ValueError::Kind("a text is expected, not a number") })
+            }
+        }
+    }
+
+    /// Sets a parameter. Where the reply is lost it is read back, and set again only where it is not there yet; what does
+    /// something else when it is set is never sent twice.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], and nothing is sent; [`Error::Refuses`],
+    /// [`Error::Refused`]; the way.
+    pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
+        let row = settable(number)?;
+        // What its turns bound the plan has looked at.
+        row.check(number, wanted, Travel::UNKNOWN)?;
+        let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
+        let asked = Asked::Set(number);
+        let request = Request::set(number.class(), 1, number.attribute(), data);
+        let once = Repeats::Never { takes: row.takes(wanted, self.station.known.topology) };
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            match self.request(asked, &request, once) {
+                Ok(_) => return Ok(()),
+                Err(Error::Refused { refusal, .. }) => return Err(self.why_not_set(number, wanted, refusal)?),
+                Err(error @ (Error::NoReply { .. } | Error::Damaged { .. })) => {
+                    if does_something(row) || self.shielded(|master| master.read_number(number))? == wanted {
+                        return if does_something(row) { Err(error) } else { Ok(()) };
+                    }
+                    if tries >= TRIES {
+                        return Err(error);
+                    }
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Reads the identity object, which every device of EtherNet/IP has.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]; the way.
+    pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
+        let asked = Asked::Identity;
+        let reply = self.request(asked, &Request::get_all(IdentityObject::CLASS, 1), Repeats::Always)?;
+        IdentityObject::parse_all(&reply.data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+    }
+
+    /// Reads an attribute of another object.
+    pub(super) fn attribute(&mut self, asked: Asked, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
+        Ok(self.request(asked, &Request::get(class, 1, attribute), Repeats::Always)?.data)
+    }
+
+    /// Sets an attribute of the TCP/IP object, once; it is stored before it is answered.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]; the way.
+    pub(super) fn set_attribute(
+        &mut self,
+        asked: Asked,
+        (class, attribute): (u16, u16),
+        data: Vec<u8>,
+    ) -> Result<(), Error> {
+        self.request(asked, &Request::set(class, 1, attribute, data), Repeats::Never { takes: Some(STORES) })?;
+        Ok(())
+    }
+
+    /// So long one waits for the end of what setting this value of a parameter begins.
+    pub(super) fn patience(&self, number: ParameterNumber, value: i64) -> Duration {
+        let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
+        Repeats::Never { takes }.within(self.station.timeout)
+    }
+
+    /// Asks something of an object.
+    fn request(&mut self, asked: Asked, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
+        self.request_with(asked, request, &[], repeats).map(|(reply, _)| reply)
+    }
+
+    /// Asks something of an object, with further items beside the message; gives back those beside the reply as well.
+    fn request_with(
+        &mut self,
+        asked: Asked,
+        request: &Request,
+        beside: &[Item],
+        repeats: Repeats,
+    ) -> Result<(Reply, Items), Error> {
+        let (reply, items) = self.again(asked, repeats, |master| {
+            let session = master.session()?;
+            let items = Items([&[Item::Null, Item::UnconnectedData(request.emit())], beside].concat());
+            let body = Body::Data { interface: 0, timeout_s: 0, items };
+            let frame = Frame { session, data: body.emit(), ..Frame::unconnected(session, [0; 8], Vec::new()) };
+            Ok(match master.exchange(frame, repeats)? {
+                Ok(frame) => judge(request, &frame),
+                Err(trouble) => Err(trouble),
+            })
+        })?;
+        if reply.status == GeneralStatus::OK {
+            return Ok((reply, items));
+        }
+        let Reply { service, status, extended, .. } = reply;
+        Err(Error::Refused { asked, refusal: Refusal { service, status, extended } })
+    }
+
+    /// The number of the session; it begins with the first request on a wire.
+    fn session(&mut self) -> Result<u32, Error> {
+        if let Some(session) = self.station.session {
+            return Ok(session);
+        }
+        let frame = self.again(Asked::Session, Repeats::Always, |master| {
+            master.exchange(Frame::register([0; 8]), Repeats::Always)
+        })?;
+        self.station.session = Some(frame.session);
+        Ok(frame.session)
+    }
+
+    /// Ends the session at the device. Nothing answers that.
+    ///
+    /// # Errors
+    /// The way.
+    pub fn unregister(&mut self) -> Result<(), Error> {
+        let Some(session) = self.station.session.take() else { return Ok(()) };
+        let bytes = Frame::unregister(session).emit();
+        let now = self.line.now();
+        Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
+    }
+
+    /// Asks, and again where that may help and does no harm.
+    fn again<T>(
+        &mut self,
+        asked: Asked,
+        repeats: Repeats,
+        mut once: impl FnMut(&mut Self) -> Result<Result<T, Trouble>, Error>,
+    ) -> Result<T, Error> {
+        let (mut tries, late) = (0, self.station.late);
+        let (usual, within) = (self.station.timeout, repeats.within(self.station.timeout));
+        loop {
+            tries += 1;
+            let trouble = match once(self)? {
+                Ok(answer) => {
+                    self.station.line.answered();
+                    self.station.line.recovered();
+                    return Ok(answer);
+                }
+                Err(trouble) => trouble,
+            };
+            match &trouble {
+                Trouble::Silence => self.station.line.quality.silent += 1,
+                Trouble::Damage(_) => self.station.line.quality.damaged += 1,
+                Trouble::Status(_) => {}
+            }
+            let longest = within + self.station.line.margin;
+            // What is refused for its session was answered at once.
+            let took = if let Trouble::Status(_) = trouble { usual + self.station.line.margin } else { longest };
+            let may = self.line.may_ask_again(&mut self.station.line, tries, took);
+            match trouble {
+                // It was not done: the device has forgotten the session.
+                Trouble::Status(EncapsulationStatus::NO_SESSION) if may && asked != Asked::Session => {
+                    self.station.session = None;
+                }
+                Trouble::Status(status) => return Err(Error::Encapsulation { asked, status }),
+                _ if may && repeats == Repeats::Always => {}
+                Trouble::Silence => {
+                    let took = self.station.replies.longest();
+                    let is_late = self.station.late > late && took >= longest;
+                    let late = is_late.then_some(Late { took, waited: within });
+                    return Err(Error::NoReply { asked, tries, late });
+                }
+                Trouble::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
+            }
+        }
+    }
+
+    /// Tells bytes that are no frame to whoever watches.
+    fn show_rest(&mut self) {
+        let (now, rest) = (self.line.now(), self.station.receiver.take_rest());
+        self.line.show(now, MaskedBytes::clear(&rest));
+    }
+
+    /// Sends a frame under a number of its own, and waits for the one that answers it.
+    fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, Trouble>, Error> {
+        self.line.start()?;
+        let sent_at = self.line.now();
+        let takes_long = matches!(repeats, Repeats::Never { takes: Some(_) });
+        frame.context = self.station.begin(sent_at, takes_long).to_le_bytes();
+        let bytes = frame.emit();
+        self.station.line.sent(sent_at);
+        self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
+        let deadline = sent_at + repeats.within(self.station.timeout) + self.station.line.margin;
+        let mut heard = Vec::new();
+        loop {
+            loop {
+                match self.station.receiver.next_frame() {
+                    Ok(Some(answer)) => {
+                        let now = self.line.now();
+                        self.line.show(now, MaskedBytes::clear(&answer.emit()));
+                        self.station.heard(u64::from_le_bytes(answer.context), now);
+                        let recorded = self.station.recorded && answer.command == frame.command;
+                        if !recorded && !answer.answers(&frame) {
+                            self.station.late += 1;
+                        } else if answer.status == EncapsulationStatus::OK || has_session(&answer) {
+                            return Ok(Ok(answer));
+                        } else {
+                            return Ok(Err(Trouble::Status(answer.status)));
+                        }
+                    }
+                    Ok(None) => break,
+                    Err(cause) => {
+                        self.show_rest();
+                        self.line.wait_for_silence(&mut self.station.line, QUIET)?;
+                        self.station.receiver = Receiver::default();
+                        return Ok(Err(cause.into()));
+                    }
+                }
+            }
+            let now = self.line.now();
+            if now >= deadline {
+                let bytes = self.station.receiver.pending();
+                self.show_rest();
+                self.station.receiver = Receiver::default();
+                return Ok(Err(if bytes == 0 { Trouble::Silence } else { Damage::Cut { bytes }.into() }));
+            }
+            // What sets something is heard out.
+            if repeats == Repeats::Always {
+                self.line.check_cancel()?;
+            }
+            heard.clear();
+            self.line.receive((now + SLICE).min(deadline), &mut heard)?;
+            self.station.receiver.push(&heard);
+        }
+    }
+}
+
+/// A stream has one session: where the reply to the first RegisterSession was lost, the next one is refused with its number.
+fn has_session(answer: &Frame) -> bool {
+    answer.command == Command::REGISTER_SESSION
+        && answer.status == EncapsulationStatus::UNSUPPORTED
+        && answer.session != 0
+}
+
+/// What a frame with a reply says.
+fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), Trouble> {
+    let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
+    let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
+    let services = (request.service.code(), reply.service.code());
+    match services {
+        (asked, got) if asked == got => Ok((reply, items)),
+        (asked, got) => Err(Damage::Service { asked, got }.into()),
+    }
+}
+
+/// The row of a parameter that may be set; what moves a drive may not.
+fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
+    let row = number.row().ok_or(Error::Unknown(number))?;
+    match (row.access, row.number) {
+        (Access::Read, _) => Err(Error::ReadOnly { number, name: row.name }),
+        (_, 101..=104) => Err(Error::Motion { number, name: row.name }),
+        _ => Ok(row),
+    }
+}
+
+/// Setting it does something, and what it reads afterwards is no proof of that.
+const fn does_something(row: &ParameterRow) -> bool {
+    matches!(row.number, 47 | 197 | 198 | 199)
+}
+
+impl Repeats {
+    /// So long a reply may take, beside the margin of the line; `timeout` is the usual.
+    fn within(self, timeout: Duration) -> Duration {
+        match self {
+            Repeats::Never { takes: Some(takes) } => timeout.max(takes + SPARE),
+            Repeats::Always | Repeats::Never { takes: None } => timeout,
+        }
+    }
+}

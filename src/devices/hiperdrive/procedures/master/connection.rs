@@ -1,0 +1,194 @@
+//! The cyclic connection is opened and closed over explicit messages (reference 7); what goes over it is not here.
+//!
+//! Sizes and kinds of connection that a device takes its description would say (`U`): with parameter words and from one to the
+//! other is asked for first, then to all who listen, then without parameter words.
+
+use core::net::{Ipv4Addr, SocketAddrV4};
+use std::time::Duration;
+
+use super::{Master, ONCE, Repeats};
+use crate::buses::ethernet_ip::protocol::{
+    ConnectionTimeout, ForwardClose, ForwardOpen, ForwardOpened, GeneralStatus, IoPacket, Item, NetworkParameters,
+    NetworkPriority, NetworkType, Owner, Path, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
+};
+use crate::devices::hiperdrive::procedures::Error;
+use crate::devices::hiperdrive::procedures::error::{Asked, Refusal};
+use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout, Topology};
+
+/// A cyclic connection that was opened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Opened {
+    /// What packets to the target have to carry.
+    pub to_target_id: u32,
+    /// What packets to the originator carry.
+    pub to_originator_id: u32,
+    /// From one packet to the target to the next.
+    pub to_target_interval: Duration,
+    /// From one packet of the target to the next.
+    pub to_originator_interval: Duration,
+    /// Without a packet for so long, the target ends the connection and the drives stop.
+    pub timeout: Duration,
+    /// What process data look like.
+    pub layout: Layout,
+    /// Where packets to the target go.
+    pub port: u16,
+    /// Where its packets come from, besides, where it sends them to all who listen.
+    pub group: Option<SocketAddrV4>,
+    /// What ends it.
+    pub close: ForwardClose,
+}
+
+/// Our name in the list of makers: none that is given away (reference 9).
+const VENDOR: u16 = 0x1234;
+/// Eight intervals: a host that is late once loses nothing. Of long ones four are enough, so that drives stop soon.
+const TIMEOUT: u8 = 1;
+const LONG_TIMEOUT: u8 = 0;
+/// From here on intervals are long.
+const LONG: Duration = Duration::from_millis(35);
+/// What a device makes of an interval may be this many times as long, and no longer than what may be asked for.
+const SLOWER: u32 = 2;
+const LONGEST: Duration = Duration::from_millis(100);
+
+/// What the device may not take of a request.
+const CONNECTION_IN_USE: u16 = 0x0100;
+const OWNED: u16 = 0x0106;
+const KIND: u16 = 0x0108;
+const KINDS: [u16; 3] = [KIND, 0x0123, 0x0124];
+const SIZES: [u16; 3] = [0x0109, 0x0127, 0x0128];
+
+impl Master<'_> {
+    /// Opens the cyclic connection; packets of the target are to come to this port of ours.
+    ///
+    /// # Errors
+    /// [`Error::OtherMaster`], [`Error::Refused`]; the way.
+    pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<Opened, Error> {
+        let order = self.station.order;
+        let with = |pkw| Layout { topology, pkw, order };
+        let tries = [
+            (with(true), NetworkType::PointToPoint),
+            (with(true), NetworkType::Multicast),
+            (with(false), NetworkType::PointToPoint),
+            (with(false), NetworkType::Multicast),
+        ];
+        let mut refused = None;
+        for (layout, kind) in tries {
+            let matters = refused.as_ref().is_none_or(|refusal| answers(refusal, layout, kind));
+            if !matters {
+                continue;
+            }
+            match self.open_so(layout, kind, port) {
+                Err(Error::Refused { refusal, .. }) => match refusal.extended.first() {
+                    Some(&extended @ (CONNECTION_IN_USE | OWNED)) if is_of_connection(&refusal) => {
+                        return Err(Error::OtherMaster { extended });
+                    }
+                    _ => refused = Some(refusal),
+                },
+                ended => return ended,
+            }
+        }
+        match refused {
+            Some(refusal) => Err(Error::Refused { asked: Asked::Open, refusal }),
+            None => Err(Error::NoCyclic),
+        }
+    }
+
+    /// Closes a cyclic connection. One that has ended already is closed. A wish to end is not heard.
+    ///
+    /// # Errors
+    /// [`Error::Refused`]; the way.
+    pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
+        const ENDED: u16 = 0x0107;
+        match self.shielded(|master| master.request(Asked::Close, &close.request(), Repeats::Always)) {
+            Err(Error::Refused { refusal, .. }) if refusal.extended.first() == Some(&ENDED) => Ok(()),
+            ended => ended.map(|_| ()),
+        }
+    }
+
+    /// What may be open, and cannot be used, is closed; why it cannot be used is what counts.
+    fn close_blindly(&mut self, close: &ForwardClose) {
+        if let Err(why) = self.shielded(|master| master.forward_close(close)) {
+            tracing::warn!("{why}");
+        }
+    }
+
+    fn open_so(&mut self, layout: Layout, kind: NetworkType, port: u16) -> Result<Opened, Error> {
+        self.station.connections = self.station.connections.wrapping_add(1);
+        let serial = self.station.connections;
+        let owner = Owner { connection_serial: serial, vendor: VENDOR, serial_number: self.station.originator };
+        // No image is longer than 72 bytes.
+        let length = layout.length() as u16;
+        let parameters = |kind, format| {
+            let size = length + IoPacket::overhead(format);
+            NetworkParameters::new(kind, NetworkPriority::Scheduled, size)
+        };
+        let to_target = parameters(NetworkType::PointToPoint, RealTimeFormat::Header).ok_or(Error::NoCyclic)?;
+        let to_originator = parameters(kind, RealTimeFormat::Modeless).ok_or(Error::NoCyclic)?;
+        let interval = self.station.interval.as_micros() as u32;
+        let timeout = if self.station.interval < LONG { TIMEOUT } else { LONG_TIMEOUT };
+        let [configuration, to, from] = ASSEMBLIES;
+        let open = ForwardOpen {
+            timeout: RequestTimeout::TWO_SECONDS,
+            to_target_id: 0,
+            to_originator_id: self.station.originator.rotate_left(16) ^ u32::from(serial),
+            owner,
+            connection_timeout: ConnectionTimeout::new(timeout).ok_or(Error::NoCyclic)?,
+            to_target_interval_us: interval,
+            to_target,
+            to_originator_interval_us: interval,
+            to_originator,
+            transport: Transport::CYCLIC,
+            path: Path::assemblies(configuration, to, from),
+        };
+        let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
+        let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
+        // Opened twice it would be refused as in use: it is sent once. Where its reply is not understood it may be open.
+        let asked = self.request_with(Asked::Open, &open.request(), &[ours], ONCE);
+        let opened = asked.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
+            Ok(opened) => Ok((opened, items)),
+            Err(cause) => Err(Error::Damaged { asked: Asked::Open, tries: 1, cause: cause.into() }),
+        });
+        if let Err(Error::NoReply { .. } | Error::Damaged { .. }) = &opened {
+            self.close_blindly(&close);
+        }
+        let (opened, items) = opened?;
+        let micros = |us: u32| Duration::from_micros(us.into());
+        let to_target_interval = micros(opened.to_target_interval_us);
+        let slowest = to_target_interval.max(micros(opened.to_originator_interval_us));
+        if slowest > LONGEST.min(self.station.interval * SLOWER) {
+            self.close_blindly(&close);
+            let milliseconds = |time: Duration| time.as_millis() as u64;
+            let (asked_ms, got_ms) = (milliseconds(self.station.interval), milliseconds(slowest));
+            return Err(Error::TooSlow { asked_ms, got_ms });
+        }
+        Ok(Opened {
+            to_target_id: opened.to_target_id,
+            to_originator_id: opened.to_originator_id,
+            to_target_interval,
+            to_originator_interval: micros(opened.to_originator_interval_us),
+            timeout: open.connection_timeout.after(to_target_interval),
+            layout,
+            port: items.socket_to_target().map_or(self.station.udp, |address| address.port),
+            group: items.socket_to_originator().and_then(group),
+            close,
+        })
+    }
+}
+
+/// Where one has to listen for what goes to all.
+fn group(to: SocketAddress) -> Option<SocketAddrV4> {
+    to.address.is_multicast().then(|| SocketAddrV4::new(to.address, to.port))
+}
+
+fn is_of_connection(refusal: &Refusal) -> bool {
+    refusal.status == GeneralStatus::CONNECTION
+}
+
+/// Asking like this leaves out what was refused.
+fn answers(refusal: &Refusal, layout: Layout, kind: NetworkType) -> bool {
+    let first = refusal.extended.first().filter(|_| is_of_connection(refusal));
+    match first {
+        Some(code) if KINDS.contains(code) => kind == NetworkType::Multicast,
+        Some(code) if SIZES.contains(code) => !layout.pkw,
+        _ => false,
+    }
+}

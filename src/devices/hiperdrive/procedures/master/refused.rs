@@ -1,0 +1,120 @@
+//! Why a parameter was refused, as far as the device can be asked: whether there is such a drive, whether anything is wanted of
+//! it, and what a value may be at the moment.
+
+use super::{Master, Repeats, settable};
+use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
+use crate::devices::hiperdrive::procedures::Error;
+use crate::devices::hiperdrive::procedures::error::{Asked, Refusal};
+use crate::devices::hiperdrive::procedures::identify::topology;
+use crate::devices::hiperdrive::protocol::{
+    DriveNumber, OutOfRange, ParameterNumber, ParameterRow, PositionScale, Range, Travel, Value, Variant,
+};
+
+impl Master<'_> {
+    /// Why a parameter was refused, as far as can be asked.
+    ///
+    /// # Errors
+    /// The way.
+    pub(super) fn why_refused(
+        &mut self,
+        asked: Asked,
+        number: ParameterNumber,
+        refusal: Refusal,
+    ) -> Result<Error, Error> {
+        let Some(drive) = number.drive() else { return Ok(Error::Refused { asked, refusal }) };
+        let topology = match self.station.known.topology {
+            None if refusal.status == GeneralStatus::PATH_UNKNOWN => Some(topology(self)?),
+            known => known,
+        };
+        if let Some(topology) = topology.filter(|topology| drive.get() > topology.drives()) {
+            return Ok(Error::NoPlace { drive, topology });
+        }
+        if self.is_zero(number, 120, drive)? {
+            return Ok(Error::NoDrive { drive });
+        }
+        // What is asked of it is refused in this state: because nobody wants anything of it?
+        if refusal.status == GeneralStatus::STATE && self.is_zero(number, 152, drive)? {
+            return Ok(Error::NotRequested { drive });
+        }
+        Ok(Error::Refused { asked, refusal })
+    }
+
+    /// Another parameter of a drive is known to be 0.
+    fn is_zero(&mut self, refused: ParameterNumber, base: u16, drive: DriveNumber) -> Result<bool, Error> {
+        let Some(number) = ParameterNumber::of_drive(base, drive).filter(|own| *own != refused) else {
+            return Ok(false);
+        };
+        let request = Request::get(number.class(), 1, number.attribute());
+        match self.request(Asked::Parameter(number), &request, Repeats::Always) {
+            Ok(reply) => Ok(number.row().is_some_and(|row| row.kind.parse(&reply.data) == Ok(Value::Number(0)))),
+            Err(Error::Refused { .. }) => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(super) fn why_not_set(
+        &mut self,
+        number: ParameterNumber,
+        value: i64,
+        refusal: Refusal,
+    ) -> Result<Error, Error> {
+        let row = settable(number)?;
+        match refusal.status {
+            GeneralStatus::NOT_SETTABLE => Ok(Error::ReadOnly { number, name: row.name }),
+            GeneralStatus::INVALID_VALUE => {
+                let range = self.range_now(number, row)?;
+                Ok(match range {
+                    Some(range) => Error::Refuses(OutOfRange { number, name: row.name, value, range }),
+                    None => Error::Refused { asked: Asked::Set(number), refusal },
+                })
+            }
+            _ => self.why_refused(Asked::Set(number), number, refusal),
+        }
+    }
+
+    /// What a parameter may be at the moment: 160 is above 158, position and reference lie between them (reference 4), and no
+    /// limit is more turns from 0 than the drive has (5).
+    fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
+        let travel = match number.drive().filter(|_| row.reach.is_some()) {
+            Some(drive) => self.travel(drive)?,
+            None => Travel::UNKNOWN,
+        };
+        let allowed = row.allowed(travel);
+        let Some(drive) = number.drive().filter(|_| matches!(row.number, 158 | 160 | 198)) else {
+            return Ok(allowed);
+        };
+        let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
+            Some(number) => match self.read_number(number) {
+                Ok(value) => Ok(Some(value)),
+                // Why the other one was refused counts.
+                Err(error) if error.is_unsaid() => Ok(None),
+                Err(error) => Err(error),
+            },
+            None => Ok(None),
+        };
+        let values = [of_drive(158)?, of_drive(160)?, of_drive(107)?];
+        let Some(Range::Within(least, most)) = allowed else { return Ok(allowed) };
+        let [Some(lower), Some(upper), Some(position)] = values else { return Ok(allowed) };
+        Ok(Some(match row.number {
+            158 => Range::Within(least, position.min(upper - 1).min(most)),
+            160 => Range::Within(position.max(lower + 1).max(least), most),
+            _ => Range::Within(lower.max(least), upper.min(most)),
+        }))
+    }
+
+    /// How far a drive turns, as far as it says.
+    fn travel(&mut self, drive: DriveNumber) -> Result<Travel, Error> {
+        let mut word = |base| {
+            let Some(number) = ParameterNumber::of_drive(base, drive) else { return Ok(None) };
+            match self.read_number(number) {
+                Ok(value) => Ok(u16::try_from(value).ok()),
+                Err(error) if error.is_unsaid() => Ok(None),
+                Err(error) => Err(error),
+            }
+        };
+        let (variant, numerator, denominator) = (word(120)?, word(154)?, word(156)?);
+        let family = variant.and_then(|number| Variant::new(number).row()).map(|row| row.family);
+        let scale = numerator.zip(denominator).and_then(|(n, d)| PositionScale::new(n, d).ok());
+        Ok(Travel { family, scale })
+    }
+}

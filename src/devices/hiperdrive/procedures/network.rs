@@ -1,0 +1,75 @@
+//! Its address and where it has it from: the address switches and the TCP/IP object (reference 1).
+
+use super::error::Asked;
+use super::identify::own;
+use super::{Error, Master};
+use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration, PacketError};
+use crate::devices::hiperdrive::profile::NetworkSettings;
+use crate::devices::hiperdrive::protocol::AddressSwitch;
+
+/// Address and where it comes from. What the device refuses to say is not there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Network {
+    /// Parameter 12: the digits of S1 and S2, as they stood at power-up.
+    pub switch: i64,
+    /// Attribute 3 of the TCP/IP object: where the address comes from with the switches at 0.
+    pub control: Option<ConfigurationControl>,
+    /// Attribute 5: address, mask, gateway, name servers, domain.
+    pub interface: Option<InterfaceConfiguration>,
+    /// The address of its network card.
+    pub mac: Option<[u8; 6]>,
+}
+
+/// Class and attribute of the network card's address.
+const MAC: (u16, u16) = (0xF6, 3);
+
+impl Network {
+    /// What the switches say; `None` for digits that there are not.
+    pub fn address_switch(&self) -> Option<AddressSwitch> {
+        AddressSwitch::parse(u8::try_from(self.switch).ok()?)
+    }
+}
+
+/// Reads switches and TCP/IP object.
+///
+/// # Errors
+/// The way.
+pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
+    let switch = master.read_number(own(12)?)?;
+    let control = told(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
+    let interface = told(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
+    let (class, number) = MAC;
+    let mac = told(master.attribute(Asked::Mac, class, number))?.and_then(|data| data.try_into().ok());
+    Ok(Network { switch, control, interface, mac })
+}
+
+/// What a plan can change of it.
+///
+/// # Errors
+/// [`Error::Refused`] where the device has no such settings; the way.
+pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
+    let (control, interface) = (ConfigurationControl::ATTRIBUTE, InterfaceConfiguration::ATTRIBUTE);
+    let control = attribute(master, control, ConfigurationControl::parse)?;
+    let interface = attribute(master, interface, InterfaceConfiguration::parse)?;
+    Ok(NetworkSettings { source: control.source(), interface })
+}
+
+/// An attribute of the TCP/IP object.
+fn attribute<T>(
+    master: &mut Master<'_>,
+    attribute: u16,
+    parse: impl FnOnce(&[u8]) -> Result<T, PacketError>,
+) -> Result<T, Error> {
+    let asked = Asked::Network { attribute };
+    let data = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
+    parse(&data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+}
+
+/// What was told; nothing where it was refused.
+fn told<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
+    match ended {
+        Ok(told) => Ok(Some(told)),
+        Err(Error::Refused { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}

@@ -1,0 +1,70 @@
+//! The parameters that rule a drive's motion, and how they are read: all at once, or one group after the other.
+
+use super::identify::of;
+use super::{Error, Master};
+use crate::devices::hiperdrive::protocol::DriveNumber;
+
+/// The parameters that rule a drive's motion; `None` for what was not read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rules {
+    /// Parameter 152.
+    pub requested: Option<i64>,
+    /// Parameters 154 and 156.
+    pub scale: Option<(i64, i64)>,
+    /// Parameters 158 and 160.
+    pub limits: Option<(i64, i64)>,
+    /// Parameter 186.
+    pub timeout: Option<i64>,
+    /// Parameter 198: another reference gives every position another place.
+    pub reference: Option<i64>,
+}
+
+impl Rules {
+    /// By the values of parameters, asked for by their numbers of drive 1.
+    pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
+        Rules {
+            requested: read(152),
+            scale: read(154).zip(read(156)),
+            limits: read(158).zip(read(160)),
+            timeout: read(186),
+            reference: read(198),
+        }
+    }
+}
+
+/// Reads what rules a drive.
+///
+/// # Errors
+/// The way.
+pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, Error> {
+    let mut values = Vec::new();
+    for base in [152, 154, 156, 158, 160, 186, 198] {
+        match master.read_number(of(base, drive)?) {
+            Ok(value) => values.push((base, value)),
+            Err(error) if error.is_unsaid() => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(Rules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
+}
+
+/// What rules a drive is read again in so many groups: what belongs together is read together.
+pub const GROUPS: usize = 4;
+
+/// Reads one group of the parameters that rule a drive again.
+///
+/// # Errors
+/// The way.
+pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, group: usize) -> Result<Rules, Error> {
+    let mut read = |base| match master.read_number(of(base, drive)?) {
+        Ok(value) => Ok(Some(value)),
+        Err(error) if error.is_unsaid() => Ok(None),
+        Err(error) => Err(error),
+    };
+    Ok(match group % GROUPS {
+        0 => Rules { requested: read(152)?, ..known },
+        1 => Rules { timeout: read(186)?, ..known },
+        2 => Rules { scale: read(154)?.zip(read(156)?), ..known },
+        _ => Rules { limits: read(158)?.zip(read(160)?), reference: read(198)?, ..known },
+    })
+}

@@ -1,0 +1,100 @@
+//! What is read to be kept, and to be planned upon.
+
+use super::identify::{Told, identify, of};
+use super::{DriveIdentity, Error, Identity, Master};
+use crate::devices::hiperdrive::profile::{
+    DeviceState, HiperdriveProfile, Image, Positions, ProfileDrive, ProfileIdentity,
+};
+use crate::devices::hiperdrive::protocol::{PARAMETERS, ParameterNumber};
+use crate::profile::Unknown;
+
+impl Identity {
+    /// As it stands in a profile.
+    pub fn profile(&self) -> ProfileIdentity {
+        let drive = |drive: &DriveIdentity| ProfileDrive {
+            variant: Some(drive.variant),
+            name: drive.name.clone(),
+            article_number: drive.article_number.clone(),
+            serial_number: drive.serial_number.clone(),
+            version: drive.version.clone(),
+            ..ProfileDrive::at(drive.number)
+        };
+        ProfileIdentity {
+            topology: Some(self.topology),
+            name: self.name.clone(),
+            article_number: self.article_number.clone(),
+            serial_number: self.serial_number.clone(),
+            version: self.version.clone(),
+            drives: self.drives.iter().map(drive).collect(),
+            unknown: Unknown::new(),
+        }
+    }
+
+    /// All that a device keeps of itself and of the drives that are plugged in.
+    pub fn kept(&self) -> impl Iterator<Item = ParameterNumber> {
+        let rows = || PARAMETERS.iter().filter(|row| Image::holds(row));
+        let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
+        let drives = self
+            .drives
+            .iter()
+            .flat_map(move |drive| rows().filter_map(|row| ParameterNumber::of_drive(row.number, drive.number)));
+        device.chain(drives)
+    }
+}
+
+/// Reads everything that can be restored. What the device refuses is left out.
+///
+/// # Errors
+/// [`Error::NotHiperdrive`]; the way.
+pub fn save(master: &mut Master<'_>, told: Told<'_>) -> Result<HiperdriveProfile, Error> {
+    let identity = identify(master, told)?;
+    let image = read_image(master, identity.kept().collect(), told)?;
+    Ok(HiperdriveProfile::of(identity.profile(), image))
+}
+
+/// What a plan needs to know of a device: all that it keeps, these parameters beside, and where its drives stand.
+///
+/// # Errors
+/// [`Error::NotHiperdrive`]; the way.
+pub fn read_state(
+    master: &mut Master<'_>,
+    beside: impl IntoIterator<Item = ParameterNumber>,
+    told: Told<'_>,
+) -> Result<(Identity, DeviceState), Error> {
+    let identity = identify(master, told)?;
+    let mut numbers: Vec<ParameterNumber> = identity.kept().chain(beside).collect();
+    numbers.sort();
+    numbers.dedup();
+    let image = read_image(master, numbers, told)?;
+    let mut positions = Positions::new();
+    for drive in &identity.drives {
+        match master.read_number(of(107, drive.number)?) {
+            // Of 32 bits.
+            Ok(position) => {
+                positions.insert(drive.number, position as i32);
+            }
+            Err(error) if error.is_unsaid() => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let state = DeviceState { identity: identity.profile(), image, positions };
+    Ok((identity, state))
+}
+
+fn read_image(master: &mut Master<'_>, numbers: Vec<ParameterNumber>, told: Told<'_>) -> Result<Image, Error> {
+    let total = numbers.len() as u64;
+    let mut image = Image::default();
+    for (done, number) in numbers.into_iter().enumerate() {
+        told(done as u64, total, number);
+        match master.read_number(number) {
+            Ok(value) => {
+                image.values.insert(number, value);
+            }
+            // What is not there cannot be kept; texts are never.
+            Err(Error::NoPlace { .. } | Error::Unknown(_) | Error::Value { .. } | Error::WriteOnly { .. }) => {}
+            Err(error) if error.is_unsaid() => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(image)
+}

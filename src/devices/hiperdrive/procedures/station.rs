@@ -1,0 +1,203 @@
+//! What a session knows about an adapter or a hub, from one job to the next.
+
+use std::collections::VecDeque;
+use std::collections::hash_map::RandomState;
+use std::fmt;
+use std::hash::{BuildHasher, Hasher};
+use std::time::Duration;
+
+use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
+use crate::device::Replies;
+use crate::device::line::LineState;
+use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
+use crate::link::{Query, UrlError};
+use crate::units::Moment;
+
+/// Link parameters that describe the connection and nothing of a virtual device.
+pub const PARAMETERS: [&str; 4] = ["rpi", "order", "udp", "timeout"];
+
+/// What a session knows about an adapter or a hub.
+#[derive(Clone, Debug)]
+pub struct Station {
+    /// So long from one cyclic packet to the next.
+    pub interval: Duration,
+    /// Which byte of process data comes first.
+    pub order: ByteOrder,
+    /// Where cyclic data go, unless the device says otherwise.
+    pub udp: u16,
+    /// So long a reply may take, beside the margin of the line.
+    pub timeout: Duration,
+    /// It is a recording that answers: its replies have the numbers of the requests of that time.
+    pub recorded: bool,
+    pub(super) line: LineState,
+    /// The number of the session at the device.
+    pub(super) session: Option<u32>,
+    /// The number of the next request.
+    pub(super) next: u64,
+    /// Numbers of the last requests that have no reply yet, when they were sent, and whether the device itself takes long.
+    open: VecDeque<(u64, Moment, bool)>,
+    /// How long replies take, the late ones as well; not those for which the device itself takes long.
+    pub(super) replies: Replies,
+    /// What has come and is no whole frame.
+    pub(super) receiver: Receiver,
+    /// Frames that came after somebody had waited for them.
+    pub(super) late: u64,
+    /// Who opens connections: another one for each session.
+    pub(super) originator: u32,
+    /// How many connections this session has opened.
+    pub(super) connections: u16,
+    pub(super) known: Known,
+}
+
+/// What is known of the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Known {
+    /// What it is.
+    pub(super) topology: Option<Topology>,
+}
+
+impl Station {
+    /// From one cyclic packet to the next.
+    pub const INTERVAL: Duration = Duration::from_millis(10);
+    /// Of a reply.
+    pub const TIMEOUT: Duration = Duration::from_secs(1);
+    /// It may be given so long at most.
+    pub const LONGEST_TIMEOUT: Duration = Duration::from_secs(2);
+    /// Requests without a reply whose late ones are told apart: more than are sent before one gives up.
+    const OPEN: usize = 8;
+
+    /// A device that nobody has asked.
+    pub fn new(margin: Duration) -> Self {
+        // No two studios in a network may open their connections under the same name.
+        let random = RandomState::new().build_hasher().finish();
+        Station {
+            interval: Self::INTERVAL,
+            order: ByteOrder::Little,
+            udp: IMPLICIT_PORT,
+            timeout: Self::TIMEOUT,
+            recorded: false,
+            line: LineState::new(margin),
+            session: None,
+            next: 1,
+            open: VecDeque::new(),
+            replies: Replies::default(),
+            receiver: Receiver::default(),
+            late: 0,
+            originator: random as u32,
+            connections: (random >> 32) as u16,
+            known: Known::default(),
+        }
+    }
+
+    /// A device as the parameters of its link say; `tcp` is the port of its explicit messages.
+    ///
+    /// # Errors
+    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    pub fn from_query(query: &Query, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
+        let mut station = Station::new(margin);
+        // Who serves messages at a port of their own serves cyclic data there as well.
+        if let Some(port) = tcp.filter(|port| *port != EXPLICIT_PORT) {
+            station.udp = port;
+        }
+        let time = |name, allowed, range: std::ops::RangeInclusive<u64>| {
+            let read = |text: &str| text.parse().ok().filter(|ms| range.contains(ms)).map(Duration::from_millis);
+            query.read(name, allowed, read)
+        };
+        if let Some(interval) = time("rpi", "milliseconds from 5 to 100", 5..=100)? {
+            station.interval = interval;
+        }
+        if let Some(timeout) = time("timeout", "milliseconds from 10 to 2000", 10..=2000)? {
+            station.timeout = timeout;
+        }
+        let order = |text: &str| match text {
+            "little" => Some(ByteOrder::Little),
+            "big" => Some(ByteOrder::Big),
+            _ => None,
+        };
+        if let Some(order) = query.read("order", "little or big", order)? {
+            station.order = order;
+        }
+        let port = |text: &str| text.parse().ok().filter(|port| *port != 0);
+        if let Some(port) = query.read("udp", "a port from 1 to 65535", port)? {
+            station.udp = port;
+        }
+        Ok(station)
+    }
+
+    /// What it is; `None` before it was asked.
+    pub const fn topology(&self) -> Option<Topology> {
+        self.known.topology
+    }
+
+    /// Frames that came after somebody had waited for them.
+    pub const fn late(&self) -> u64 {
+        self.late
+    }
+
+    /// How long replies take, also while a job runs.
+    pub fn replies(&self) -> Replies {
+        self.replies.clone()
+    }
+
+    /// A request is sent; gives back its number.
+    pub(super) fn begin(&mut self, at: Moment, takes_long: bool) -> u64 {
+        let number = self.next;
+        self.next = number.wrapping_add(1);
+        self.open.truncate(Self::OPEN - 1);
+        self.open.push_front((number, at, takes_long));
+        number
+    }
+
+    /// A frame with this number has come, which answers the request of that number, in time or not.
+    pub(super) fn heard(&mut self, number: u64, at: Moment) {
+        if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
+            && let Some((_, sent, false)) = self.open.remove(place)
+        {
+            self.replies.note(at.since(sent));
+        }
+    }
+}
+
+impl fmt::Display for Station {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let order = if self.order == ByteOrder::Little { "little" } else { "big" };
+        write!(f, "every {} ms, {order} endian, UDP port {}", self.interval.as_millis(), self.udp)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn station(query: &str, tcp: Option<u16>) -> Result<Station, UrlError> {
+        Station::from_query(&query.parse().unwrap(), tcp, Duration::from_millis(50))
+    }
+
+    #[test]
+    fn what_is_left_out_is_usual() {
+        assert_eq!(station("", Some(44818)).unwrap().to_string(), "every 10 ms, little endian, UDP port 2222");
+        assert_eq!(station("", None).unwrap().udp, 2222);
+        assert_eq!(station("", Some(50123)).unwrap().udp, 50123);
+    }
+
+    #[test]
+    fn a_connection_is_read_from_its_parameters() {
+        let station = station("rpi=5&order=big&udp=3333&timeout=250", Some(50123)).unwrap();
+        assert_eq!(station.to_string(), "every 5 ms, big endian, UDP port 3333");
+        assert_eq!(station.timeout, Duration::from_millis(250));
+    }
+
+    #[test]
+    fn a_value_that_cannot_be_used_names_what_can() {
+        let cases = [
+            ("rpi=4", "rpi=4: milliseconds from 5 to 100"),
+            ("rpi=101", "rpi=101: milliseconds from 5 to 100"),
+            ("order=middle", "order=middle: little or big"),
+            ("udp=0", "udp=0: a port from 1 to 65535"),
+            ("timeout=5000", "timeout=5000: milliseconds from 10 to 2000"),
+        ];
+        for (query, message) in cases {
+            assert_eq!(station(query, None).unwrap_err().to_string(), message);
+        }
+    }
+}

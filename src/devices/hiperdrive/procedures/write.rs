@@ -1,0 +1,283 @@
+//! The one way to write to a device: a plan, a consent to it, what was read is read again, then exactly the operations that
+//! were shown, each read back (reference 4).
+//!
+//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+
+use std::time::Duration;
+
+pub use crate::device::written::Written;
+
+use super::error::Asked;
+use super::identify::{drive_status, drive_text, of, own, topology};
+use super::network::settings;
+use super::{Error, Identity, Master};
+use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
+use crate::devices::hiperdrive::profile::{HiperdrivePlan, Item, NetworkSettings, Op, Service};
+use crate::devices::hiperdrive::protocol::{
+    DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
+};
+use crate::profile::Consent;
+
+/// A plan that a person consented to and whose base still holds.
+pub struct Confirmed<'p> {
+    plan: &'p HiperdrivePlan,
+}
+
+/// A write that ended early.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("after {} of the operations: {cause}", done.ops)]
+pub struct Interrupted {
+    /// What was written until then. Without a save it may be gone when the supply goes.
+    pub done: Written,
+    /// What the operation changes that was under way, and of which is not known how far it came; `None` where it did not
+    /// begin.
+    pub unclear: Option<String>,
+    /// Why it ended.
+    pub cause: Error,
+}
+
+/// What is told of a write: the operation that begins, from 0.
+pub type News = usize;
+
+/// Between two looks at parameter 47.
+const LOOK: Duration = Duration::from_millis(50);
+/// Before the first look after something that resets: it may not have begun.
+const BEGINS: Duration = Duration::from_millis(100);
+
+/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the device for which it was
+/// made, and the same drives; and that none moves.
+///
+/// # Errors
+/// [`Error::Changed`] when anything is no longer as it was; [`Error::Moving`]; [`Error::OtherPlan`]; the way.
+pub fn confirm<'p>(
+    master: &mut Master<'_>,
+    plan: &'p HiperdrivePlan,
+    consent: Consent,
+    identity: &Identity,
+) -> Result<Confirmed<'p>, Error> {
+    if !consent.covers(plan.id()) {
+        return Err(Error::OtherPlan);
+    }
+    let changed = |item: String| Err(Error::Changed { item });
+    if master.read_number(own(17)?)?.to_string() != identity.serial_number {
+        return changed("the device itself".to_owned());
+    }
+    for drive in touched(plan, identity) {
+        if let Some(known) = identity.drive(drive)
+            && drive_text(master, 123, drive)? != known.serial_number
+        {
+            return changed(format!("drive {}", drive.get()));
+        }
+        let status = master.read_number(of(105, drive)?)?;
+        // Of 16 bits.
+        if StatusWord::new(status as u16).state() == State::Moving {
+            return Err(Error::Moving { drive });
+        }
+    }
+    for (number, before) in &plan.base.values {
+        if master.read_number(*number)? != *before {
+            return changed(Item(*number).to_string());
+        }
+    }
+    if let Some(before) = &plan.base.network
+        && settings(master)? != *before
+    {
+        return changed("network".to_owned());
+    }
+    Ok(Confirmed { plan })
+}
+
+/// The drives that a plan is about: all of them where it is about the device as a whole.
+fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
+    let of_op = |op: &Op| match op {
+        Op::Write { number, .. } => number.drive(),
+        Op::Service(Service::Acknowledge(drive)) => Some(*drive),
+        Op::Service(_) | Op::Network { .. } => None,
+    };
+    let resets = |op: &Op| matches!(op, Op::Service(service) if *service != Service::Save && service.code().is_some());
+    if plan.ops.iter().any(resets) {
+        return identity.drives.iter().map(|drive| drive.number).collect();
+    }
+    let mut drives: Vec<DriveNumber> = plan.ops.iter().filter_map(of_op).collect();
+    drives.sort();
+    drives.dedup();
+    drives
+}
+
+/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
+/// operations.
+///
+/// # Errors
+/// [`Interrupted`], with what was written until then.
+pub fn carry_out(
+    master: &mut Master<'_>,
+    confirmed: &Confirmed<'_>,
+    tell: &mut dyn FnMut(News),
+) -> Result<Written, Box<Interrupted>> {
+    let mut done = Written::default();
+    for (number, op) in confirmed.plan.ops.iter().enumerate() {
+        tell(number);
+        if !is_within_a_place(&confirmed.plan.ops, number)
+            && let Err(cause) = master.check_cancel()
+        {
+            return Err(Box::new(Interrupted { done, unclear: None, cause }));
+        }
+        if let Err(cause) = master.shielded(|master| perform(master, op, &mut done)) {
+            return Err(Box::new(Interrupted { done, unclear: Some(op.item()), cause }));
+        }
+        done.ops += 1;
+    }
+    Ok(done)
+}
+
+/// Scale or limits of a drive are begun before this operation and not yet whole: limits in another scale lie elsewhere, so that
+/// nobody ends in between.
+fn is_within_a_place(ops: &[Op], at: usize) -> bool {
+    let place = |op: &Op| match op {
+        Op::Write { number, .. } if matches!(number.base(), 154 | 156 | 158 | 160) => number.drive(),
+        _ => None,
+    };
+    let (begun, left) = ops.split_at_checked(at).unwrap_or((ops, &[]));
+    left.iter().filter_map(place).any(|drive| begun.iter().filter_map(place).any(|own| own == drive))
+}
+
+fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {
+    match op {
+        Op::Write { number, new, .. } => {
+            write(master, *number, *new)?;
+            done.verified += 1;
+        }
+        Op::Service(service) => perform_service(master, *service, done)?,
+        Op::Network { from, to } => {
+            done.write_cycles += 1;
+            write_network(master, from, to)?;
+            done.verified += 1;
+        }
+    }
+    done.written += op.weight();
+    Ok(())
+}
+
+/// A parameter is written and read back. A reference is rounded to 64 steps (reference 4), and the position is there then.
+fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
+    master.set(number, wanted)?;
+    let reads = master.read_number(number)?;
+    let Some(drive) = number.drive().filter(|_| number.base() == REFERENCE) else {
+        return if reads == wanted { Ok(()) } else { Err(Error::NotTaken { number, wanted, reads }) };
+    };
+    let rounded = i32::try_from(wanted).ok().and_then(nearest_reference).map_or(wanted, i64::from);
+    if reads != rounded && reads != wanted {
+        return Err(Error::NotTaken { number, wanted, reads });
+    }
+    let number = of(107, drive)?;
+    let (numerator, denominator) = (master.read_number(of(154, drive)?)?, master.read_number(of(156, drive)?)?);
+    // A drive that stands re-adjusts by less than five degrees: 1/72 of a turn of 256 · 154 / 156 steps.
+    let near = (256 * numerator / denominator.max(1) / 72).max(64);
+    let position = master.read_number(number)?;
+    if (position - reads).abs() <= near {
+        Ok(())
+    } else {
+        Err(Error::NotTaken { number, wanted: reads, reads: position })
+    }
+}
+
+/// The position that is set, by the number of drive 1.
+const REFERENCE: u16 = 198;
+
+fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written) -> Result<(), Error> {
+    match service {
+        Service::Acknowledge(drive) => return acknowledge(master, drive),
+        Service::Save | Service::FactoryAll => done.write_cycles += 1,
+        Service::Recall | Service::Factory | Service::Reset => {}
+    }
+    let Some(code) = service.code() else { return Ok(()) };
+    // How long it takes depends on it.
+    topology(master)?;
+    master.set(ParameterNumber::SAVE, code)?;
+    let patience = master.patience(ParameterNumber::SAVE, code);
+    await_idle(master, service, patience)
+}
+
+/// Waits until parameter 47 is 0: the device may answer before it is done.
+fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
+    let begun = master.now();
+    if matches!(service, Service::Reset | Service::FactoryAll) {
+        master.wait(BEGINS)?;
+    }
+    loop {
+        let waited = master.now().since(begun);
+        // While it resets, it may refuse to say anything.
+        let reads = match master.read_number(ParameterNumber::SAVE) {
+            Ok(0) => return Ok(()),
+            Ok(reads) => reads,
+            Err(error) if error.is_unsaid() => -1,
+            Err(error) => return Err(error),
+        };
+        if waited >= patience {
+            return Err(Error::Busy { reads, milliseconds: waited.as_millis() as u64 });
+        }
+        master.wait(LOOK)?;
+    }
+}
+
+/// What ends the fault of a drive (reference 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// It has none.
+    Nothing,
+    /// 197 = 0: it is one of RS-485 alone.
+    Acknowledgement,
+    /// All drives are reset before that.
+    Reset,
+}
+
+/// Looks what ends the fault of a drive.
+///
+/// # Errors
+/// The way.
+pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Error> {
+    let status = drive_status(master, drive)?;
+    // Older ones are acknowledged already.
+    let mut recent = status.buffer.iter().take(usize::from(status.faults));
+    let word = status.status;
+    let has_failed = matches!(word.state(), State::Fault | State::Locked) || word.has(StatusBit::Warning);
+    Ok(match status.faults {
+        0 if !has_failed => Remedy::Nothing,
+        _ if recent.any(|code| *code != ErrorCode::RS485) => Remedy::Reset,
+        _ => Remedy::Acknowledgement,
+    })
+}
+
+/// Ends the fault of a drive: 197 = 0. What it needs before it is an operation of its own.
+fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
+    let number = of(197, drive)?;
+    master.set(number, 0)?;
+    match master.read_number(number)? {
+        0 => Ok(()),
+        reads => Err(Error::NotTaken { number, wanted: 0, reads }),
+    }
+}
+
+/// Where the address comes from, then the addresses: setting it to stored stores the present address (reference 1).
+fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
+    if from.source != to.source {
+        let attribute = ConfigurationControl::ATTRIBUTE;
+        let asked = Asked::Network { attribute };
+        let before = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
+        let before = ConfigurationControl::parse(&before);
+        let before = before.map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })?;
+        set_network(master, attribute, before.with(to.source).emit().to_vec())?;
+    }
+    if from.interface != to.interface {
+        set_network(master, InterfaceConfiguration::ATTRIBUTE, to.interface.emit())?;
+    }
+    if settings(master)? == *to {
+        Ok(())
+    } else {
+        Err(Error::NetworkNotTaken { attribute: InterfaceConfiguration::ATTRIBUTE })
+    }
+}
+
+fn set_network(master: &mut Master<'_>, attribute: u16, data: Vec<u8>) -> Result<(), Error> {
+    master.set_attribute(Asked::SetNetwork { attribute }, (ConfigurationControl::CLASS, attribute), data)
+}

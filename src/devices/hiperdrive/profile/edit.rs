@@ -1,0 +1,206 @@
+//! Plans for changes, each with the device's own rules checked before anything is sent, and one save behind all of them.
+
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+use super::record::REFERENCE;
+use super::{Base, DeviceState, HiperdrivePlan, Image, Item, Op, PlanError, Service};
+use crate::devices::hiperdrive::protocol::{
+    Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference,
+};
+
+/// Where drives stand, in steps as scaled (107).
+pub type Positions = BTreeMap<DriveNumber, i32>;
+
+/// Makes a device what is wanted of it: only what differs is written, and saved where it can be. What the wanted image says
+/// nothing about stays as it is. `device` has all that it does speak of and, of each drive whose scale or limits it changes,
+/// all four of those (154 to 160); of a drive whose position is not known, the position is not checked, and of one whose
+/// variant is not, how many turns it has.
+///
+/// A drive is requested before anything else is written, since that resets it, and given up after all else. In between, drive
+/// by drive, comes the scale of the position, that of the speed and the greatest speed, then the limits in the order in which
+/// the drive takes each of them where it stands, then the rest. Where the drive stands once its scale is another one is
+/// reckoned.
+///
+/// # Errors
+/// See [`PlanError`].
+pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan, PlanError> {
+    let DeviceState { image: device, positions, .. } = state;
+    let after = device.with(wanted);
+    let mut writes = Vec::new();
+    for (&number, &new) in &wanted.values {
+        let item = Item(number);
+        let old = device.get(number).ok_or(PlanError::NotRead { item })?;
+        if old != new {
+            check(number, new, state.travel(number, &after))?;
+            writes.push(Write { number, old, new });
+        }
+    }
+    let mut base = device.of(writes.iter().map(|write| write.number));
+    let mut upper_first = Vec::new();
+    for drive in after.drives() {
+        let touches = |numbers: &[u16]| {
+            writes.iter().any(|write| write.number.drive() == Some(drive) && numbers.contains(&write.number.base()))
+        };
+        if touches(&PLACE) {
+            base.extend(device.of(PLACE.iter().filter_map(|number| ParameterNumber::of_drive(*number, drive))));
+            let order = check_place(device, &after, drive, positions.get(&drive).copied())?;
+            upper_first.extend((order == Order::UpperFirst).then_some(drive));
+        }
+    }
+    writes.sort_by_key(|write| {
+        let upper_first = write.number.drive().is_some_and(|drive| upper_first.contains(&drive));
+        write.rank(upper_first)
+    });
+    let saves = writes.iter().any(|write| write.number.row().is_some_and(|row| row.saved));
+    let mut ops: Vec<Op> = writes.into_iter().map(Write::op).collect();
+    ops.extend(saves.then_some(Op::Service(Service::Save)));
+    let values = if ops.is_empty() { BTreeMap::new() } else { base };
+    Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
+}
+
+/// Makes the place where a drive stands this position, rounded to 64 steps, and saves that: 198 is written also where it is
+/// this number already, since writing it is what counts.
+///
+/// # Errors
+/// The position is not within the limits once it is rounded, or beyond the drive's turns; or the drive is not there.
+pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
+    let device = &state.image;
+    let own = |number| ParameterNumber::of_drive(number, drive);
+    let known = |number| own(number).and_then(|number| Some((number, device.get(number)?)));
+    let not_read = |number| {
+        let number = own(number).unwrap_or(ParameterNumber::SAVE);
+        PlanError::NotRead { item: Item(number) }
+    };
+    let (number, old) = known(REFERENCE).ok_or_else(|| not_read(REFERENCE))?;
+    let (lower, upper) = device.limits(drive).ok_or_else(|| not_read(LOWER))?;
+    // Only upwards there is no room for the next multiple of 64.
+    let becomes = nearest_reference(position).map_or(i64::from(i32::MAX) + 1, i64::from);
+    if !(lower..=upper).contains(&becomes) {
+        return Err(PlanError::ReferenceOutside { drive, position, becomes, lower, upper });
+    }
+    // Limits that lie beyond the turns since their scale was changed bound nothing.
+    if let Some(row) = number.row() {
+        row.check(number, becomes, state.travel(number, device))?;
+    }
+    let values = device.of(PLACE.into_iter().chain([REFERENCE]).filter_map(own));
+    let ops = vec![Op::Write { number, old: Some(old), new: becomes }, Op::Service(Service::Save)];
+    Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
+}
+
+/// Lets the device do something. All that it keeps is what the plan rests upon, since nobody else can tell afterwards what it
+/// was; of an acknowledgement nothing is.
+pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
+    let values = match service {
+        Service::Acknowledge(_) => BTreeMap::new(),
+        _ => device.values.clone(),
+    };
+    HiperdrivePlan { base: Base { values, network: None }, ops: vec![Op::Service(service)] }
+}
+
+const NUMERATOR: u16 = 154;
+const DENOMINATOR: u16 = 156;
+const LOWER: u16 = 158;
+const UPPER: u16 = 160;
+/// What belongs together: the position's scale and the limits in it.
+const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
+/// The bus asks for the drive.
+const REQUESTED: u16 = 152;
+
+/// A parameter with another number.
+#[derive(Clone, Copy)]
+struct Write {
+    number: ParameterNumber,
+    old: i64,
+    new: i64,
+}
+
+/// In which order limits are written.
+#[derive(Clone, Copy, PartialEq)]
+enum Order {
+    LowerFirst,
+    UpperFirst,
+}
+
+impl Write {
+    fn op(self) -> Op {
+        Op::Write { number: self.number, old: Some(self.old), new: self.new }
+    }
+
+    /// The least comes first.
+    fn rank(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
+        let base = self.number.base();
+        let turn = match (base, self.new) {
+            (REQUESTED, 1) => 0,
+            (REQUESTED, _) => 2,
+            _ => 1,
+        };
+        let group = match base {
+            NUMERATOR | DENOMINATOR => 0,
+            162 | 164 => 1,
+            166 => 2,
+            LOWER | UPPER => 3,
+            _ => 4,
+        };
+        let is_first = match base {
+            UPPER => upper_first,
+            // In between, a turn never has more steps than before or after.
+            DENOMINATOR => self.new > self.old,
+            _ => false,
+        };
+        (turn, self.number.drive(), group, Reverse(is_first), base)
+    }
+}
+
+/// That a parameter may be written at all, and be this number.
+fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), PlanError> {
+    let item = Item(number);
+    let row = number.row().ok_or(PlanError::NotRead { item })?;
+    match (number.base(), row.access) {
+        (101..=104, _) => Err(PlanError::Moves { item }),
+        (47 | REFERENCE | 199, _) => Err(PlanError::Acts { item }),
+        (_, Access::Read) => Err(PlanError::ReadOnly { item }),
+        _ => Ok(row.check(number, value, travel).map(|_| ())?),
+    }
+}
+
+/// That a drive's limits are in order and have the drive between them, once all is written; and in which order they are.
+fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Option<i32>) -> Result<Order, PlanError> {
+    let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::of_drive(number, drive));
+    for number in missing {
+        device.get(number).ok_or(PlanError::NotRead { item: Item(number) })?;
+    }
+    // All four are known.
+    let (Some((lower, upper)), Some(new), Some((_, old_upper))) =
+        (after.limits(drive), after.scale(drive), device.limits(drive))
+    else {
+        return Ok(Order::LowerFirst);
+    };
+    if lower >= upper {
+        return Err(PlanError::LimitsCrossed { drive, lower, upper });
+    }
+    let position = position.zip(device.scale(drive)).map(|(position, old)| rescaled(position, old, new));
+    if let Some(position) = position {
+        if i32::try_from(position).is_err() {
+            return Err(PlanError::PositionTooLarge { drive, position });
+        }
+        if !(lower..=upper).contains(&position) {
+            return Err(PlanError::PositionOutside { drive, position, lower, upper });
+        }
+    }
+    // With the old upper limit, the new lower one would be above it, or the drive beyond it.
+    let too_low = old_upper <= lower || position.is_some_and(|position| position > old_upper);
+    Ok(if too_low { Order::UpperFirst } else { Order::LowerFirst })
+}
+
+/// Where a drive stands in steps of another scale: 256 · numerator / denominator of them a turn, rounded down as the drive does.
+fn rescaled(position: i32, old: PositionScale, new: PositionScale) -> i64 {
+    let times = i128::from(new.numerator()) * i128::from(old.denominator());
+    let by = i128::from(new.denominator()) * i128::from(old.numerator());
+    let steps = (i128::from(position) * times).div_euclid(by);
+    // At most 2^31 · 2^32.
+    i64::try_from(steps).unwrap_or(if steps < 0 { i64::MIN } else { i64::MAX })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,142 @@
+//! Why something cannot be planned.
+
+use super::Item;
+use crate::buses::ethernet_ip::protocol::AddressError;
+use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Variant};
+
+/// A profile and a device of two types: as a whole (parameter 13), or in the drive at a place (parameter 120), whose variant
+/// tells its travel, speed and torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OtherType {
+    /// An adapter, and hubs with four and with eight places, are three types.
+    #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
+    Device {
+        /// In the profile.
+        profile: Topology,
+        /// What the device is.
+        device: Topology,
+    },
+    /// At a place there is a drive of another variant than the profile's.
+    #[error(
+        "drive {}: the profile is of variant {} ({}), the drive is of variant {} ({})",
+        drive.get(),
+        profile.number(),
+        profile.row().map_or("in no table", |row| row.name),
+        device.number(),
+        device.row().map_or("in no table", |row| row.name)
+    )]
+    Drive {
+        /// Which place.
+        drive: DriveNumber,
+        /// In the profile.
+        profile: Variant,
+        /// What the drive is.
+        device: Variant,
+    },
+}
+
+/// Why something cannot be planned. Nothing has been written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// The profile was read from another adapter or hub.
+    #[error("the profile is of serial number {profile:?}, the device has {device:?}")]
+    OtherDevice {
+        /// In the profile.
+        profile: String,
+        /// In the device.
+        device: String,
+    },
+    /// At a place there is another drive than the one that the profile was read from.
+    #[error("drive {}: the profile is of serial number {profile:?}, the drive has {device:?}", drive.get())]
+    OtherDrive {
+        /// Which place.
+        drive: DriveNumber,
+        /// In the profile.
+        profile: String,
+        /// In the drive.
+        device: String,
+    },
+    /// The profile was read from another type of device or drive.
+    #[error(transparent)]
+    OtherType(#[from] OtherType),
+    /// A number beyond what a parameter may be.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// It can only be read.
+    #[error("parameter {item} ({}) can only be read", item.name())]
+    ReadOnly {
+        /// Which one.
+        item: Item,
+    },
+    /// 101 to 104: with them drives are moved, which is done over the cyclic connection alone.
+    #[error("parameter {item} ({}) moves the drive and is never written as a parameter", item.name())]
+    Moves {
+        /// Which one.
+        item: Item,
+    },
+    /// 47, 197 to 199: they do something, and are services of their own.
+    #[error("parameter {item} ({}) does something and keeps nothing", item.name())]
+    Acts {
+        /// Which one.
+        item: Item,
+    },
+    /// It is not known what it is now: it was not read, or its drive is not there.
+    #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
+    NotRead {
+        /// Which one.
+        item: Item,
+    },
+    /// The upper limit would not be above the lower one.
+    #[error("drive {}: the lower limit {lower} is not below the upper limit {upper}", drive.get())]
+    LimitsCrossed {
+        /// Whose they are.
+        drive: DriveNumber,
+        /// As it would be.
+        lower: i64,
+        /// As it would be.
+        upper: i64,
+    },
+    /// The drive stands outside the limits that would be.
+    #[error("drive {}: the actual position {position} is outside the limits {lower} to {upper}", drive.get())]
+    PositionOutside {
+        /// Which one.
+        drive: DriveNumber,
+        /// Where it stands, as it would be scaled.
+        position: i64,
+        /// As it would be.
+        lower: i64,
+        /// As it would be.
+        upper: i64,
+    },
+    /// The actual position would have no room in 32 bits.
+    #[error("drive {}: the actual position would be {position} steps, beyond −2147483648 to 2147483647", drive.get())]
+    PositionTooLarge {
+        /// Which one.
+        drive: DriveNumber,
+        /// As it would be scaled.
+        position: i64,
+    },
+    /// The position to be set is outside the limits, once it is rounded.
+    #[error(
+        "drive {}: position {position} becomes {becomes}, which is not within the limits {lower} to {upper}",
+        drive.get()
+    )]
+    ReferenceOutside {
+        /// Which one.
+        drive: DriveNumber,
+        /// As asked for.
+        position: i32,
+        /// Rounded to 64 steps; without room in 32 bits it may be beyond them.
+        becomes: i64,
+        /// As it is.
+        lower: i64,
+        /// As it is.
+        upper: i64,
+    },
+    /// Addresses at which a device cannot be reached.
+    #[error(transparent)]
+    Address(#[from] AddressError),
+    /// A source of addresses that nobody knows is kept where it is found, and never set.
+    #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
+    Source(u8),
+}

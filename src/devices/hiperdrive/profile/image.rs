@@ -1,0 +1,61 @@
+//! What a device keeps of itself and its drives, and gives back when it is read.
+
+use std::collections::BTreeMap;
+
+use crate::devices::hiperdrive::protocol::{Access, DriveNumber, ParameterNumber, ParameterRow, PositionScale};
+
+/// Parameters by their own numbers. Of a device that was read: all that are saved and can be written, of the device and of
+/// the drives that are there. What was not read, or what a profile does not say, is left out; empty places are.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Image {
+    /// What each is.
+    pub values: BTreeMap<ParameterNumber, i64>,
+}
+
+impl Image {
+    /// A parameter belongs into an image: it is saved, and can be written.
+    pub fn holds(row: &ParameterRow) -> bool {
+        row.saved && row.access == Access::ReadWrite
+    }
+
+    /// A parameter; `None` where nothing is known of it.
+    pub fn get(&self, number: ParameterNumber) -> Option<i64> {
+        self.values.get(&number).copied()
+    }
+
+    /// A drive's parameter by the number of drive 1.
+    pub fn of_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
+        self.get(ParameterNumber::of_drive(number, drive)?)
+    }
+
+    /// The drives of which something is known.
+    pub fn drives(&self) -> Vec<DriveNumber> {
+        // The numbers of a drive lie together.
+        let mut drives: Vec<DriveNumber> = self.values.keys().filter_map(|number| number.drive()).collect();
+        drives.dedup();
+        drives
+    }
+
+    /// How a drive's position is scaled (154, 156); `None` where that is not known, or cannot be.
+    pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
+        let part = |number| self.of_drive(drive, number).and_then(|value| u16::try_from(value).ok());
+        PositionScale::new(part(154)?, part(156)?).ok()
+    }
+
+    /// A drive's limits, lower and upper (158, 160), in steps as scaled.
+    pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
+        Some((self.of_drive(drive, 158)?, self.of_drive(drive, 160)?))
+    }
+
+    /// What it says of some parameters, as far as it does.
+    pub fn of(&self, numbers: impl IntoIterator<Item = ParameterNumber>) -> BTreeMap<ParameterNumber, i64> {
+        numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
+    }
+
+    /// With what another one says instead.
+    pub fn with(&self, other: &Image) -> Image {
+        let mut image = self.clone();
+        image.values.extend(&other.values);
+        image
+    }
+}

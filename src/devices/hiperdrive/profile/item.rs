@@ -1,0 +1,140 @@
+//! The names of parameters as `read` takes them: `158` of the device or drive 1, `158 drive 2` or `258` of another drive.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
+
+/// A parameter by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Item(pub ParameterNumber);
+
+/// Why a text names no parameter.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ItemError {
+    /// Not of the form of any.
+    #[error("{0:?} is no parameter; one is a number such as 47 or 158, of another drive \"158 drive 2\" or 258")]
+    Unknown(String),
+    /// The manual has no parameter of that number.
+    #[error("there is no parameter {0}")]
+    NoParameter(u16),
+    /// A parameter of the device has no drive, and there are drives 1 to 8 alone.
+    #[error("parameter {number} is of no drive {drive}: drives are 1 to 8, and parameters below 100 are of the device")]
+    NoDrive {
+        /// As given.
+        number: u16,
+        /// As given.
+        drive: u8,
+    },
+}
+
+impl Item {
+    /// By a number and, apart from it, the drive that is meant; a number that names another drive itself keeps it.
+    ///
+    /// # Errors
+    /// [`ItemError`] where there is no such parameter, or a drive does not have it.
+    pub fn of(number: u16, drive: Option<u8>) -> Result<Self, ItemError> {
+        let own = ParameterNumber::new(number).ok_or(ItemError::NoParameter(number))?;
+        let own = match drive {
+            None => own,
+            Some(drive) => {
+                let no_drive = ItemError::NoDrive { number, drive };
+                let drive = DriveNumber::new(drive).ok_or_else(|| no_drive.clone())?;
+                // 258 is drive 2's already.
+                match own.drive() {
+                    Some(named) if named == drive => own,
+                    Some(DriveNumber::FIRST) => ParameterNumber::of_drive(number, drive).ok_or(no_drive)?,
+                    _ => return Err(no_drive),
+                }
+            }
+        };
+        own.row().map(|_| Item(own)).ok_or(ItemError::NoParameter(number))
+    }
+
+    /// What it is, in the words of the table; empty for one that is in none.
+    pub fn name(self) -> &'static str {
+        self.0.row().map_or("", |row| row.name)
+    }
+}
+
+impl fmt::Display for Item {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0.drive() {
+            None | Some(DriveNumber::FIRST) => write!(f, "{}", self.0),
+            Some(drive) => write!(f, "{} drive {}", self.0.base(), drive.get()),
+        }
+    }
+}
+
+impl FromStr for Item {
+    type Err = ItemError;
+
+    fn from_str(text: &str) -> Result<Self, ItemError> {
+        let unknown = || ItemError::Unknown(text.to_owned());
+        let (number, drive) = match text.split_once(" drive ") {
+            Some((number, drive)) => (number, Some(drive.parse().map_err(|_| unknown())?)),
+            None => (text, None),
+        };
+        Item::of(Item::number(number).ok_or_else(unknown)?, drive)
+    }
+}
+
+impl Item {
+    /// A parameter's number as it is typed: decimal, or hexadecimal with `0x`; a sign in front is no part of it.
+    pub fn number(text: &str) -> Option<u16> {
+        let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+            Some(digits) => (digits, 16),
+            None => (text, 10),
+        };
+        let is_plain = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+        u16::from_str_radix(digits, radix).ok().filter(|_| is_plain)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_and_written() {
+        for (text, number, written) in [
+            ("47", 47, "47"),
+            ("158", 158, "158"),
+            ("158 drive 1", 158, "158"),
+            ("0x9E", 158, "158"),
+            ("0X9e drive 2", 258, "158 drive 2"),
+            ("158 drive 2", 258, "158 drive 2"),
+            ("258", 258, "158 drive 2"),
+            ("258 drive 2", 258, "158 drive 2"),
+            ("898", 898, "198 drive 8"),
+        ] {
+            let item: Item = text.parse().unwrap();
+            assert_eq!((item.0.get(), item.to_string().as_str()), (number, written), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_names_nothing_is_told() {
+        for (text, why) in [
+            ("limit", "\"limit\" is no parameter"),
+            ("-158", "\"-158\" is no parameter"),
+            ("0x", "\"0x\" is no parameter"),
+            ("0x-9E", "\"0x-9E\" is no parameter"),
+            ("9E", "\"9E\" is no parameter"),
+            ("+158", "\"+158\" is no parameter"),
+            ("", "\"\" is no parameter"),
+            ("158 drive", "\"158 drive\" is no parameter"),
+            ("158 drive x", "\"158 drive x\" is no parameter"),
+            ("155", "there is no parameter 155"),
+            ("0", "there is no parameter 0"),
+            ("900", "there is no parameter 900"),
+            ("158 drive 9", "parameter 158 is of no drive 9"),
+            ("158 drive 0", "parameter 158 is of no drive 0"),
+            ("47 drive 2", "parameter 47 is of no drive 2"),
+            ("258 drive 3", "parameter 258 is of no drive 3"),
+        ] {
+            let error = text.parse::<Item>().unwrap_err().to_string();
+            assert!(error.starts_with(why), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! The operations that change a device, what they cost, and what they rest upon.
+
+use std::collections::BTreeMap;
+
+use super::{Image, Item, NetworkSettings};
+use crate::buses::ethernet_ip::protocol::AddressSource;
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
+use crate::profile::{Operation, Plan};
+
+/// What a write to an adapter or a hub would do.
+pub type HiperdrivePlan = Plan<Base, Op>;
+
+/// What was read before a plan was made: all that its operations change or rest upon. Where a drive stands is not in it,
+/// since that changes by itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Base {
+    /// Parameters by their own numbers.
+    pub values: BTreeMap<ParameterNumber, i64>,
+    /// The TCP/IP object, where it is to be changed.
+    pub network: Option<NetworkSettings>,
+}
+
+impl Base {
+    /// Its parameters.
+    pub fn image(&self) -> Image {
+        Image { values: self.values.clone() }
+    }
+}
+
+/// The parameters that a plan writes, as they will be.
+pub fn written(plan: &HiperdrivePlan) -> Image {
+    let written = plan.ops.iter().filter_map(|op| match op {
+        Op::Write { number, new, .. } => Some((*number, *new)),
+        Op::Service(_) | Op::Network { .. } => None,
+    });
+    Image { values: written.collect() }
+}
+
+/// One thing that is done.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// A parameter is written, and read back.
+    Write {
+        /// Which one.
+        number: ParameterNumber,
+        /// What it is; `None` where that is not known.
+        old: Option<i64>,
+        /// What it will be.
+        new: i64,
+    },
+    /// The device does something.
+    Service(Service),
+    /// The TCP/IP object is written: attribute 3, then attribute 5, since setting 3 to 0 stores the present address.
+    Network {
+        /// As it is.
+        from: NetworkSettings,
+        /// As it will be.
+        to: NetworkSettings,
+    },
+}
+
+/// What a device does when it is asked to (parameters 47 and 197, reference 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Service {
+    /// 47 = 1: everything that is saved is saved as it is now.
+    Save,
+    /// 47 = −2: the own parameters of the adapter or hub as saved last; those of its drives stay.
+    Recall,
+    /// 47 = −1: the own parameters of the adapter or hub from the factory, not saved; those of its drives stay.
+    Factory,
+    /// 47 = −3: all parameters from the factory and the address by DHCP, saved.
+    FactoryAll,
+    /// 47 = −4: presence test and reset of the drives.
+    Reset,
+    /// The fault of a drive: 197 = 0 where that suffices, else 47 = −4 before it.
+    Acknowledge(DriveNumber),
+}
+
+impl Service {
+    /// What parameter 47 is written for it; `None` for an acknowledgement.
+    pub const fn code(self) -> Option<i64> {
+        match self {
+            Service::Save => Some(1),
+            Service::Recall => Some(-2),
+            Service::Factory => Some(-1),
+            Service::FactoryAll => Some(-3),
+            Service::Reset => Some(-4),
+            Service::Acknowledge(_) => None,
+        }
+    }
+
+    /// Of a number of parameter 47; `None` for what asks for nothing.
+    pub const fn of_code(code: i64) -> Option<Self> {
+        match code {
+            1 => Some(Service::Save),
+            -1 => Some(Service::Factory),
+            -2 => Some(Service::Recall),
+            -3 => Some(Service::FactoryAll),
+            -4 => Some(Service::Reset),
+            _ => None,
+        }
+    }
+}
+
+impl HiperdrivePlan {
+    /// The same without the save at its end: what it writes is not sure to outlast the supply, unless it is saved later.
+    pub fn without_save(mut self) -> Self {
+        if self.ops.last() == Some(&Op::Service(Service::Save)) {
+            self.ops.pop();
+        }
+        self
+    }
+}
+
+impl Operation for Op {
+    fn write_cycles(&self) -> u64 {
+        match self {
+            Op::Service(Service::Save | Service::FactoryAll) | Op::Network { .. } => 1,
+            // Not saved.
+            Op::Write { .. } | Op::Service(_) => 0,
+        }
+    }
+}
+
+impl Op {
+    /// The name of what it changes, as `read` takes it where it can be read.
+    pub fn item(&self) -> String {
+        match self {
+            Op::Write { number, .. } => Item(*number).to_string(),
+            Op::Service(Service::Acknowledge(drive)) => ParameterNumber::of_drive(197, *drive)
+                .map_or_else(|| "197".to_owned(), |number| Item(number).to_string()),
+            Op::Service(_) => Item(ParameterNumber::SAVE).to_string(),
+            Op::Network { .. } => "network".to_owned(),
+        }
+    }
+
+    /// Things it changes, counted as a comparison counts them; what saves changes nothing.
+    pub const fn weight(&self) -> u64 {
+        match self {
+            Op::Write { .. } | Op::Network { .. } => 1,
+            Op::Service(_) => 0,
+        }
+    }
+
+    /// What it changes, old and new, in one line for the logbook. Its words are the manual's, whatever the language of the
+    /// window.
+    pub fn note(&self) -> String {
+        match self {
+            Op::Write { number, old: Some(old), new } => format!("{}: {old} → {new}", Item(*number)),
+            Op::Write { number, old: None, new } => format!("{}: → {new}", Item(*number)),
+            Op::Service(service) => match service {
+                Service::Save => "47 = 1: saved".to_owned(),
+                Service::Recall => "47 = -2: own parameters of the device as saved last".to_owned(),
+                Service::Factory => "47 = -1: own parameters of the device from the factory, not saved".to_owned(),
+                Service::FactoryAll => "47 = -3: from the factory with the address by DHCP, saved".to_owned(),
+                Service::Reset => "47 = -4: presence test and reset of the drives".to_owned(),
+                Service::Acknowledge(drive) => format!("drive {}: fault acknowledged", drive.get()),
+            },
+            Op::Network { from, to } => format!("network: {} → {}", network_note(from), network_note(to)),
+        }
+    }
+}
+
+fn network_note(settings: &NetworkSettings) -> String {
+    let NetworkSettings { source, interface } = settings;
+    let source = match source {
+        AddressSource::Stored => "stored".to_owned(),
+        AddressSource::Bootp => "BOOTP".to_owned(),
+        AddressSource::Dhcp => "DHCP".to_owned(),
+        AddressSource::Unknown(source) => format!("source {source}"),
+    };
+    format!("{source}, {} mask {} gateway {}", interface.address, interface.mask, interface.gateway)
+}

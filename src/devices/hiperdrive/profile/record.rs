@@ -1,0 +1,134 @@
+//! What is saved of an adapter or a hub with its drives: who they are, and what they keep.
+
+use std::collections::BTreeMap;
+
+use super::{Image, Item};
+use crate::devices::hiperdrive::protocol::{DriveNumber, Family, Topology, Variant};
+use crate::profile::ron_text::Unknown;
+
+/// An adapter or a hub as it is saved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HiperdriveProfile {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// What it keeps. A parameter that is not in it: the profile says nothing about it.
+    pub image: Image,
+    /// What belongs to the mounting and is never restored.
+    pub mounting: Vec<MountingMark>,
+    /// Entries that this program does not know.
+    pub unknown: Kept,
+}
+
+/// Who an adapter or a hub is; of a profile that was made by hand nothing at all.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProfileIdentity {
+    /// By parameter 13.
+    pub topology: Option<Topology>,
+    /// Parameter 15.
+    pub name: String,
+    /// Parameter 16.
+    pub article_number: String,
+    /// Parameter 17, decimal; empty where the profile is of no device.
+    pub serial_number: String,
+    /// Parameter 19.
+    pub version: String,
+    /// Its drives, by their places.
+    pub drives: Vec<ProfileDrive>,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Who a drive is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileDrive {
+    /// Its place.
+    pub number: DriveNumber,
+    /// Parameter 120; `None` where that is not known.
+    pub variant: Option<Variant>,
+    /// Parameter 121.
+    pub name: String,
+    /// Parameter 122.
+    pub article_number: String,
+    /// Parameter 123; empty where it is not known.
+    pub serial_number: String,
+    /// Parameter 125.
+    pub version: String,
+    /// Entries that this program does not know.
+    pub unknown: Unknown,
+}
+
+/// Something that is right for one drive on one machine and no other.
+pub type MountingMark = crate::profile::MountingMark<Item>;
+
+/// Entries that this program does not know, among the parameters of the device (`None`) and of its drives.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kept(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
+
+impl HiperdriveProfile {
+    /// Of a device that was read, with what belongs to the mounting marked.
+    pub fn of(identity: ProfileIdentity, image: Image) -> Self {
+        let mut profile = HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: Kept::default() };
+        profile.mark_mounting();
+        profile
+    }
+
+    /// Marks what is known to belong to the mounting, and is not marked yet: the reference of each drive (198).
+    pub fn mark_mounting(&mut self) {
+        let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
+        for item in references.collect::<Vec<_>>() {
+            if !self.is_marked(item) {
+                let meaning = "the position that was set".to_owned();
+                self.mounting.push(MountingMark { item, meaning, unknown: Unknown::new() });
+            }
+        }
+    }
+
+    /// An item belongs to the mounting: it is marked, or is a drive's reference.
+    pub fn is_mounting(&self, item: Item) -> bool {
+        item.0.base() == REFERENCE || self.is_marked(item)
+    }
+
+    /// The items that it says something about, in the order in which they are compared.
+    pub fn items(&self) -> impl Iterator<Item = Item> {
+        self.image.values.keys().copied().map(Item)
+    }
+
+    /// Who the drive at a place is; `None` where nothing is known of it.
+    pub fn drive(&self, number: DriveNumber) -> Option<&ProfileDrive> {
+        self.identity.drives.iter().find(|drive| drive.number == number)
+    }
+
+    fn is_marked(&self, item: Item) -> bool {
+        self.mounting.iter().any(|mark| mark.item == item)
+    }
+}
+
+/// The reference: the position that is set, by the number of drive 1.
+pub(super) const REFERENCE: u16 = 198;
+
+impl ProfileIdentity {
+    /// Nothing is known of the device itself.
+    pub fn is_of_no_device(&self) -> bool {
+        *self == ProfileIdentity { drives: self.drives.clone(), ..ProfileIdentity::default() }
+    }
+}
+
+impl ProfileDrive {
+    /// What it is one of, as far as its variant is known.
+    pub fn family(&self) -> Option<Family> {
+        self.variant?.row().map(|row| row.family)
+    }
+
+    /// A place of which nothing is known.
+    pub fn at(number: DriveNumber) -> Self {
+        ProfileDrive {
+            number,
+            variant: None,
+            name: String::new(),
+            article_number: String::new(),
+            serial_number: String::new(),
+            version: String::new(),
+            unknown: Unknown::new(),
+        }
+    }
+}

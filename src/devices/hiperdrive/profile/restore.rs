@@ -1,0 +1,143 @@
+//! What restoring a profile would do: only what differs, one save behind it, and never a drive's reference, which belongs to
+//! its machine.
+
+pub use crate::profile::RestoreOptions;
+
+use super::plan_edits;
+use super::record::REFERENCE;
+use super::{
+    HiperdrivePlan, HiperdriveProfile, Image, Item, OtherType, PlanError, Positions, ProfileDrive, ProfileIdentity,
+};
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
+
+/// A device as it is, as far as a plan needs it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceState {
+    /// Who it is.
+    pub identity: ProfileIdentity,
+    /// What it keeps.
+    pub image: Image,
+    /// Where its drives stand.
+    pub positions: Positions,
+}
+
+impl DeviceState {
+    /// How far the drive of a parameter turns, in the steps of an image.
+    pub(super) fn travel(&self, number: ParameterNumber, image: &Image) -> Travel {
+        let Some(drive) = number.drive() else { return Travel::UNKNOWN };
+        Travel { family: drive_at(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
+    }
+}
+
+/// What a restore would do.
+pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
+
+/// Plans a restore: onto another device, at the places that both have. What belongs to the mounting is what a person has
+/// marked so, and a drive's reference (198), which is always left alone.
+///
+/// # Errors
+/// See [`PlanError`]; nothing has been written.
+pub fn plan_restore(
+    profile: &HiperdriveProfile,
+    device: &DeviceState,
+    options: RestoreOptions,
+) -> Result<Restore, PlanError> {
+    check_allowed(profile, &device.identity, options)?;
+    let mut wanted = Image::default();
+    let (mut unchanged, mut missing) = (0, Vec::new());
+    let (mut mounting_left, mut mounting_written) = (Vec::new(), Vec::new());
+    for (&number, &to) in &profile.image.values {
+        let item = Item(number);
+        match device.image.get(number) {
+            None => missing.push(item.to_string()),
+            Some(from) if from == to => unchanged += 1,
+            Some(_) if stays(profile, &device.identity, item, options) => mounting_left.push(item),
+            Some(_) => {
+                if is_of_another_mounting(profile, &device.identity, item) {
+                    mounting_written.push(item);
+                }
+                wanted.values.insert(number, to);
+            }
+        }
+    }
+    let plan = plan_edits(device, &wanted)?;
+    Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
+}
+
+/// Refuses a device, or drives of it, that the profile was not read from, and those of another kind. What the profile does not
+/// say of its device fits any; so does a place at which there is no drive.
+///
+/// # Errors
+/// [`PlanError::OtherType`], [`PlanError::OtherDevice`], [`PlanError::OtherDrive`].
+pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Result<(), PlanError> {
+    check_allowed(profile, device, RestoreOptions::default())
+}
+
+/// What differs between the types of a profile and of a device: of the whole, then of each drive.
+pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
+    let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
+    let drives = profile.drives.iter().filter_map(|own| {
+        let (profile, device) = own.variant.zip(drive_at(device, own.number)?.variant)?;
+        (profile != device).then_some(OtherType::Drive { drive: own.number, profile, device })
+    });
+    whole.into_iter().map(|(profile, device)| OtherType::Device { profile, device }).chain(drives).collect()
+}
+
+/// Refuses a device that the profile was not read from, as far as that is not allowed.
+fn check_allowed(
+    profile: &HiperdriveProfile,
+    device: &ProfileIdentity,
+    options: RestoreOptions,
+) -> Result<(), PlanError> {
+    if let Some(first) = other_types(&profile.identity, device).first().filter(|_| !options.allow_other_type) {
+        return Err((*first).into());
+    }
+    if options.allow_other_device {
+        return Ok(());
+    }
+    let (of_profile, of_device) = (&profile.identity.serial_number, &device.serial_number);
+    if !of_profile.is_empty() && of_profile != of_device {
+        return Err(PlanError::OtherDevice { profile: of_profile.clone(), device: of_device.clone() });
+    }
+    for own in &profile.identity.drives {
+        let Some(there) = drive_at(device, own.number) else { continue };
+        if !own.serial_number.is_empty() && own.serial_number != there.serial_number {
+            let (profile, device) = (own.serial_number.clone(), there.serial_number.clone());
+            return Err(PlanError::OtherDrive { drive: own.number, profile, device });
+        }
+    }
+    Ok(())
+}
+
+/// An item that differs is left as it is.
+fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
+    item.0.base() == REFERENCE || !options.with_mounting && is_of_another_mounting(profile, device, item)
+}
+
+/// An item belongs to the mounting of another device or drive.
+fn is_of_another_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+    profile.is_mounting(item) && !is_same_place(profile, device, item)
+}
+
+/// The profile was read from this very device, and the drive's parameter from this very drive.
+fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+    let types = other_types(&profile.identity, device);
+    let is_other = |own: &OtherType| match own {
+        OtherType::Device { .. } => true,
+        OtherType::Drive { drive, .. } => item.0.drive() == Some(*drive),
+    };
+    if types.iter().any(is_other) {
+        return false;
+    }
+    let same = |one: &str, other: &str| !one.is_empty() && one == other;
+    let serial = |drive: Option<&ProfileDrive>| drive.map_or_else(String::new, |drive| drive.serial_number.clone());
+    same(&profile.identity.serial_number, &device.serial_number)
+        && item.0.drive().is_none_or(|drive| same(&serial(profile.drive(drive)), &serial(drive_at(device, drive))))
+}
+
+fn drive_at(device: &ProfileIdentity, number: DriveNumber) -> Option<&ProfileDrive> {
+    device.drives.iter().find(|drive| drive.number == number)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,156 @@
+//! What is restored, left alone and refused, and what differs.
+
+use super::*;
+use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_of, number, profile};
+use crate::devices::hiperdrive::profile::{MountingMark, Op, Service, compare};
+use crate::devices::hiperdrive::protocol::{Topology, Variant};
+use crate::profile::{Document, Profile};
+
+fn device() -> DeviceState {
+    let profile = profile();
+    DeviceState { identity: profile.identity, image: profile.image, positions: Positions::new() }
+}
+
+const NONE: RestoreOptions =
+    RestoreOptions { allow_other_device: false, allow_other_type: false, with_mounting: false };
+const OTHER: RestoreOptions = RestoreOptions { allow_other_device: true, ..NONE };
+const TYPE: RestoreOptions = RestoreOptions { allow_other_type: true, ..NONE };
+const ALL: RestoreOptions = RestoreOptions { with_mounting: true, ..OTHER };
+
+fn written(restore: &Restore) -> Vec<u16> {
+    let write = |op: &Op| match op {
+        Op::Write { number, .. } => Some(number.get()),
+        _ => None,
+    };
+    restore.plan.ops.iter().filter_map(write).collect()
+}
+
+#[test]
+fn only_what_differs_is_written() {
+    let mut device = device();
+    device.image = device.image.with(&image_of(&[(166, 100), (398, 64)]));
+    let restore = plan_restore(&profile(), &device, NONE).unwrap();
+    assert_eq!(written(&restore), [166]);
+    assert_eq!(restore.plan.ops.last(), Some(&Op::Service(Service::Save)));
+    // 2 registers and 2 · 13 parameters, but for the two.
+    assert_eq!((restore.unchanged, restore.missing.len()), (26, 0));
+    assert_eq!(restore.mounting_left, [Item(number(398))], "a reference is never restored, on its own drive either");
+    let restore = plan_restore(&profile(), &device, ALL).unwrap();
+    assert_eq!((written(&restore), restore.mounting_left), (vec![166], vec![Item(number(398))]));
+}
+
+#[test]
+fn places_without_a_drive_are_skipped_and_named() {
+    let mut device = device();
+    device.image = image(&[1]).with(&image_of(&[(166, 100)]));
+    device.identity = identity("100", &[(1, "4711")]);
+    let restore = plan_restore(&profile(), &device, NONE).unwrap();
+    assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13));
+    assert_eq!((restore.missing[0].as_str(), restore.missing[12].as_str()), ("152 drive 3", "198 drive 3"));
+}
+
+#[test]
+fn another_device_or_drive_is_refused() {
+    let mut device = device();
+    device.identity = identity("101", &[(1, "4711"), (3, "4712")]);
+    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
+    assert_eq!(error, PlanError::OtherDevice { profile: "100".to_owned(), device: "101".to_owned() });
+    assert!(plan_restore(&profile(), &device, OTHER).is_ok());
+    device.identity = identity("100", &[(1, "4711"), (3, "5000")]);
+    let error = plan_restore(&profile(), &device, NONE).unwrap_err();
+    let expected = PlanError::OtherDrive { drive: drive(3), profile: "4712".to_owned(), device: "5000".to_owned() };
+    assert_eq!(error, expected);
+    assert!(plan_restore(&profile(), &device, OTHER).is_ok());
+    let mut by_hand = profile();
+    by_hand.identity = ProfileIdentity::default();
+    assert!(plan_restore(&by_hand, &device, NONE).is_ok());
+}
+
+/// Issue 22.9: the serial number is the same in all of these, so that the permit for another type is the one they need.
+#[test]
+fn another_type_of_device_or_drive_is_refused() {
+    let mut device = device();
+    device.identity.topology = Some(Topology::Adapter);
+    device.image = image(&[1]).with(&image_of(&[(166, 100)]));
+    let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
+    assert_eq!(error, OtherType::Device { profile: Topology::Hub4, device: Topology::Adapter }.into());
+    assert_eq!(error.to_string(), "the profile is of a HIPERDRIVE HUB-4, the device is a HIPERDRIVE SINGLE");
+    let restore = plan_restore(&profile(), &device, TYPE).unwrap();
+    assert_eq!((written(&restore), restore.missing.len()), (vec![166], 13), "what is of a place that both have");
+    device.identity = profile().identity;
+    device.identity.drives[1].variant = Some(Variant::new(13));
+    let error = plan_restore(&profile(), &device, OTHER).unwrap_err();
+    let (profiles, devices) = (Variant::new(7), Variant::new(13));
+    assert_eq!(error, OtherType::Drive { drive: drive(3), profile: profiles, device: devices }.into());
+    assert!(error.to_string().contains("7 (HDA30A)") && error.to_string().contains("13 (HDA70)"), "{error}");
+    assert!(plan_restore(&profile(), &device, TYPE).is_ok());
+    // Another serial number as well needs both.
+    device.identity.drives[1].serial_number = "5000".to_owned();
+    let error = plan_restore(&profile(), &device, TYPE).unwrap_err();
+    assert!(matches!(error, PlanError::OtherDrive { .. }), "{error}");
+    assert!(plan_restore(&profile(), &device, RestoreOptions { allow_other_type: true, ..OTHER }).is_ok());
+    let mut by_hand = profile();
+    by_hand.identity = ProfileIdentity::default();
+    assert!(plan_restore(&by_hand, &device, NONE).is_ok());
+}
+
+#[test]
+fn what_a_person_marks_stays_on_its_own_drive() {
+    let mut marked = profile();
+    let mark = |own| MountingMark { item: Item(number(own)), meaning: String::new(), unknown: Default::default() };
+    marked.mounting.extend([mark(160), mark(360)]);
+    let mut device = device();
+    device.image = device.image.with(&image_of(&[(160, 1000), (360, 1000)]));
+    device.identity = identity("100", &[(1, "4711"), (3, "5000")]);
+    let restore = plan_restore(&marked, &device, OTHER).unwrap();
+    assert_eq!((written(&restore), restore.mounting_left), (vec![160], vec![Item(number(360))]));
+    let restore = plan_restore(&marked, &device, ALL).unwrap();
+    assert_eq!(written(&restore), [160, 360]);
+    // Issue 22.7: what comes from another mounting is named where it is written; drive 1 is the profile's own.
+    assert_eq!(restore.mounting_written, [Item(number(360))]);
+}
+
+#[test]
+fn differences_are_named_by_drive() {
+    let mut right = profile();
+    right.image = image(&[1, 3, 4]).with(&image_of(&[(24, 1), (166, 100), (366, 200)]));
+    right.image.values.remove(&number(190));
+    let comparison = compare(&profile(), &right);
+    let differences: Vec<(&str, &str, &str)> =
+        comparison.differences.iter().map(|own| (own.item.as_str(), own.left.as_str(), own.right.as_str())).collect();
+    assert_eq!(differences, [("24", "0", "1"), ("166", "350", "100"), ("166 drive 3", "350", "200")]);
+    assert_eq!((comparison.compared, comparison.only_left.as_slice()), (27, &["190".to_owned()][..]));
+    assert_eq!(comparison.only_right.len(), 13);
+    assert_eq!(comparison.only_right[0], "152 drive 4");
+}
+
+/// Steps a turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 / 256 = 20
+/// of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a turn is 1800.
+#[test]
+fn the_ready_made_profiles_do_what_they_say() {
+    let read = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive").join(name);
+        let text = std::fs::read_to_string(path).unwrap();
+        Document::parse(&text, HiperdriveProfile::FORMATS).unwrap().body.into_profile().unwrap()
+    };
+    let mut now = device();
+    now.positions = [(drive(1), 0), (drive(3), 0)].into();
+    for (name, steps, writes) in [
+        ("spindle-4-mm-in-0.01-mm.ron", 400.0, vec![(156, 256), (154, 400), (158, -204_400), (160, 204_400)]),
+        ("spindle-2-mm-in-0.1-mm.ron", 20.0, vec![(156, 256), (154, 20), (158, -10_220), (160, 10_220)]),
+        ("rotary-axis-in-0.1-degree.ron", 3600.0, vec![(156, 256), (154, 3600), (158, -1800), (160, 1800)]),
+        ("gentle-commissioning.ron", 65_536.0, vec![(166, 50), (186, 5)]),
+        ("short-drive-as-delivered.ron", 65_536.0, vec![]),
+    ] {
+        let profile = read(name);
+        let restore = plan_restore(&profile, &now, NONE).unwrap();
+        let write = |op: &Op| match op {
+            Op::Write { number, new, .. } => Some((number.get(), *new)),
+            _ => None,
+        };
+        assert_eq!(restore.plan.ops.iter().filter_map(write).collect::<Vec<_>>(), writes, "{name}");
+        assert_eq!((restore.missing, restore.mounting_left), (Vec::new(), Vec::new()), "{name}");
+        let after = now.image.with(&profile.image);
+        assert_eq!(after.scale(drive(1)).map(|scale| scale.steps_per_turn()), Some(steps), "{name}");
+    }
+}

@@ -1,0 +1,234 @@
+//! The text of a HIPERDRIVE profile: written for people, read from their hands. What is wrong names its entry.
+//!
+//! A drive's parameters stand by the numbers of drive 1 beside it. Who has no hub may write them beside those of the device,
+//! which are below 100; there a number of another drive is its own.
+
+use super::{HiperdriveProfile, Image, Item, Kept, MountingMark, ProfileDrive, ProfileIdentity};
+use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
+use crate::profile::ron_text::{Entries, Writer, value_text};
+use crate::profile::{Profile, ProfileError};
+
+const TEXT: &str = "a text";
+const PLACE: &str = "a number from 1 to 8";
+const VARIANT: &str = "a number from 0 to 65535";
+const NUMBER: &str = "a whole number";
+const CATEGORY: &str = "\"HIPERDRIVE SINGLE\", \"HIPERDRIVE HUB-4\" or \"HIPERDRIVE HUB-8\"";
+
+impl Profile for HiperdriveProfile {
+    const KIND: &'static str = protocol::KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let mut identity = match entries.optional_structure("identity")? {
+            Some(entries) => read_identity(entries)?,
+            None => ProfileIdentity::default(),
+        };
+        let mounting = MountingMark::read_all(entries, "a text such as \"198 drive 2\"", read_marked)?;
+        let (mut image, mut unknown) = (Image::default(), Kept::default());
+        read_parameters(entries, None, &mut image, &mut unknown)?;
+        for mut entries in entries.structures("drives")? {
+            let path = entries.path_of("number");
+            let place: u8 = entries.required("number", PLACE)?;
+            let number =
+                DriveNumber::new(place).ok_or_else(|| ProfileError::Shape { path: path.clone(), expected: PLACE })?;
+            if identity.drives.iter().any(|drive| drive.number == number) {
+                return Err(ProfileError::Value { path, what: format!("drive {place} stands twice") });
+            }
+            read_parameters(&mut entries, Some(number), &mut image, &mut unknown)?;
+            identity.drives.push(read_drive(entries, number)?);
+        }
+        Ok(HiperdriveProfile { identity, image, mounting, unknown })
+    }
+
+    fn write(&self, writer: &mut Writer) {
+        // A profile that was made by hand is of no device.
+        if !self.identity.is_of_no_device() {
+            self.identity.write(writer);
+        }
+        MountingMark::write_all(
+            &self.mounting,
+            "belongs to the mounting: a reference is never restored, the rest not onto another device",
+            writer,
+        );
+        self.write_parameters(writer, None);
+        let mut drives = self.image.drives();
+        drives.extend(self.identity.drives.iter().map(|drive| drive.number));
+        drives.sort();
+        drives.dedup();
+        if drives.is_empty() {
+            return;
+        }
+        writer.open("drives", '[');
+        for number in drives {
+            writer.open("", '(');
+            writer.entry("number", &number.get().to_string(), "");
+            if let Some(drive) = self.drive(number) {
+                drive.write(writer);
+            }
+            self.write_parameters(writer, Some(number));
+            writer.close(')');
+        }
+        writer.close(']');
+    }
+}
+
+impl HiperdriveProfile {
+    /// Parameters of the device, or of a drive.
+    fn write_parameters(&self, writer: &mut Writer, drive: Option<DriveNumber>) {
+        let unknown = self.unknown.0.get(&drive).map(Vec::as_slice).unwrap_or_default();
+        let own: Vec<(ParameterNumber, i64)> = self
+            .image
+            .values
+            .iter()
+            .map(|(number, value)| (*number, *value))
+            .filter(|(n, _)| n.drive() == drive)
+            .collect();
+        if own.is_empty() && unknown.is_empty() {
+            return;
+        }
+        writer.open("parameters", '{');
+        for (number, value) in own {
+            writer.entry(&number.base().to_string(), &value.to_string(), &self.comment(number, value));
+        }
+        for (name, value) in unknown {
+            writer.entry(&value_text(name), &value_text(value), "");
+        }
+        writer.close('}');
+    }
+
+    /// What a parameter is; of a limit also in turns.
+    fn comment(&self, number: ParameterNumber, value: i64) -> String {
+        let Some(row) = number.row() else { return String::new() };
+        let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
+        let scale =
+            number.drive().filter(|_| matches!(row.number, 158 | 160)).and_then(|drive| self.image.scale(drive));
+        let turns = scale.zip(i32::try_from(value).ok()).map(|(scale, steps)| scale.turns(steps));
+        let turns = turns.map(|turns| format!(", {turns:.3} turns")).unwrap_or_default();
+        format!("{}{unit}{turns}", row.name)
+    }
+}
+
+impl ProfileIdentity {
+    fn write(&self, writer: &mut Writer) {
+        writer.open("identity", '(');
+        if let Some(topology) = self.topology {
+            writer.text("category", topology.category());
+        }
+        for (name, own) in [
+            ("name", &self.name),
+            ("article_number", &self.article_number),
+            ("serial_number", &self.serial_number),
+            ("version", &self.version),
+        ] {
+            text(writer, name, own);
+        }
+        writer.unknown(&self.unknown);
+        writer.close(')');
+    }
+}
+
+impl ProfileDrive {
+    fn write(&self, writer: &mut Writer) {
+        if let Some(variant) = self.variant {
+            writer.entry("variant", &variant.number().to_string(), variant.row().map_or("", |row| row.name));
+        }
+        for (name, own) in [
+            ("name", &self.name),
+            ("article_number", &self.article_number),
+            ("serial_number", &self.serial_number),
+            ("version", &self.version),
+        ] {
+            text(writer, name, own);
+        }
+        writer.unknown(&self.unknown);
+    }
+}
+
+fn text(writer: &mut Writer, name: &str, own: &str) {
+    if !own.is_empty() {
+        writer.text(name, own);
+    }
+}
+
+fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
+    let path = entries.path_of("category");
+    let category = entries.optional::<String>("category", CATEGORY)?;
+    let topology = category
+        .map(|category| Topology::of_category(&category).ok_or(ProfileError::Shape { path, expected: CATEGORY }));
+    let topology = topology.transpose()?;
+    let mut text = |name: &str| entries.optional::<String>(name, TEXT).map(Option::unwrap_or_default);
+    let (name, article_number) = (text("name")?, text("article_number")?);
+    let (serial_number, version) = (text("serial_number")?, text("version")?);
+    let unknown = entries.rest()?;
+    Ok(ProfileIdentity { topology, name, article_number, serial_number, version, drives: Vec::new(), unknown })
+}
+
+fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive, ProfileError> {
+    let variant = entries.optional("variant", VARIANT)?.map(Variant::new);
+    let mut text = |name: &str| entries.optional::<String>(name, TEXT).map(Option::unwrap_or_default);
+    let (name, article_number) = (text("name")?, text("article_number")?);
+    let (serial_number, version) = (text("serial_number")?, text("version")?);
+    Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest()? })
+}
+
+fn read_marked(text: &str) -> Result<Item, String> {
+    let item = text.parse::<Item>().map_err(|error| error.to_string())?;
+    if item.0.row().is_none_or(|row| !Image::holds(row)) {
+        return Err(format!("{item} is not kept, and belongs to no mounting"));
+    }
+    Ok(item)
+}
+
+/// Parameters of the device, or of a drive by the numbers of drive 1. A number that is none of theirs is a slip; a name is an
+/// entry that this program does not know, and kept as it is.
+fn read_parameters(
+    entries: &mut Entries,
+    drive: Option<DriveNumber>,
+    image: &mut Image,
+    unknown: &mut Kept,
+) -> Result<(), ProfileError> {
+    for (name, value) in entries.map("parameters")? {
+        let own = name.clone().into_rust::<u16>().ok();
+        let number = own.and_then(|own| match drive {
+            None => ParameterNumber::new(own),
+            Some(drive) => ParameterNumber::of_drive(own, drive),
+        });
+        let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
+            if let ron::Value::Number(own) = &name {
+                let path = format!("{}.{}", entries.path_of("parameters"), value_text(&name));
+                return Err(ProfileError::Value { path, what: no_parameter(own, drive) });
+            }
+            entries.is_beyond(format!("{}.{}", entries.path_of("parameters"), value_text(&name)));
+            unknown.0.entry(drive).or_default().push((name, value));
+            continue;
+        };
+        let path = format!("{}.{}", entries.path_of("parameters"), row.number);
+        let wrong = |what: String| ProfileError::Value { path: path.clone(), what };
+        if !Image::holds(row) {
+            return Err(wrong(format!("{} is not kept by the device, and no part of a profile", row.name)));
+        }
+        let value: i64 = value.into_rust().map_err(|_| ProfileError::Shape { path: path.clone(), expected: NUMBER })?;
+        // How many turns a number is depends on the drive that it is written into: the plan looks at that.
+        let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.to_string()))?;
+        if image.values.insert(number, value).is_some() {
+            return Err(wrong(format!("{} stands twice", Item(number))));
+        }
+    }
+    Ok(())
+}
+
+/// Why a number stands for no parameter where it stands.
+fn no_parameter(number: &ron::value::Number, drive: Option<DriveNumber>) -> String {
+    let number = number.into_f64();
+    match drive {
+        None => format!("there is no parameter {number}"),
+        Some(drive) => {
+            let place = drive.get();
+            format!(
+                "there is no parameter {number} of a drive; those of drive {place} stand here by the numbers of drive 1, 100 to 199"
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,63 @@
+//! What a person should know of a plan before it is carried out.
+
+use super::network::SWITCH;
+use super::{HiperdrivePlan, Image, Item, written};
+use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
+
+/// What a plan brings along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Warning {
+    /// With another scale the same limits lie elsewhere (reference 3, *Scaling moves soft limits*): in turns, now and then.
+    LimitsMove {
+        /// Whose they are.
+        drive: DriveNumber,
+        /// The lower and the upper one now.
+        now: (f64, f64),
+        /// Once the plan is carried out.
+        then: (f64, f64),
+    },
+    /// It counts from the next reset on (47 = −4, or the supply).
+    AfterReset(Item),
+    /// The time-out is off (186 = 255): nothing moves from here.
+    NoTimeout(DriveNumber),
+    /// The drive is no longer requested (152 = 0): nothing moves it from the bus.
+    NotRequested(DriveNumber),
+    /// The address switch decides, and not what is to be set.
+    SwitchDecides(AddressSwitch),
+}
+
+/// All that is to be known of a plan.
+pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
+    let (now, written) = (plan.base.image(), written(plan));
+    let then = now.with(&written);
+    let mut warnings: Vec<Warning> = then.drives().into_iter().filter_map(|drive| moved(&now, &then, drive)).collect();
+    for (&number, &new) in &written.values {
+        warnings.extend(match (number.base(), number.drive(), new) {
+            (152, Some(drive), 0) => Some(Warning::NotRequested(drive)),
+            (186, Some(drive), 255) => Some(Warning::NoTimeout(drive)),
+            (188 | 190 | 192, ..) => Some(Warning::AfterReset(Item(number))),
+            _ => None,
+        });
+    }
+    let switch = plan.base.network.as_ref().and(ParameterNumber::new(SWITCH)).and_then(|number| now.get(number));
+    let switch = switch.and_then(|digits| AddressSwitch::parse(u8::try_from(digits).ok()?));
+    warnings.extend(switch.filter(|switch| *switch != AddressSwitch::Object).map(Warning::SwitchDecides));
+    warnings
+}
+
+/// With another scale, limits of a drive that lie elsewhere by more than a step.
+fn moved(now: &Image, then: &Image, drive: DriveNumber) -> Option<Warning> {
+    let (before, after) = (now.scale(drive)?, then.scale(drive)?);
+    if before == after {
+        return None;
+    }
+    let turns = |image: &Image, scale: PositionScale| {
+        // Exact to the step: limits have 32 bits.
+        let turns = |steps: i64| steps as f64 / scale.steps_per_turn();
+        image.limits(drive).map(|(lower, upper)| (turns(lower), turns(upper)))
+    };
+    let (now, then) = (turns(now, before)?, turns(then, after)?);
+    let step = 1.0 / before.steps_per_turn().min(after.steps_per_turn());
+    let is_elsewhere = |now: f64, then: f64| (now - then).abs() > step;
+    (is_elsewhere(now.0, then.0) || is_elsewhere(now.1, then.1)).then_some(Warning::LimitsMove { drive, now, then })
+}

@@ -1,0 +1,397 @@
+//! A drive: what a control word does to it, how it moves, what goes wrong (reference 2 to 5).
+//!
+//! Chosen here (`U`): a word with reserved bits is ignored; with 0 % of speed or torque nothing begins and nothing is an
+//! error; a drive that is not requested (152 = 0), or that S3 is turned to, leaves "not ready" for nobody; a target beyond the
+//! limits is fault 8503; a drive that is held fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one
+//! hotter than 80 °C at once (8202); a lost master is fault 8601; whoever loses operation while moving brakes as for a stop.
+
+use std::collections::VecDeque;
+
+use super::axis::{Axis, Came, Defect, Load, TICK, TURN, Wanted};
+use super::memory::Memory;
+use crate::devices::hiperdrive::protocol::{
+    Actual, Begins, ControlBit, ControlWord, ErrorCode, Family, OutData, PositionScale, SpeedScale, State, StatusBit,
+    StatusWord, Topology, Travel, Trigger, Variant, effective_torque,
+};
+use crate::units::Moment;
+
+/// A virtual drive.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    pub(super) variant: Variant,
+    pub(super) memory: Memory,
+    pub(super) axis: Axis,
+    /// What is added to the axis' place to be its position, in its steps.
+    pub(super) offset: f64,
+    pub(super) out: OutData,
+    pub(super) errors: VecDeque<ErrorCode>,
+    /// Since the acknowledgement.
+    pub(super) faults: u8,
+    pub(super) celsius: f64,
+    load: Load,
+    control: ControlWord,
+    /// Moving is told by the axis.
+    state: State,
+    motion: Motion,
+    target_reached: bool,
+    acknowledged: bool,
+    over_current: bool,
+    /// Milliseconds without getting on.
+    stuck_ms: u32,
+    allowed: bool,
+    at: Moment,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Motion {
+    Rest,
+    /// To a place; a jog step is one that no stop ends.
+    Job {
+        at: f64,
+        jog: Option<Jog>,
+    },
+    /// A job that waits for bit 5.
+    Paused {
+        at: f64,
+    },
+    /// In speed mode, to a place or for ever.
+    Run {
+        to: Option<f64>,
+        clockwise: bool,
+    },
+}
+
+/// Percent of speed and torque of a jog step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Jog {
+    speed: u8,
+    torque: u8,
+}
+
+/// Parameters 108 to 115.
+const ERRORS: usize = 8;
+const HELD_MS: u32 = 200;
+const WEAK_MS: u32 = 500;
+const HOT: f64 = 80.0;
+/// With all its torque a drive gets so much warmer than what is around it.
+const WARMING: f64 = 40.0;
+const WARMING_S: f64 = 60.0;
+
+impl Drive {
+    /// A drive from the factory, switched on at the start of the clock.
+    pub fn new(variant: Variant, topology: Topology, load: Load) -> Self {
+        let family = variant.row().map_or(Family::Short, |row| row.family);
+        Drive {
+            variant,
+            memory: Memory::new(topology, family, |row| row.number >= 152),
+            axis: Axis::default(),
+            offset: 0.0,
+            out: OutData { speed: 100, torque: 100, ..OutData::default() },
+            errors: VecDeque::new(),
+            faults: 0,
+            celsius: load.ambient,
+            load,
+            control: ControlWord::OFF,
+            state: State::NotReady,
+            motion: Motion::Rest,
+            target_reached: false,
+            acknowledged: false,
+            over_current: false,
+            stuck_ms: 0,
+            allowed: true,
+            at: Moment::START,
+        }
+    }
+
+    /// What it says at a moment.
+    pub fn actual(&mut self, now: Moment) -> Actual {
+        self.advance(now);
+        Actual { status: self.status(), speed: self.speed_scale().speed(self.axis.rpm()), position: self.position() }
+    }
+
+    /// What it has to move, from now on.
+    pub fn set_load(&mut self, now: Moment, load: Load) {
+        self.advance(now);
+        self.load = load;
+    }
+
+    /// Its spindle is turned by hand, by so many steps of 65536 a turn.
+    pub fn turn_by_hand(&mut self, now: Moment, steps: f64) {
+        self.advance(now);
+        self.axis = Axis::at(self.axis.place() + steps);
+    }
+
+    /// Something goes wrong: it is kept, and while the drive is operational it is a fault that ends the motion.
+    pub fn fail(&mut self, now: Moment, code: ErrorCode) {
+        self.advance(now);
+        self.fails(code);
+    }
+
+    /// A control word with its set-points has come.
+    pub fn command(&mut self, now: Moment, out: OutData) {
+        self.advance(now);
+        let Ok(control) = out.control() else { return };
+        self.out = out;
+        let before = std::mem::replace(&mut self.control, control);
+        // A run and a jog step begin with an edge; a job is a level, and begins with the next millisecond.
+        let begins = control.begins(before, self.status()).filter(|begins| *begins != Begins::Job);
+        self.enter(self.next(before));
+        self.obey();
+        if let Some(begins) = begins {
+            self.begin(begins);
+        }
+    }
+
+    /// May it move from the bus (S3 is at 0)?
+    pub(super) const fn allow(&mut self, allowed: bool) {
+        self.allowed = allowed;
+    }
+
+    /// It starts anew, with its parameters as they are.
+    pub(super) fn reset(&mut self, now: Moment) {
+        self.advance(now);
+        self.axis.halt();
+        self.forgive();
+        self.out = OutData { speed: 100, torque: 100, ..OutData::default() };
+        (self.control, self.state, self.motion) = (ControlWord::OFF, State::NotReady, Motion::Rest);
+        (self.target_reached, self.acknowledged) = (false, false);
+    }
+
+    pub(super) fn status(&self) -> StatusWord {
+        let level = match self.state {
+            State::NotReady | State::Fault | State::Locked => 0,
+            State::Ready => 1,
+            State::Operational => 2,
+            State::Enabled | State::Moving => 3,
+        };
+        let (low, high) = self.limits();
+        let position = self.position();
+        let says_outside = self.load.defect == Some(Defect::SaysOutside);
+        [
+            (StatusBit::Ready, level >= 1),
+            (StatusBit::Operational, level >= 2),
+            (StatusBit::OperationEnabled, level >= 3),
+            (StatusBit::Fault, self.state == State::Fault),
+            (StatusBit::SwitchOnLock, self.state == State::Locked),
+            (StatusBit::Warning, self.faults > 0),
+            (StatusBit::TargetReached, self.target_reached),
+            (StatusBit::SetpointAcknowledged, self.acknowledged),
+            (StatusBit::StandingStill, self.stands()),
+            (StatusBit::OverCurrent, self.over_current),
+            (StatusBit::PositionLimit, position < low || position > high || says_outside),
+        ]
+        .into_iter()
+        .fold(StatusWord::FOUND, |status, (bit, set)| status.with(bit, set))
+    }
+
+    /// Nothing moves, and nothing is about to.
+    pub(super) fn stands(&self) -> bool {
+        self.axis.stands() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
+    }
+
+    /// In steps as scaled.
+    pub(super) fn position(&self) -> i32 {
+        // A cast of a float saturates.
+        ((self.axis.place() + self.offset) / TURN * self.scale().steps_per_turn()).floor() as i32
+    }
+
+    /// Its turns, in steps as scaled.
+    pub(super) fn travel(&self) -> Travel {
+        Travel { family: self.variant.row().map(|row| row.family), scale: Some(self.scale()) }
+    }
+
+    pub(super) fn scale(&self) -> PositionScale {
+        PositionScale::new(self.word(154), self.word(156)).unwrap_or(PositionScale::FACTORY)
+    }
+
+    fn speed_scale(&self) -> SpeedScale {
+        SpeedScale::new(self.word(162), self.word(164)).unwrap_or(SpeedScale::FACTORY)
+    }
+
+    pub(super) fn limits(&self) -> (i32, i32) {
+        let limit = |number| self.memory.get(number).and_then(|value| i32::try_from(value).ok()).unwrap_or_default();
+        (limit(158), limit(160))
+    }
+
+    /// The master was lost: what is operational fails.
+    pub(super) fn abandon(&mut self, now: Moment) {
+        self.advance(now);
+        if self.state.by(Trigger::Fails) == State::Fault && self.state != State::Fault {
+            self.fails(ErrorCode::CONNECTION_TIMEOUT);
+        }
+    }
+
+    /// Faults are acknowledged.
+    pub(super) const fn forgive(&mut self) {
+        self.faults = 0;
+        self.over_current = false;
+    }
+
+    pub(super) fn fails(&mut self, code: ErrorCode) {
+        self.errors.push_front(code);
+        self.errors.truncate(ERRORS);
+        self.faults = self.faults.saturating_add(1);
+        self.over_current |= code == ErrorCode::OVER_CURRENT;
+        self.enter(self.state.by(Trigger::Fails));
+    }
+
+    fn word(&self, number: u16) -> u16 {
+        self.memory.get(number).and_then(|value| u16::try_from(value).ok()).unwrap_or_default()
+    }
+
+    /// The axis' place of a position.
+    fn place_of(&self, position: i32) -> f64 {
+        f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
+    }
+
+    /// Millisecond by millisecond to a moment; one that lies behind is as now.
+    pub(super) fn advance(&mut self, now: Moment) {
+        while self.at + TICK <= now {
+            let ticks = if self.is_settled() { now.since(self.at).as_millis().max(1) } else { 1 };
+            let ticks = u32::try_from(ticks).unwrap_or(u32::MAX);
+            self.tick(ticks);
+            self.at = self.at + TICK * ticks;
+        }
+    }
+
+    /// Nothing but its temperature changes by itself.
+    fn is_settled(&self) -> bool {
+        let begins = self.control.begins(self.control, self.status()).is_some();
+        self.motion == Motion::Rest && self.axis.stands() && !begins && self.next(self.control) == self.state
+    }
+
+    /// The state that the word leads to behind another one.
+    fn next(&self, before: ControlWord) -> State {
+        match self.state {
+            State::NotReady if !self.may_move() => State::NotReady,
+            state => state.after(before, self.control),
+        }
+    }
+
+    /// It is requested, and S3 does not point to a drive.
+    fn may_move(&self) -> bool {
+        self.allowed && self.memory.get(152) == Some(1)
+    }
+
+    fn tick(&mut self, ticks: u32) {
+        self.enter(self.next(self.control));
+        if let Some(Begins::Job) = self.control.begins(self.control, self.status()) {
+            self.begin(Begins::Job);
+        }
+        let torque = effective_torque(self.percents().1);
+        let wants = !matches!(self.motion, Motion::Rest | Motion::Paused { .. });
+        let weak = wants && torque < self.load.percent;
+        let wanted = if weak { Wanted::Rest } else { self.wanted() };
+        let came = self.axis.tick(wanted, &self.load);
+        self.warm(if self.stands() { 0 } else { torque }, ticks);
+        let stuck = weak || matches!(came, Came::Held { .. });
+        self.stuck_ms = if stuck { self.stuck_ms + 1 } else { 0 };
+        match came {
+            Came::Held { above } if self.stuck_ms >= HELD_MS => {
+                self.fails(if above { ErrorCode::BLOCK_FORWARD } else { ErrorCode::BLOCK_REVERSE });
+            }
+            _ if weak && self.stuck_ms >= WEAK_MS => self.fails(ErrorCode::FOLLOWING),
+            Came::There if wants && !weak => {
+                self.target_reached |= matches!(self.motion, Motion::Job { .. });
+                self.motion = Motion::Rest;
+            }
+            _ => {}
+        }
+    }
+
+    fn wanted(&self) -> Wanted {
+        let rpm = f64::from(self.word(166)) / 10.0 * f64::from(self.percents().0.min(100)) / 100.0;
+        let speed = rpm / 60.0 * TURN;
+        let wanted = match self.motion {
+            Motion::Rest | Motion::Paused { .. } => Wanted::Rest,
+            Motion::Job { at, .. } | Motion::Run { to: Some(at), .. } => Wanted::Place { at, speed },
+            Motion::Run { to: None, clockwise } => Wanted::Speed(if clockwise { speed } else { -speed }),
+        };
+        wanted.with(self.load.defect, self.axis.place())
+    }
+
+    /// Of speed and torque.
+    const fn percents(&self) -> (u8, u8) {
+        match self.motion {
+            Motion::Job { jog: Some(Jog { speed, torque }), .. } => (speed, torque),
+            _ => (self.out.speed, self.out.torque),
+        }
+    }
+
+    fn warm(&mut self, torque: u8, ticks: u32) {
+        let ends = self.load.ambient + WARMING * f64::from(torque) / 100.0;
+        let left = (-f64::from(ticks) * TICK.as_secs_f64() / WARMING_S).exp();
+        let before = self.celsius;
+        self.celsius = ends + (before - ends) * left;
+        if self.celsius >= HOT && (before < HOT || torque > 0) && self.state != State::Fault {
+            self.fails(ErrorCode::OVER_TEMPERATURE);
+        }
+    }
+
+    /// What comes with a state.
+    fn enter(&mut self, state: State) {
+        if self.state == State::Fault && state == State::Locked {
+            self.forgive();
+        }
+        if matches!(state, State::NotReady | State::Ready) {
+            (self.target_reached, self.acknowledged) = (false, false);
+        }
+        if !matches!(state, State::Enabled | State::Moving) {
+            self.motion = Motion::Rest;
+        }
+        self.state = state;
+    }
+
+    /// What the word says of a motion that is under way. A jog step is left alone.
+    fn obey(&mut self) {
+        let has = |bit| self.control.has(bit);
+        let speed_mode = has(ControlBit::SpeedMode);
+        self.motion = match self.motion {
+            Motion::Run { .. } if !speed_mode || !has(ControlBit::Start) => Motion::Rest,
+            Motion::Job { jog: None, .. } | Motion::Paused { .. } if speed_mode || !has(ControlBit::NoStop) => {
+                Motion::Rest
+            }
+            Motion::Job { at, jog: None } if !has(ControlBit::NoPause) => Motion::Paused { at },
+            Motion::Paused { at } if has(ControlBit::NoPause) => Motion::Job { at, jog: None },
+            motion => motion,
+        };
+    }
+
+    fn begin(&mut self, begins: Begins) {
+        let (low, high) = self.limits();
+        let jog = |step: u16, speed: u16, torque: u16| {
+            let percent = |number| u8::try_from(self.word(number)).unwrap_or_default();
+            let step = self.memory.get(step).and_then(|step| i32::try_from(step).ok()).unwrap_or_default();
+            (self.position().saturating_add(step), Some(Jog { speed: percent(speed), torque: percent(torque) }))
+        };
+        let (target, jog) = match begins {
+            Begins::Run => {
+                let clockwise = self.control.has(ControlBit::NoStop);
+                // Beyond the end it runs no further, and not back either.
+                let end = if clockwise { high.max(self.position()) } else { low.min(self.position()) };
+                let to = (!self.control.has(ControlBit::NoPause)).then(|| self.place_of(end));
+                return self.moves(Motion::Run { to, clockwise });
+            }
+            Begins::Job => (self.out.target, None),
+            Begins::JogOne => jog(170, 172, 174),
+            Begins::JogTwo => jog(176, 178, 180),
+        };
+        if (low..=high).contains(&target) {
+            self.moves(Motion::Job { at: self.place_of(target), jog });
+        } else if jog.is_some() || (self.out.speed > 0 && self.out.torque > 0) {
+            self.fails(ErrorCode::INVALID_TARGET);
+        }
+    }
+
+    fn moves(&mut self, motion: Motion) {
+        let before = std::mem::replace(&mut self.motion, motion);
+        let (speed, torque) = self.percents();
+        if speed == 0 || torque == 0 || !self.may_move() {
+            self.motion = before;
+            return;
+        }
+        self.target_reached = false;
+        self.acknowledged = self.control.has(ControlBit::Start);
+        self.stuck_ms = 0;
+    }
+}

@@ -1,0 +1,40 @@
+//! What goes wrong with the writes of a parameter, on purpose.
+
+use super::parameters::Refused;
+use crate::devices::hiperdrive::protocol::ParameterNumber;
+
+/// What goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hindrance {
+    /// They are refused: not in this state.
+    Refused,
+    /// The line is lost once one has come: it counts, and nothing more gets through.
+    CutOff,
+}
+
+/// What does at the moment, and whether the line was lost by it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Hindered {
+    what: Option<(ParameterNumber, Hindrance)>,
+    is_cut_off: bool,
+}
+
+impl Hindered {
+    pub(super) const fn by(what: Option<(ParameterNumber, Hindrance)>) -> Self {
+        Hindered { what, is_cut_off: false }
+    }
+
+    pub(super) const fn is_cut_off(&self) -> bool {
+        self.is_cut_off
+    }
+
+    /// A parameter is about to be written.
+    pub(super) fn write(&mut self, number: ParameterNumber) -> Result<(), Refused> {
+        match self.what.filter(|(own, _)| *own == number) {
+            Some((_, Hindrance::Refused)) => return Err(Refused::State),
+            Some((_, Hindrance::CutOff)) => self.is_cut_off = true,
+            None => {}
+        }
+        Ok(())
+    }
+}

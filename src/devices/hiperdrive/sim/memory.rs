@@ -1,0 +1,92 @@
+//! Parameters that can be written: what they are now, and what of them is kept without supply.
+
+use std::collections::BTreeMap;
+
+use crate::devices::hiperdrive::protocol::{Family, PARAMETERS, ParameterRow, Topology};
+
+/// By the number of drive 1, or of the device.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    factory: BTreeMap<u16, i64>,
+    now: BTreeMap<u16, i64>,
+    kept: BTreeMap<u16, i64>,
+}
+
+/// Chosen: what the drive finds for parameter 192.
+const COMPLETE_TIME_MS: i64 = 5;
+
+impl Memory {
+    /// From the factory, what `holds` chooses of the table.
+    pub(super) fn new(topology: Topology, family: Family, holds: fn(&ParameterRow) -> bool) -> Self {
+        let value = |row: &ParameterRow| {
+            let found = (row.number == 192).then_some(COMPLETE_TIME_MS);
+            row.factory_value(topology, family).or(found).map(|value| (row.number, value))
+        };
+        let factory: BTreeMap<u16, i64> = PARAMETERS.iter().filter(|row| holds(row)).filter_map(value).collect();
+        Memory { now: factory.clone(), kept: factory.clone(), factory }
+    }
+
+    /// `None` for a parameter that is not held here.
+    pub(super) fn get(&self, number: u16) -> Option<i64> {
+        self.now.get(&number).copied()
+    }
+
+    /// Nothing of one that is not held here.
+    pub(super) fn set(&mut self, number: u16, value: i64) {
+        if let Some(held) = self.now.get_mut(&number) {
+            *held = value;
+        }
+    }
+
+    /// It has this value, and keeps it.
+    pub(super) fn preset(&mut self, number: u16, value: i64) {
+        self.set(number, value);
+        self.keep();
+    }
+
+    pub(super) fn keep(&mut self) {
+        self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
+    }
+
+    /// Half of what is to be kept, by the numbers: the supply was lost in between.
+    pub(super) fn keep_half(&mut self) {
+        let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
+        let half = saved.len() / 2;
+        self.kept.extend(saved.into_iter().take(half));
+    }
+
+    /// Without supply, or reset: as saved last; what is never saved from the factory. The position that was set stays (manual,
+    /// 198: a reset has no effect on it).
+    pub(super) fn restart(&mut self) {
+        let reference = self.get(REFERENCE);
+        self.now = self.kept.clone();
+        reference.into_iter().for_each(|position| self.set(REFERENCE, position));
+    }
+
+    /// 47 = −2: what the adapter or hub keeps itself is as saved last.
+    pub(super) fn recall(&mut self) {
+        copy_own(&self.kept, &mut self.now);
+    }
+
+    /// 47 = −1: what the adapter or hub keeps itself is from the factory, not saved yet.
+    pub(super) fn forget_own(&mut self) {
+        copy_own(&self.factory, &mut self.now);
+    }
+
+    /// All of it from the factory, not saved yet.
+    pub(super) fn forget(&mut self) {
+        self.now = self.factory.clone();
+    }
+}
+
+/// The position that was set.
+const REFERENCE: u16 = 198;
+
+fn copy_own(from: &BTreeMap<u16, i64>, to: &mut BTreeMap<u16, i64>) {
+    let own = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.is_kept_by_device());
+    to.extend(from.iter().filter(|(number, _)| own(number)));
+}
+
+fn is_saved(number: u16) -> bool {
+    PARAMETERS.iter().any(|row| row.number == number && row.saved)
+}

@@ -1,0 +1,167 @@
+//! What reading and writing a drive's parameters does.
+//!
+//! Chosen here (`U`): a value that is refused is kept as error 8501, as the manual has it, and a fault while the drive is
+//! operational; 198 is taken only while the drive stands still.
+
+use super::axis::TURN;
+use super::drive::Drive;
+use crate::buses::ethernet_ip::protocol::GeneralStatus;
+use crate::devices::hiperdrive::protocol::{ErrorCode, PkwError, Value, nearest_reference};
+use crate::units::Moment;
+
+/// Why a parameter was not read or written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refused {
+    /// There is no such parameter, or no such drive.
+    Unknown,
+    /// It can only be read.
+    ReadOnly,
+    /// It cannot be this value.
+    Value,
+    /// Not in this state.
+    State,
+}
+
+impl Refused {
+    /// As CIP says it.
+    pub const fn status(self) -> GeneralStatus {
+        match self {
+            Refused::Unknown => GeneralStatus::NO_ATTRIBUTE,
+            Refused::ReadOnly => GeneralStatus::NOT_SETTABLE,
+            Refused::Value => GeneralStatus::INVALID_VALUE,
+            Refused::State => GeneralStatus::STATE,
+        }
+    }
+
+    /// As a parameter word says it.
+    pub const fn error(self) -> PkwError {
+        match self {
+            Refused::Unknown => PkwError::NO_PARAMETER,
+            Refused::ReadOnly => PkwError::READ_ONLY,
+            Refused::Value => PkwError::RANGE,
+            Refused::State => PkwError::STATE,
+        }
+    }
+}
+
+impl Drive {
+    /// A parameter by the number of drive 1.
+    pub(super) fn read(&mut self, now: Moment, number: u16) -> Option<Value> {
+        let actual = self.actual(now);
+        let text = |text: &str| Some(Value::Text(text.to_owned()));
+        let value = match number {
+            101 => self.out.control.into(),
+            102 => self.out.speed.into(),
+            103 => self.out.torque.into(),
+            104 => self.out.target.into(),
+            105 => actual.status.word().into(),
+            106 => actual.speed.into(),
+            107 => actual.position.into(),
+            108..=115 => self.errors.get(usize::from(number - 108)).map_or(0, |code| code.code().into()),
+            116..=118 => 0,
+            // Between −273 and some hundred.
+            119 => self.celsius.round() as i64,
+            120 => self.variant.number().into(),
+            121 => return text(self.variant.row().map_or("", |row| row.name)),
+            122 => return text("7800.0001"),
+            123 => return text("4711"),
+            124 => return text("14/2024"),
+            125 => return text("1.04"),
+            126 => return text("24"),
+            127 => return text("A25"),
+            128 => return text("A20"),
+            129 => return text("35"),
+            197 => self.faults.into(),
+            199 => 0,
+            _ => self.memory.get(number)?,
+        };
+        Some(Value::Number(value))
+    }
+
+    /// It starts anew when this is written: 0 → 1 of 152, and 199.
+    pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
+        number == 199 || (number, value) == (152, 1) && self.memory.get(152) == Some(0)
+    }
+
+    /// A parameter by the number of drive 1 is written; what its range says has been looked at.
+    pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), Refused> {
+        self.advance(now);
+        let mut out = self.out;
+        match number {
+            101 => out.control = u16::try_from(value).map_err(|_| Refused::Value)?,
+            102 => out.speed = u8::try_from(value).map_err(|_| Refused::Value)?,
+            103 => out.torque = u8::try_from(value).map_err(|_| Refused::Value)?,
+            104 => out.target = i32::try_from(value).map_err(|_| Refused::Value)?,
+            158 | 160 => return self.write_limit(number, value),
+            197 => {
+                self.forgive();
+                return Ok(());
+            }
+            198 => return self.write_position(value),
+            199 => {
+                if value == 1 {
+                    self.memory.forget();
+                    self.forget_place();
+                } else {
+                    self.memory.restart();
+                }
+                self.reset(now);
+                return Ok(());
+            }
+            _ => {
+                let resets = self.is_reset_by(number, value);
+                self.memory.set(number, value);
+                if resets {
+                    self.reset(now);
+                }
+                return Ok(());
+            }
+        }
+        self.command(now, out);
+        Ok(())
+    }
+
+    /// 160 is above 158, and the position between them.
+    fn write_limit(&mut self, number: u16, value: i64) -> Result<(), Refused> {
+        let (low, high) = self.limits();
+        let (low, high) = if number == 158 { (value, high.into()) } else { (low.into(), value) };
+        if low >= high || !(low..=high).contains(&self.position().into()) {
+            return Err(self.refuses());
+        }
+        self.memory.set(number, value);
+        Ok(())
+    }
+
+    /// The position becomes the nearest multiple of 64.
+    fn write_position(&mut self, value: i64) -> Result<(), Refused> {
+        let (low, high) = self.limits();
+        let inside = |position: &i32| (low..=high).contains(position);
+        let position = i32::try_from(value).ok().and_then(nearest_reference).filter(inside);
+        let Some(position) = position else { return Err(self.refuses()) };
+        if !self.stands() {
+            return Err(Refused::State);
+        }
+        self.offset = f64::from(position) / self.scale().steps_per_turn() * TURN - self.axis.place();
+        self.memory.set(198, position.into());
+        Ok(())
+    }
+
+    /// The position is that of the shaft: between 0 and 1 turn (manual, 198).
+    pub(super) fn forget_place(&mut self) {
+        self.offset = -(self.axis.place() / TURN).floor() * TURN;
+    }
+
+    pub(super) fn refuses(&mut self) -> Refused {
+        self.fails(ErrorCode::INVALID_VALUE);
+        Refused::Value
+    }
+}
+
+/// A text as it is read: element by element, four characters each.
+pub(super) fn element(text: &str, element: u16) -> Option<u32> {
+    let bytes = text.as_bytes();
+    let part = bytes.chunks(4).nth(element.into())?;
+    let mut four = [0; 4];
+    four.iter_mut().zip(part).for_each(|(to, from)| *to = *from);
+    Some(u32::from_le_bytes(four))
+}

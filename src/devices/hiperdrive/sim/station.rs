@@ -1,0 +1,392 @@
+//! The drives of an adapter or a hub together: process data, parameters, saving, the lost master.
+//!
+//! Chosen here (`U`): a connection that ends, in whatever way, is a lost master; a packet with an idle header stops as control
+//! words of 0 do; while it saves or resets, 47 is 1 and nothing is written; a reset drive has its saved parameters; of an empty
+//! place only 120 and 152 can be read, both 0; a text is read in elements of four characters, the first one lowest.
+
+use std::time::Duration;
+
+use super::axis::{Axis, Load};
+use super::config::Config;
+use super::drive::Drive;
+use super::hindrance::{Hindered, Hindrance};
+use super::memory::Memory;
+use super::parameters::Refused;
+use crate::devices::hiperdrive::protocol::{
+    Access, Actual, DriveNumber, Family, InImage, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Topology,
+    Travel, Value, Variant,
+};
+use crate::units::Moment;
+
+/// What a station is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// Places for drives.
+    pub topology: Topology,
+    /// What is plugged in, from the first place on.
+    pub drives: Vec<Option<(Variant, Load)>>,
+    /// Parameter 17.
+    pub serial_number: u16,
+}
+
+/// A virtual adapter or hub with its drives.
+#[derive(Clone, Debug)]
+pub struct Station {
+    setup: Setup,
+    /// As many as there are places.
+    drives: Vec<Option<Drive>>,
+    memory: Memory,
+    master: Option<Master>,
+    busy_until: Moment,
+    /// When what was written last is answered: what resets drives is answered once it is done.
+    answers_at: Option<Moment>,
+    /// The parameter word that was taken, with the answer that stands there.
+    words: (Pkw, Pkw),
+    /// The answer to it, and when it is there.
+    answers: Option<(Moment, Pkw)>,
+    resets: Duration,
+    plate: Plate,
+    store: Store,
+    hindered: Hindered,
+}
+
+/// What it says of itself that no [`Setup`] is about.
+#[derive(Clone, Debug)]
+struct Plate {
+    name: String,
+    switch: u8,
+    supply_tenths: u16,
+}
+
+/// What a save may come to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Store {
+    /// How many there were.
+    count: u32,
+    /// In this one the supply is lost, counted from 1.
+    dies_in: Option<u32>,
+    /// Then.
+    dies_at: Option<Moment>,
+    /// It was.
+    dead: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Master {
+    timeout: Duration,
+    heard: Moment,
+}
+
+/// Chosen, within what the manual promises.
+const SAVES: Duration = Duration::from_millis(150);
+/// Of all drives, where the settings do not say how long.
+pub(super) const RESETS: Duration = Duration::from_secs(1);
+/// Of one drive.
+const DRIVE_RESETS: Duration = Duration::from_millis(300);
+
+impl Default for Setup {
+    /// An adapter with a drive HDA30A.
+    fn default() -> Self {
+        let drives = vec![Some((Variant::new(7), Load::default()))];
+        Setup { topology: Topology::Adapter, drives, serial_number: 4711 }
+    }
+}
+
+impl Station {
+    /// A station from the factory, switched on at the start of the clock.
+    pub fn new(setup: Setup) -> Self {
+        let places = setup.drives.iter().copied().chain(std::iter::repeat(None));
+        let drives = places
+            .take(setup.topology.drives().into())
+            .map(|place| place.map(|(variant, load)| Drive::new(variant, setup.topology, load)))
+            .collect();
+        let memory = Memory::new(setup.topology, Family::Short, |row| row.number < 100);
+        let plate = Plate { name: "HIPERDRIVE".to_owned(), switch: 0, supply_tenths: 240 };
+        Station {
+            setup,
+            drives,
+            memory,
+            master: None,
+            busy_until: Moment::START,
+            answers_at: None,
+            words: Default::default(),
+            answers: None,
+            resets: RESETS,
+            plate,
+            store: Store::default(),
+            hindered: Hindered::default(),
+        }
+    }
+
+    /// A station as settings want it.
+    pub fn of(config: &Config) -> Self {
+        let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
+        let setup = Setup { topology: config.topology, drives, serial_number: config.serial_number };
+        let mut station = Station::new(setup);
+        station.plate = Plate { name: config.name.clone(), switch: config.switch, supply_tenths: config.supply_tenths };
+        station.store.dies_in = config.faults.die_in_store();
+        station.resets = config.resets;
+        for drive in station.present() {
+            drive.axis = Axis::at(config.position.into());
+            config.requested.iter().for_each(|requested| drive.memory.preset(152, i64::from(*requested)));
+            config.speed.iter().for_each(|speed| drive.memory.preset(166, i64::from(*speed)));
+        }
+        station.turn_s3(Moment::START, config.s3);
+        station
+    }
+
+    /// How its process data and parameters are laid out.
+    pub const fn topology(&self) -> Topology {
+        self.setup.topology
+    }
+
+    /// Saves so far, also those that ended badly.
+    pub const fn stores(&self) -> u32 {
+        self.store.count
+    }
+
+    /// It has lost its supply: nothing answers until [`power_cycle`](Self::power_cycle).
+    pub fn is_dead(&mut self, now: Moment) -> bool {
+        self.advance(now);
+        self.store.dead
+    }
+
+    /// In this save, counted from the first there was, the supply is lost; `None`: in none.
+    pub const fn die_in_store(&mut self, number: Option<u32>) {
+        self.store.dies_in = number;
+    }
+
+    /// From now on this goes wrong; `None`: nothing does, and a line that was lost is mended.
+    pub const fn hinder(&mut self, what: Option<(ParameterNumber, Hindrance)>) {
+        self.hindered = Hindered::by(what);
+    }
+
+    /// Nothing it says gets through.
+    pub(super) const fn is_cut_off(&self) -> bool {
+        self.hindered.is_cut_off()
+    }
+
+    /// A drive that is plugged in.
+    pub fn drive(&mut self, number: DriveNumber) -> Option<&mut Drive> {
+        self.drives.get_mut(usize::from(number.get()) - 1)?.as_mut()
+    }
+
+    /// A master has opened the cyclic connection. Without a packet for so long it is lost.
+    pub fn open(&mut self, now: Moment, timeout: Duration) {
+        self.advance(now);
+        self.master = Some(Master { timeout, heard: now });
+    }
+
+    /// The connection ends.
+    pub fn close(&mut self, now: Moment) {
+        self.advance(now);
+        if self.master.take().is_some() {
+            self.present().for_each(|drive| drive.abandon(now));
+        }
+    }
+
+    /// Whether a master has the cyclic connection.
+    pub fn is_open(&mut self, now: Moment) -> bool {
+        self.advance(now);
+        self.master.is_some()
+    }
+
+    /// Process data have come. Without a connection, and while drives are being reset, they are dropped.
+    pub fn cyclic(&mut self, now: Moment, image: &OutImage, runs: bool) {
+        self.advance(now);
+        let Some(master) = &mut self.master else { return };
+        master.heard = now;
+        if now < self.busy_until {
+            return;
+        }
+        for (drive, out) in self.drives.iter_mut().zip(&image.drives) {
+            let out = if runs { *out } else { OutData { control: 0, ..*out } };
+            if let Some(drive) = drive {
+                drive.command(now, out);
+            }
+        }
+        if let Some(request) = image.pkw.filter(|request| *request != self.words.0) {
+            self.words.0 = request;
+            let answer = self.answer(now, request);
+            self.answers = Some((self.answers_at().unwrap_or(now), answer));
+        }
+    }
+
+    /// Process data as they are sent at a moment.
+    pub fn image(&mut self, now: Moment) -> InImage {
+        self.advance(now);
+        if let Some((_, answer)) = self.answers.take_if(|(at, _)| *at <= now) {
+            self.words.1 = answer;
+        }
+        let actual = |drive: &mut Option<Drive>| drive.as_mut().map_or(Actual::default(), |drive| drive.actual(now));
+        InImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
+    }
+
+    /// Switch S3 is turned. Away from 0 nothing moves from the bus.
+    pub fn turn_s3(&mut self, now: Moment, position: u8) {
+        self.advance(now);
+        self.present().for_each(|drive| drive.allow(position == 0));
+    }
+
+    /// The supply goes and comes back.
+    pub fn power_cycle(&mut self, now: Moment) {
+        self.advance(now);
+        self.memory.restart();
+        (self.master, self.busy_until, self.words) = (None, now, Default::default());
+        (self.answers_at, self.answers) = (None, None);
+        (self.store.dies_at, self.store.dead) = (None, false);
+        self.reset(now);
+    }
+
+    /// Reads a parameter.
+    ///
+    /// # Errors
+    /// [`Refused`] for one that there is not, also of a drive that is not there.
+    pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, Refused> {
+        self.advance(now);
+        self.answers_at = None;
+        let row = number.row().ok_or(Refused::Unknown)?;
+        let Some(drive) = number.drive() else { return self.read_own(now, row).ok_or(Refused::Unknown) };
+        if drive.get() > self.setup.topology.drives() {
+            return Err(Refused::Unknown);
+        }
+        match (self.drive(drive), row.number) {
+            (Some(drive), own) => drive.read(now, own).ok_or(Refused::Unknown),
+            (None, 120 | 152) => Ok(Value::Number(0)),
+            (None, _) => Err(Refused::State),
+        }
+    }
+
+    /// When what was written last is answered, where that is not at once; asked for once.
+    pub const fn answers_at(&mut self) -> Option<Moment> {
+        self.answers_at.take()
+    }
+
+    /// Writes a parameter.
+    ///
+    /// # Errors
+    /// [`Refused`]; nothing was written.
+    pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
+        self.advance(now);
+        self.answers_at = None;
+        self.hindered.write(number)?;
+        let row = number.row().ok_or(Refused::Unknown)?;
+        let place = number.drive().filter(|drive| drive.get() > self.setup.topology.drives());
+        match (row.access, place, value) {
+            (_, Some(_), _) => Err(Refused::Unknown),
+            (Access::Read, ..) => Err(Refused::ReadOnly),
+            _ if now < self.busy_until => Err(Refused::State),
+            (_, _, Value::Text(_)) => Err(Refused::Value),
+            (_, _, Value::Number(value)) => self.write_number(now, number, row, *value),
+        }
+    }
+
+    fn write_number(
+        &mut self,
+        now: Moment,
+        own: ParameterNumber,
+        row: &ParameterRow,
+        value: i64,
+    ) -> Result<(), Refused> {
+        match own.drive() {
+            Some(number) => {
+                let drive = self.drive(number).ok_or(Refused::State)?;
+                if row.check(own, value, drive.travel()).is_err() {
+                    return Err(drive.refuses());
+                }
+                let resets = drive.is_reset_by(row.number, value);
+                drive.write(now, row.number, value)?;
+                self.answers_at = resets.then(|| now + DRIVE_RESETS);
+                Ok(())
+            }
+            None if row.check(own, value, Travel::UNKNOWN).is_err() => Err(Refused::Value),
+            None if own == ParameterNumber::SAVE => {
+                self.keep_or_reset(now, value);
+                Ok(())
+            }
+            None => {
+                self.memory.set(row.number, value);
+                Ok(())
+            }
+        }
+    }
+
+    /// Parameter 47 is written.
+    fn keep_or_reset(&mut self, now: Moment, value: i64) {
+        if value == -4 {
+            self.reset(now);
+            self.busy_until = now + self.resets;
+            self.answers_at = Some(self.busy_until);
+            return;
+        }
+        let mut keep: fn(&mut Memory) = Memory::keep;
+        if matches!(value, 1 | -3) {
+            self.store.count = self.store.count.saturating_add(1);
+            if self.store.dies_in == Some(self.store.count) {
+                (self.store.dies_at, keep) = (Some(now + SAVES / 2), Memory::keep_half);
+            }
+        }
+        let each = |memory: &mut Memory| match value {
+            1 => keep(memory),
+            -1 => memory.forget_own(),
+            -2 => memory.recall(),
+            -3 => {
+                memory.forget();
+                keep(memory);
+            }
+            _ => {}
+        };
+        self.present().for_each(|drive| {
+            each(&mut drive.memory);
+            if value == -3 {
+                drive.forget_place();
+            }
+        });
+        each(&mut self.memory);
+        self.busy_until = now + SAVES;
+    }
+
+    fn reset(&mut self, now: Moment) {
+        self.present().for_each(|drive| {
+            drive.memory.restart();
+            drive.reset(now);
+        });
+    }
+
+    fn read_own(&self, now: Moment, row: &ParameterRow) -> Option<Value> {
+        let text = |text: &str| Some(Value::Text(text.to_owned()));
+        let number = match row.number {
+            9 => self.plate.supply_tenths.into(),
+            11 => 31,
+            12 => self.plate.switch.into(),
+            13 => return text(self.setup.topology.category()),
+            15 => return text(&self.plate.name),
+            16 => return text("7800.0100"),
+            17 => self.setup.serial_number.into(),
+            18 => return text("14/2024"),
+            19 => return text("1.02"),
+            47 => i64::from(now < self.busy_until),
+            number => self.memory.get(number)?,
+        };
+        Some(Value::Number(number))
+    }
+
+    fn present(&mut self) -> impl Iterator<Item = &mut Drive> {
+        self.drives.iter_mut().flatten()
+    }
+
+    /// What happens by itself happens at its moment, not when somebody looks: the supply is lost in a save, a master that was
+    /// not heard for too long is lost.
+    fn advance(&mut self, now: Moment) {
+        if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
+            self.store.dead = true;
+            self.master = None;
+            self.present().for_each(|drive| drive.reset(at));
+        }
+        let Some(Master { timeout, heard }) = self.master else { return };
+        if now.since(heard) >= timeout {
+            self.master = None;
+            self.present().for_each(|drive| drive.abandon(heard + timeout));
+        }
+    }
+}

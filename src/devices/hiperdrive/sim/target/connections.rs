@@ -1,0 +1,297 @@
+//! The connection manager: who opens and closes cyclic and explicit connections, and which request is wrapped in another.
+//!
+//! Chosen here (`U`): one cyclic connection, to one master; it takes the sizes with and without parameter words, intervals
+//! from 5 to 100 ms, and no configuration data; nothing is sent to several at once. Explicit connections (class 3) are for
+//! clients that want one, and end with their session. A ForwardOpen with long fields (5Bh) is no service here.
+
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::time::Duration;
+
+use super::cyclic::Cyclic;
+use super::objects::{object, wrong};
+use super::plant::{Originator, Plant};
+use crate::buses::ethernet_ip::protocol::{
+    ElectronicKey, ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused, GeneralStatus,
+    IMPLICIT_PORT, IoPacket, Item, Items, LogicalKind, NetworkType, Owner, Path, RealTimeFormat, Reply, Request,
+    Segment, Service, SocketAddress, Trigger,
+};
+use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout};
+use crate::units::Moment;
+
+/// The connections there are.
+#[derive(Debug, Default)]
+pub(super) struct Connections {
+    pub(super) cyclic: Option<Cyclic>,
+    explicit: Vec<Explicit>,
+    /// How many there were: none has the number of another.
+    opened: u32,
+}
+
+/// A connection of class 3.
+#[derive(Debug)]
+struct Explicit {
+    owner: Owner,
+    session: u32,
+    to_target_id: u32,
+    to_originator_id: u32,
+    timeout: Duration,
+    heard: Moment,
+}
+
+/// Why a connection is not opened: the first word behind the status.
+type Refusal = u16;
+
+const IN_USE: Refusal = 0x0100;
+const TRANSPORT: Refusal = 0x0103;
+const OTHER_MASTER: Refusal = 0x0106;
+const NOT_FOUND: Refusal = 0x0107;
+const NETWORK_TYPE: Refusal = 0x0108;
+const INTERVAL: Refusal = 0x0111;
+const NONE_LEFT: Refusal = 0x0113;
+const WRONG_MAKER: Refusal = 0x0114;
+const WRONG_TYPE: Refusal = 0x0115;
+const WRONG_REVISION: Refusal = 0x0116;
+const ASSEMBLY: Refusal = 0x0117;
+const TO_TARGET_SIZE: Refusal = 0x0127;
+const TO_ORIGINATOR_SIZE: Refusal = 0x0128;
+const SEGMENT: Refusal = 0x0315;
+
+const INTERVALS_US: std::ops::RangeInclusive<u32> = 5_000..=100_000;
+const MOST_EXPLICIT: usize = 4;
+const UNCONNECTED_SEND: u8 = 0x52;
+const ASSEMBLY_CLASS: u16 = 0x04;
+const MESSAGE_ROUTER: u16 = 0x02;
+
+impl Connections {
+    /// None, behind what was lost with the supply.
+    pub(super) fn after(lost: &Connections) -> Self {
+        Connections { opened: lost.opened, ..Connections::default() }
+    }
+
+    pub(super) const fn has_cyclic(&self) -> bool {
+        self.cyclic.is_some()
+    }
+
+    /// When something is to be sent next.
+    pub(super) fn due(&self) -> Option<Moment> {
+        self.cyclic.as_ref().map(Cyclic::due)
+    }
+
+    /// A session ends, with its explicit connections.
+    pub(super) fn end(&mut self, session: u32) {
+        self.explicit.retain(|explicit| explicit.session != session);
+    }
+
+    pub(super) fn forget_silent(&mut self, now: Moment) {
+        self.explicit.retain(|explicit| now.since(explicit.heard) < explicit.timeout);
+    }
+
+    /// A message has come over an explicit connection: what its replies carry.
+    pub(super) fn message(&mut self, to_target_id: u32, session: u32, now: Moment) -> Option<u32> {
+        let mut explicit = self.explicit.iter_mut();
+        let found = explicit.find(|one| one.to_target_id == to_target_id && one.session == session)?;
+        found.heard = now;
+        Some(found.to_originator_id)
+    }
+
+    fn next_id(&mut self) -> u32 {
+        self.opened = self.opened.wrapping_add(1);
+        0x0002_0000 | self.opened & 0xFFFF
+    }
+}
+
+impl Plant {
+    /// A request to the connection manager; with its reply the sockets that are to be known beside it.
+    pub(super) fn manage(&mut self, from: (Originator, u32), request: &Request, items: &Items) -> (Reply, Vec<Item>) {
+        let alone = |reply| (reply, Vec::new());
+        if let Err(status) = object(&request.path) {
+            return alone(request.refused(status));
+        }
+        match request.service {
+            Service::FORWARD_OPEN => match ForwardOpen::parse(&request.data) {
+                Ok(open) => self.open(from, request, &open, items),
+                Err(error) => alone(request.refused(wrong(error))),
+            },
+            Service::FORWARD_CLOSE => match ForwardClose::parse(&request.data) {
+                Ok(close) => alone(self.close(request, &close)),
+                Err(error) => alone(request.refused(wrong(error))),
+            },
+            service if service.code() == UNCONNECTED_SEND => match wrapped(&request.data) {
+                Ok(inner) if inner.class() == Some(Request::CONNECTION_MANAGER) => self.manage(from, &inner, items),
+                Ok(inner) => alone(self.object(&inner)),
+                Err(status) => alone(request.refused(status)),
+            },
+            _ => alone(request.refused(GeneralStatus::NO_SERVICE)),
+        }
+    }
+
+    fn open(
+        &mut self,
+        from: (Originator, u32),
+        request: &Request,
+        open: &ForwardOpen,
+        items: &Items,
+    ) -> (Reply, Vec<Item>) {
+        let opened = match open.transport.class() {
+            1 => self.open_cyclic(from.0, open, items),
+            3 => self.open_explicit(from.1, open).map(|id| (id, Vec::new())),
+            _ => Err(TRANSPORT),
+        };
+        match opened {
+            Ok((to_target_id, sockets)) => {
+                let opened = ForwardOpened {
+                    to_target_id,
+                    to_originator_id: open.to_originator_id,
+                    owner: open.owner,
+                    to_target_interval_us: open.to_target_interval_us,
+                    to_originator_interval_us: open.to_originator_interval_us,
+                    application: Vec::new(),
+                };
+                (request.done(opened.emit()), sockets)
+            }
+            Err(extended) => {
+                let refused = ForwardRefused { owner: open.owner, remaining_path_words: 0 };
+                (refused.reply(request, extended), Vec::new())
+            }
+        }
+    }
+
+    fn open_cyclic(
+        &mut self,
+        from: Originator,
+        open: &ForwardOpen,
+        items: &Items,
+    ) -> Result<(u32, Vec<Item>), Refusal> {
+        match &self.connections.cyclic {
+            Some(cyclic) if cyclic.owner == open.owner => return Err(IN_USE),
+            Some(_) => return Err(OTHER_MASTER),
+            None => {}
+        }
+        if open.transport.trigger() != Trigger::Cyclic {
+            return Err(TRANSPORT);
+        }
+        self.check_path(&open.path)?;
+        let kinds = [open.to_target, open.to_originator];
+        if kinds.iter().any(|one| one.kind() != NetworkType::PointToPoint || one.redundant_owner()) {
+            return Err(NETWORK_TYPE);
+        }
+        let layout = self.layout(open)?;
+        let intervals = [open.to_target_interval_us, open.to_originator_interval_us];
+        if !intervals.iter().all(|interval| INTERVALS_US.contains(interval)) {
+            return Err(INTERVAL);
+        }
+        let id = self.connections.next_id();
+        let to = originator_socket(from.address, items.socket_to_originator());
+        self.station.open(self.now, open.to_target_timeout());
+        self.connections.cyclic = Some(Cyclic::new(open, id, layout, to, self.now));
+        let own = SocketAddress::new(Ipv4Addr::UNSPECIFIED, self.udp);
+        Ok((id, vec![Item::SocketToTarget(own)]))
+    }
+
+    /// Assemblies 100 and 101, with or without 104 for configuration, and a key that fits.
+    fn check_path(&mut self, path: &Path) -> Result<(), Refusal> {
+        let [configuration, to_target, to_originator] = ASSEMBLIES;
+        for segment in &path.0 {
+            match segment {
+                Segment::Key(key) => self.check_key(key)?,
+                Segment::Logical { .. } => {}
+                Segment::Data(_) | Segment::Unknown(_) => return Err(SEGMENT),
+            }
+        }
+        let instance = path.number(LogicalKind::Instance);
+        let points: Vec<u16> = path.numbers(LogicalKind::ConnectionPoint).collect();
+        let fits = path.number(LogicalKind::Class) == Some(ASSEMBLY_CLASS)
+            && instance.is_none_or(|instance| instance == configuration)
+            && points == [to_target, to_originator];
+        if fits { Ok(()) } else { Err(ASSEMBLY) }
+    }
+
+    /// 0 fits all.
+    fn check_key(&mut self, key: &ElectronicKey) -> Result<(), Refusal> {
+        let own = self.identity();
+        let fits = |wanted: u16, own: u16| wanted == 0 || wanted == own;
+        let (major, compatible) = (key.major & 0x7F, key.major & 0x80 != 0);
+        let minor = match compatible {
+            true => key.minor <= own.revision.minor,
+            false => fits(key.minor.into(), own.revision.minor.into()),
+        };
+        if !fits(key.vendor, own.vendor) || !fits(key.product_code, own.product_code) {
+            Err(WRONG_MAKER)
+        } else if !fits(key.device_type, own.device_type) {
+            Err(WRONG_TYPE)
+        } else if !fits(major.into(), own.revision.major.into()) || !minor {
+            Err(WRONG_REVISION)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// With parameter words or without, the same both ways.
+    fn layout(&self, open: &ForwardOpen) -> Result<Layout, Refusal> {
+        let topology = self.station.topology();
+        let layouts = [true, false].map(|pkw| Layout { topology, pkw, order: self.order });
+        let length = usize::from(open.to_target.size().saturating_sub(IoPacket::overhead(RealTimeFormat::Header)));
+        let layout = layouts.into_iter().find(|layout| layout.length() == length).ok_or(TO_TARGET_SIZE)?;
+        let back = layout.length() + usize::from(IoPacket::overhead(RealTimeFormat::Modeless));
+        if usize::from(open.to_originator.size()) == back { Ok(layout) } else { Err(TO_ORIGINATOR_SIZE) }
+    }
+
+    /// To the message router.
+    fn open_explicit(&mut self, session: u32, open: &ForwardOpen) -> Result<u32, Refusal> {
+        let connections = &mut self.connections;
+        if connections.explicit.iter().any(|explicit| explicit.owner == open.owner) {
+            return Err(IN_USE);
+        }
+        if connections.explicit.len() >= MOST_EXPLICIT {
+            return Err(NONE_LEFT);
+        }
+        let path = Path::instance(MESSAGE_ROUTER, 1);
+        if open.path.emit() != path.emit() {
+            return Err(SEGMENT);
+        }
+        let id = connections.next_id();
+        connections.explicit.push(Explicit {
+            owner: open.owner,
+            session,
+            to_target_id: id,
+            to_originator_id: open.to_originator_id,
+            timeout: open.to_target_timeout(),
+            heard: self.now,
+        });
+        Ok(id)
+    }
+
+    fn close(&mut self, request: &Request, close: &ForwardClose) -> Reply {
+        let connections = &mut self.connections;
+        let before = connections.explicit.len();
+        connections.explicit.retain(|explicit| explicit.owner != close.owner);
+        let cyclic = connections.cyclic.take_if(|cyclic| cyclic.owner == close.owner);
+        if cyclic.is_some() {
+            self.station.close(self.now);
+        } else if self.connections.explicit.len() == before {
+            let refused = ForwardRefused { owner: close.owner, remaining_path_words: 0 };
+            return refused.reply(request, NOT_FOUND);
+        }
+        request.done(ForwardClosed { owner: close.owner, application: Vec::new() }.emit())
+    }
+}
+
+/// Where cyclic data go to: as the originator has said it, else to its address and the usual port.
+fn originator_socket(peer: Ipv4Addr, said: Option<SocketAddress>) -> SocketAddrV4 {
+    match said {
+        Some(socket) if socket.address.is_unspecified() => SocketAddrV4::new(peer, socket.port),
+        Some(socket) => SocketAddrV4::new(socket.address, socket.port),
+        None => SocketAddrV4::new(peer, IMPLICIT_PORT),
+    }
+}
+
+/// The request in an Unconnected_Send: time-out, its length, itself, filled to whole words; then a route, which leads
+/// nowhere else from here.
+fn wrapped(data: &[u8]) -> Result<Request, GeneralStatus> {
+    let [_, _, low, high, rest @ ..] = data else { return Err(GeneralStatus::TOO_SHORT) };
+    let length = usize::from(u16::from_le_bytes([*low, *high]));
+    let message = rest.get(..length).ok_or(GeneralStatus::TOO_SHORT)?;
+    let inner = Request::parse(message).map_err(|_| GeneralStatus::new(0x04))?;
+    // Once is enough.
+    if inner.service.code() == UNCONNECTED_SEND { Err(GeneralStatus::NO_SERVICE) } else { Ok(inner) }
+}

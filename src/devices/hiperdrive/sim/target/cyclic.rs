@@ -1,0 +1,115 @@
+//! The cyclic connection of class 1: packets that come, packets that go, each at its moment.
+//!
+//! Chosen here (`U`): the first packet goes an interval after the connection was opened; every packet that came in its turn
+//! counts, whatever its data count says; a packet that is old, of a wrong length or of another connection is dropped, counted
+//! and no sign of life.
+
+use std::net::SocketAddrV4;
+use std::time::Duration;
+
+use super::plant::Plant;
+use crate::buses::ethernet_ip::protocol::{
+    Arrival, Arrivals, ForwardOpen, Frame, IoPacket, Owner, RealTimeFormat, RunIdle,
+};
+use crate::devices::hiperdrive::protocol::{Layout, OutImage};
+use crate::units::Moment;
+
+/// A cyclic connection.
+#[derive(Debug)]
+pub(super) struct Cyclic {
+    pub(super) owner: Owner,
+    to_target_id: u32,
+    to_originator_id: u32,
+    layout: Layout,
+    to: SocketAddrV4,
+    interval: Duration,
+    next: Moment,
+    sequence: u32,
+    arrivals: Arrivals,
+}
+
+impl Cyclic {
+    pub(super) fn new(open: &ForwardOpen, id: u32, layout: Layout, to: SocketAddrV4, now: Moment) -> Self {
+        let interval = Duration::from_micros(open.to_originator_interval_us.into());
+        Cyclic {
+            owner: open.owner,
+            to_target_id: id,
+            to_originator_id: open.to_originator_id,
+            layout,
+            to,
+            interval,
+            next: now + interval,
+            sequence: 0,
+            arrivals: Arrivals::default(),
+        }
+    }
+
+    /// When the next packet goes.
+    pub(super) const fn due(&self) -> Moment {
+        self.next
+    }
+}
+
+impl Plant {
+    /// Packets that are due go, each with what the drives say at its moment. A connection whose master was lost is gone.
+    pub(super) fn produce(&mut self) {
+        while let Some(cyclic) = self.connections.cyclic.as_mut() {
+            let at = cyclic.next.min(self.now);
+            if !self.station.is_open(at) {
+                self.connections.cyclic = None;
+                return;
+            }
+            if cyclic.next > self.now {
+                return;
+            }
+            cyclic.next = at + cyclic.interval;
+            cyclic.sequence = cyclic.sequence.wrapping_add(1);
+            let packet = IoPacket {
+                connection: cyclic.to_originator_id,
+                sequence: cyclic.sequence,
+                // Its lower half.
+                count: cyclic.sequence as u16,
+                header: None,
+                data: self.station.image(at).emit(cyclic.layout),
+            };
+            let to = cyclic.to;
+            if self.speaks() {
+                self.send(at, to, packet.emit());
+            }
+        }
+    }
+
+    /// A datagram has come.
+    pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
+        self.advance(now);
+        if !self.hears() || !self.arrives() {
+            return;
+        }
+        match IoPacket::parse(packet, RealTimeFormat::Header) {
+            Ok(packet) => self.consume(&packet),
+            Err(_) => {
+                let asked = Frame::parse(packet).is_ok_and(|frame| self.answer_datagram(from, &frame));
+                self.figures.malformed += u64::from(!asked);
+            }
+        }
+    }
+
+    fn consume(&mut self, packet: &IoPacket) {
+        let Some(cyclic) = self.connections.cyclic.as_mut().filter(|one| one.to_target_id == packet.connection) else {
+            self.figures.foreign += 1;
+            return;
+        };
+        let runs = packet.header.is_some_and(RunIdle::runs);
+        let Ok(image) = OutImage::parse(&packet.data, cyclic.layout) else {
+            self.figures.malformed += 1;
+            return;
+        };
+        match cyclic.arrivals.take(packet.sequence) {
+            Arrival::New { .. } => {
+                self.figures.packets += 1;
+                self.station.cyclic(self.now, &image, runs);
+            }
+            Arrival::Stale => self.figures.stale += 1,
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The TCP/IP object (class F5h) and the Ethernet link (F6h), as ODVA has them (`P`).
+//!
+//! Chosen here (`U`): attribute 5 can be set only while attribute 3 says that addresses are stored, and counts at once; the
+//! virtual device stays reachable where it was.
+
+use std::net::Ipv4Addr;
+
+use super::objects::wrong;
+use crate::buses::ethernet_ip::protocol::{
+    AddressSource, ConfigurationControl, GeneralStatus, InterfaceConfiguration, Path,
+};
+use crate::devices::hiperdrive::protocol::AddressSwitch;
+
+/// Where the address comes from, and what it is.
+#[derive(Debug)]
+pub(super) struct Network {
+    switch: u8,
+    control: ConfigurationControl,
+    present: InterfaceConfiguration,
+    stored: InterfaceConfiguration,
+    mac: [u8; 6],
+}
+
+const NONE: InterfaceConfiguration = InterfaceConfiguration {
+    address: Ipv4Addr::UNSPECIFIED,
+    mask: Ipv4Addr::UNSPECIFIED,
+    gateway: Ipv4Addr::UNSPECIFIED,
+    name_servers: [Ipv4Addr::UNSPECIFIED; 2],
+    domain: String::new(),
+};
+const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
+/// What a virtual DHCP or BOOTP server gives.
+const GIVEN: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
+/// Attribute 1: an address was got; attribute 2: BOOTP, DHCP, can be set.
+const CONFIGURED: u32 = 1;
+const CAPABILITY: u32 = 0x15;
+const ETHERNET_LINK: u16 = 0xF6;
+const MEGABITS: u32 = 100;
+/// Attribute 2 of the Ethernet link: it is there, in both directions at once.
+const LINK_UP: u32 = 0x03;
+
+impl Network {
+    /// As delivered: DHCP.
+    pub(super) fn new(switch: u8, serial_number: u16) -> Self {
+        let [high, low] = serial_number.to_be_bytes();
+        let mac = [0x02, 0x00, 0x00, 0x00, high, low];
+        let mut network = Network { switch, control: dhcp(), present: NONE, stored: NONE, mac };
+        network.power_up();
+        network
+    }
+
+    /// The address is found out anew.
+    pub(super) fn power_up(&mut self) {
+        let source = match AddressSwitch::parse(self.switch) {
+            Some(AddressSwitch::Fixed(address)) => {
+                self.present = InterfaceConfiguration { address, mask: NETWORK, ..NONE };
+                return;
+            }
+            Some(AddressSwitch::Stored) => AddressSource::Stored,
+            Some(AddressSwitch::Bootp) => AddressSource::Bootp,
+            Some(AddressSwitch::Dhcp) => AddressSource::Dhcp,
+            Some(AddressSwitch::Object) | None => self.control.source(),
+        };
+        let stored = source == AddressSource::Stored && self.stored.address != Ipv4Addr::UNSPECIFIED;
+        self.present =
+            if stored { self.stored.clone() } else { InterfaceConfiguration { address: GIVEN, mask: NETWORK, ..NONE } };
+    }
+
+    /// As delivered again; the address is kept until the supply is switched.
+    pub(super) fn factory(&mut self) {
+        (self.control, self.stored) = (dhcp(), NONE);
+    }
+
+    /// An attribute of the TCP/IP object.
+    pub(super) fn interface(&self, attribute: u16) -> Option<Vec<u8>> {
+        let bytes = match attribute {
+            1 => CONFIGURED.to_le_bytes().to_vec(),
+            2 => CAPABILITY.to_le_bytes().to_vec(),
+            ConfigurationControl::ATTRIBUTE => self.control.emit().to_vec(),
+            4 => {
+                let path = Path::instance(ETHERNET_LINK, 1).emit();
+                // Two words.
+                [&(path.len() as u16 / 2).to_le_bytes()[..], &path].concat()
+            }
+            InterfaceConfiguration::ATTRIBUTE => self.present.emit(),
+            // The host's name: none.
+            6 => vec![0, 0],
+            _ => return None,
+        };
+        Some(bytes)
+    }
+
+    /// All of them, in their order.
+    pub(super) fn interface_all(&self) -> Vec<u8> {
+        (1..=6).filter_map(|attribute| self.interface(attribute)).flatten().collect()
+    }
+
+    /// Sets an attribute of the TCP/IP object.
+    pub(super) fn set(&mut self, attribute: u16, data: &[u8]) -> Result<Vec<u8>, GeneralStatus> {
+        match attribute {
+            ConfigurationControl::ATTRIBUTE => {
+                let control = ConfigurationControl::parse(data).map_err(wrong)?;
+                if matches!(control.source(), AddressSource::Unknown(_)) {
+                    return Err(GeneralStatus::INVALID_VALUE);
+                }
+                // From another source to what is stored: that is the present address then (reference 1).
+                if control.source() == AddressSource::Stored && self.control.source() != AddressSource::Stored {
+                    self.stored = self.present.clone();
+                }
+                self.control = control;
+            }
+            InterfaceConfiguration::ATTRIBUTE => {
+                let configuration = InterfaceConfiguration::parse(data).map_err(wrong)?;
+                if self.control.source() != AddressSource::Stored {
+                    return Err(GeneralStatus::STATE);
+                }
+                (self.present, self.stored) = (configuration.clone(), configuration);
+            }
+            1 | 2 | 4 | 6 => return Err(GeneralStatus::NOT_SETTABLE),
+            _ => return Err(GeneralStatus::NO_ATTRIBUTE),
+        }
+        Ok(Vec::new())
+    }
+
+    /// An attribute of the Ethernet link.
+    pub(super) fn link(&self, attribute: u16) -> Option<Vec<u8>> {
+        match attribute {
+            1 => Some(MEGABITS.to_le_bytes().to_vec()),
+            2 => Some(LINK_UP.to_le_bytes().to_vec()),
+            3 => Some(self.mac.to_vec()),
+            _ => None,
+        }
+    }
+
+    /// All of them, in their order.
+    pub(super) fn link_all(&self) -> Vec<u8> {
+        (1..=3).filter_map(|attribute| self.link(attribute)).flatten().collect()
+    }
+}
+
+fn dhcp() -> ConfigurationControl {
+    ConfigurationControl::default().with(AddressSource::Dhcp)
+}

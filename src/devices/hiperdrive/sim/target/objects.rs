@@ -1,0 +1,143 @@
+//! What CIP asks of the objects: identity, parameters (reference 7), and those of the network.
+
+use super::plant::Plant;
+use crate::buses::ethernet_ip::protocol::{
+    ConfigurationControl, GeneralStatus, Identity, LogicalKind, PacketError, Path, Reply, Request, Revision, Segment,
+    Service,
+};
+use crate::devices::hiperdrive::protocol::{Access, ParameterNumber, ParameterRow, VENDOR, Value};
+
+/// A communications adapter, of ODVA's list.
+const DEVICE_TYPE: u16 = 0x0C;
+/// Chosen (`U`).
+const PRODUCT_CODE: u16 = 1;
+const REVISION: Revision = Revision { major: 1, minor: 2 };
+/// Bits 7 to 4 of the status word: no cyclic connection, and one that runs; bit 0: it has an owner.
+const NOT_CONNECTED: u16 = 0x0030;
+const CONNECTED: u16 = 0x0061;
+const ETHERNET_LINK: u16 = 0xF6;
+/// Of the device; that of drive n is n more.
+const PARAMETERS: u16 = 0x64;
+/// The attribute can only be set.
+const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
+
+type Answer = Result<Vec<u8>, GeneralStatus>;
+
+impl Plant {
+    /// What an object replies.
+    pub(super) fn object(&mut self, request: &Request) -> Reply {
+        match self.ask(request) {
+            Ok(data) => request.done(data),
+            Err(status) => request.refused(status),
+        }
+    }
+
+    pub(super) fn identity(&mut self) -> Identity {
+        let topology = self.station.topology();
+        let serial = ParameterNumber::new(17).and_then(|number| self.station.read(self.now, number).ok());
+        Identity {
+            vendor: VENDOR,
+            device_type: DEVICE_TYPE,
+            product_code: PRODUCT_CODE,
+            revision: REVISION,
+            status: if self.connections.has_cyclic() { CONNECTED } else { NOT_CONNECTED },
+            serial_number: match serial {
+                // 16 bits.
+                Some(Value::Number(number)) => number as u32,
+                _ => 0,
+            },
+            product_name: topology.category().to_owned(),
+        }
+    }
+
+    fn ask(&mut self, request: &Request) -> Answer {
+        let (class, attribute) = object(&request.path)?;
+        match class {
+            Identity::CLASS => {
+                let identity = self.identity();
+                read(request, attribute, identity.emit_all(), |number| identity.attribute(number))
+            }
+            ConfigurationControl::CLASS if request.service == Service::SET => {
+                self.network.set(attribute.ok_or(GeneralStatus::NO_ATTRIBUTE)?, &request.data)
+            }
+            ConfigurationControl::CLASS => {
+                let network = &self.network;
+                read(request, attribute, network.interface_all(), |number| network.interface(number))
+            }
+            ETHERNET_LINK => read(request, attribute, self.network.link_all(), |number| self.network.link(number)),
+            class => self.parameter(request, class, attribute),
+        }
+    }
+
+    fn parameter(&mut self, request: &Request, class: u16, attribute: Option<u16>) -> Answer {
+        let places = u16::from(self.station.topology().drives());
+        if !(PARAMETERS..=PARAMETERS + places).contains(&class) {
+            return Err(GeneralStatus::PATH_UNKNOWN);
+        }
+        if ![Service::GET, Service::SET].contains(&request.service) {
+            return Err(GeneralStatus::NO_SERVICE);
+        }
+        let number = attribute.and_then(|attribute| ParameterNumber::of_attribute(class, attribute));
+        let (number, row) =
+            number.and_then(|number| Some((number, number.row()?))).ok_or(GeneralStatus::NO_ATTRIBUTE)?;
+        if request.service == Service::GET { self.get(number, row) } else { self.set(number, row, &request.data) }
+    }
+
+    fn get(&mut self, number: ParameterNumber, row: &ParameterRow) -> Answer {
+        if row.access == Access::Write {
+            return Err(NOT_GETTABLE);
+        }
+        let value = self.station.read(self.now, number).map_err(|refused| refused.status())?;
+        let data = row.kind.emit(&value).map_err(|_| GeneralStatus::STATE)?;
+        // Texts are short.
+        let length = (self.counted_texts && row.kind.length().is_none()).then_some(data.len() as u8);
+        Ok(length.into_iter().chain(data).collect())
+    }
+
+    fn set(&mut self, number: ParameterNumber, row: &ParameterRow, data: &[u8]) -> Answer {
+        let length = row.kind.length().filter(|_| row.access != Access::Read).ok_or(GeneralStatus::NOT_SETTABLE)?;
+        if data.len() < length {
+            return Err(GeneralStatus::TOO_SHORT);
+        }
+        let value = row.kind.parse(data).map_err(|_| GeneralStatus::TOO_LONG)?;
+        self.station.write(self.now, number, &value).map_err(|refused| refused.status())?;
+        if (number, value) == (ParameterNumber::SAVE, Value::Number(-3)) {
+            self.network.factory();
+        }
+        Ok(Vec::new())
+    }
+}
+
+/// Class and attribute of a path to the only instance of an object.
+pub(super) fn object(path: &Path) -> Result<(u16, Option<u16>), GeneralStatus> {
+    let understood = |segment: &Segment| match segment {
+        Segment::Logical { kind, .. } => *kind != LogicalKind::ConnectionPoint,
+        _ => false,
+    };
+    if !path.0.iter().all(understood) {
+        return Err(GeneralStatus::new(0x04));
+    }
+    let class = path.number(LogicalKind::Class).filter(|_| path.number(LogicalKind::Instance) == Some(1));
+    Ok((class.ok_or(GeneralStatus::PATH_UNKNOWN)?, path.number(LogicalKind::Attribute)))
+}
+
+/// What bytes that are not what they should be come back with.
+pub(super) const fn wrong(error: PacketError) -> GeneralStatus {
+    match error {
+        PacketError::Short { .. } => GeneralStatus::TOO_SHORT,
+        PacketError::Long { .. } => GeneralStatus::TOO_LONG,
+        PacketError::Value { .. } => GeneralStatus::INVALID_VALUE,
+    }
+}
+
+/// Reads an object that is not set.
+fn read(request: &Request, attribute: Option<u16>, all: Vec<u8>, one: impl FnOnce(u16) -> Option<Vec<u8>>) -> Answer {
+    let found = attribute.and_then(one);
+    match request.service {
+        Service::GET_ALL => Ok(all),
+        Service::GET => found.ok_or(GeneralStatus::NO_ATTRIBUTE),
+        Service::SET if found.is_some() => Err(GeneralStatus::NOT_SETTABLE),
+        Service::SET => Err(GeneralStatus::NO_ATTRIBUTE),
+        _ => Err(GeneralStatus::NO_SERVICE),
+    }
+}

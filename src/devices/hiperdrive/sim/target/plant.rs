@@ -1,0 +1,190 @@
+//! What all connections to a target have in common: its time, who has a session, what its faults do to it.
+
+use std::collections::BTreeMap;
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::time::Duration;
+
+use fastrand::Rng;
+
+use super::super::config::Config;
+use super::super::station::Station;
+use super::Figures;
+use super::connections::Connections;
+use super::network::Network;
+use crate::buses::ethernet_ip::protocol::{Command, EXPLICIT_PORT, Frame, IMPLICIT_PORT};
+use crate::devices::hiperdrive::protocol::ByteOrder;
+use crate::sim::Faults;
+use crate::sim::line::Queue;
+use crate::units::Moment;
+
+/// The device with all that is connected to it.
+#[derive(Debug)]
+pub(super) struct Plant {
+    pub(super) station: Station,
+    pub(super) network: Network,
+    pub(super) connections: Connections,
+    pub(super) order: ByteOrder,
+    pub(super) counted_texts: bool,
+    /// Where it is reached.
+    pub(super) listens: SocketAddrV4,
+    /// Where cyclic data are taken.
+    pub(super) udp: u16,
+    pub(super) figures: Figures,
+    pub(super) now: Moment,
+    /// Whose they are, by their numbers.
+    pub(super) sessions: BTreeMap<u32, Originator>,
+    pub(super) datagrams: Queue<(SocketAddrV4, Vec<u8>)>,
+    pub(super) rng: Rng,
+    faults: Faults,
+    /// Frames and datagrams.
+    heard: u32,
+    originators: u64,
+}
+
+/// Who is at the other end of a TCP connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Originator {
+    number: u64,
+    pub(super) address: Ipv4Addr,
+}
+
+/// Between a frame and its reply.
+const REPLY: Duration = Duration::from_millis(1);
+
+impl Plant {
+    pub(super) fn new(config: &Config) -> Self {
+        Plant {
+            station: Station::of(config),
+            network: Network::new(config.switch, config.serial_number),
+            connections: Connections::default(),
+            order: config.order,
+            counted_texts: config.counted_texts,
+            listens: SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, EXPLICIT_PORT),
+            udp: IMPLICIT_PORT,
+            figures: Figures::default(),
+            now: Moment::START,
+            sessions: BTreeMap::new(),
+            datagrams: Queue::default(),
+            rng: Rng::with_seed(config.seed),
+            faults: config.faults.clone(),
+            heard: 0,
+            originators: 0,
+        }
+    }
+
+    pub(super) const fn originator(&mut self, address: Ipv4Addr) -> Originator {
+        self.originators += 1;
+        Originator { number: self.originators, address }
+    }
+
+    pub(super) fn set_faults(&mut self, faults: &Faults) {
+        self.station.die_in_store(faults.die_in_store());
+        self.faults = faults.clone();
+    }
+
+    /// What is due by then happens.
+    pub(super) fn advance(&mut self, now: Moment) {
+        self.now = self.now.max(now);
+        self.produce();
+        self.connections.forget_silent(self.now);
+        if self.station.is_dead(self.now) {
+            self.disconnect();
+        }
+    }
+
+    /// A frame that came over TCP; its reply with when it leaves, if there is one and it gets through.
+    pub(super) fn take(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
+        self.advance(now);
+        self.figures.frames += 1;
+        if !self.hears() {
+            return None;
+        }
+        let reply = self.answer(from, frame)?;
+        let leaves = self.station.answers_at().map_or(self.now, |at| at.max(self.now));
+        let bytes = self.carry(reply.emit()).filter(|_| !self.station.is_cut_off())?;
+        Some((leaves + REPLY + self.faults.delay(), bytes))
+    }
+
+    /// Whether the TCP connection stays open behind this frame.
+    pub(super) fn keeps(&self, frame: &Frame) -> bool {
+        frame.command != Command::UNREGISTER_SESSION
+    }
+
+    /// Its TCP connection is gone, and with it its session and what lives in that.
+    pub(super) fn leave(&mut self, originator: Originator) {
+        let own: Vec<u32> = self.sessions.iter().filter(|(_, whose)| **whose == originator).map(|(s, _)| *s).collect();
+        own.into_iter().for_each(|session| self.end(session));
+    }
+
+    pub(super) fn end(&mut self, session: u32) {
+        self.sessions.remove(&session);
+        self.connections.end(session);
+    }
+
+    /// What lost its supply gets it back.
+    pub(super) fn supply(&mut self, now: Moment) {
+        self.advance(now);
+        if self.station.is_dead(self.now) {
+            self.power_cycle();
+        }
+    }
+
+    pub(super) fn power_cycle(&mut self) {
+        self.station.power_cycle(self.now);
+        self.network.power_up();
+        self.disconnect();
+    }
+
+    fn disconnect(&mut self) {
+        self.sessions.clear();
+        self.connections = Connections::after(&self.connections);
+        self.datagrams = Queue::default();
+    }
+
+    /// Something has come: whether it is heard.
+    pub(super) fn hears(&mut self) -> bool {
+        let speaks = self.speaks();
+        self.heard = self.heard.saturating_add(1);
+        speaks && !self.station.is_dead(self.now)
+    }
+
+    /// It has not fallen silent.
+    pub(super) fn speaks(&self) -> bool {
+        !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
+    }
+
+    /// A datagram gets through to it.
+    pub(super) fn arrives(&mut self) -> bool {
+        self.faults.passage(&mut self.rng, 0).carried.is_some()
+    }
+
+    /// Ethernet brings a packet whole or not at all: what happens to a byte of a serial line happens to all of them.
+    pub(super) fn carry(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
+        let passage = self.faults.passage(&mut self.rng, 0);
+        let carried = passage.carried?;
+        if passage.inserted.is_some() {
+            bytes.iter_mut().for_each(|byte| *byte = self.rng.u8(..));
+        } else if carried.flipped
+            && let Some(byte) = self.rng.choice(&mut bytes)
+        {
+            *byte ^= carried.byte;
+        }
+        Some(bytes)
+    }
+
+    /// A datagram leaves at that moment, if it gets through.
+    pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
+        if let Some(bytes) = self.carry(bytes) {
+            self.datagrams.insert(at + self.faults.delay(), (to, bytes));
+        }
+    }
+
+    pub(super) fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)> {
+        self.advance(now);
+        std::iter::from_fn(|| self.datagrams.pop_until(self.now)).collect()
+    }
+
+    pub(super) fn poll_datagrams_at(&self) -> Option<Moment> {
+        [self.datagrams.due(), self.connections.due()].into_iter().flatten().min()
+    }
+}

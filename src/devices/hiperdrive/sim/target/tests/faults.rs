@@ -1,0 +1,124 @@
+//! What goes wrong on purpose.
+
+use super::*;
+
+const GET_107: &str = "0E 03 20 65 24 01 30 6B";
+const SAVE: &str = "10 03 20 64 24 01 30 2F 01 00";
+
+fn get(host: &mut Host) -> Option<(u32, Vec<u8>)> {
+    host.frame(0x6F, &unconnected(&bytes(GET_107)))
+}
+
+#[test]
+fn saving_keeps_and_what_was_not_saved_is_forgotten() {
+    let mut host = Host::new("");
+    let (get, set) = ("0E 03 20 65 24 01 30 A6", "10 03 20 65 24 01 30 A6 C8 00");
+    host.asks(set, "90 00 00 00");
+    host.target.power_cycle();
+    assert_eq!(host.frame(0x6F, &unconnected(&bytes(get))).map(|(status, _)| status), Some(0x64));
+    host.register();
+    host.asks(get, "8E 00 00 00 5E 01");
+    host.asks(set, "90 00 00 00");
+    host.asks(SAVE, "90 00 00 00");
+    host.wait(200);
+    host.target.power_cycle();
+    host.register();
+    host.asks(get, "8E 00 00 00 C8 00");
+    // −1 and −2 are about the adapter's own parameters: 166 is the drive's.
+    for recall in ["10 03 20 64 24 01 30 2F FF FF", "10 03 20 64 24 01 30 2F FE FF"] {
+        host.asks(recall, "90 00 00 00");
+        host.wait(200);
+        host.asks(get, "8E 00 00 00 C8 00");
+    }
+    // −3 saves as well.
+    host.asks("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
+    host.wait(200);
+    host.target.power_cycle();
+    host.register();
+    host.asks(get, "8E 00 00 00 5E 01");
+    assert_eq!(host.target.with(|station| station.stores()), 2);
+}
+
+/// Half of what is saved is there when the supply comes back: by their numbers, 152 but not 186.
+#[test]
+fn the_supply_is_lost_in_a_save() {
+    let mut host = Host::new("fault=die-in-store:2");
+    host.asks(SAVE, "90 00 00 00");
+    host.wait(200);
+    for set in ["10 03 20 65 24 01 30 98 00", "10 03 20 65 24 01 30 BA 0A 00"] {
+        host.asks(set, "90 00 00 00");
+    }
+    assert_eq!(host.open(OPEN), OPENED);
+    host.asks(SAVE, "90 00 00 00");
+    host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
+    host.datagrams();
+    host.wait(100);
+    assert_eq!(get(&mut host), None);
+    host.target.on_datagram(host.now, FROM, &frame(0x63, 0, &[]));
+    host.wait(1000);
+    assert_eq!((host.datagrams(), get(&mut host)), (vec![], None));
+    // It comes back with whoever connects.
+    host.target.connect(host.now);
+    assert_eq!(get(&mut host).map(|(status, _)| status), Some(0x64));
+    host.register();
+    host.asks("0E 03 20 65 24 01 30 98", "8E 00 00 00 00");
+    host.asks("0E 03 20 65 24 01 30 BA", "8E 00 00 00 14 00");
+    host.asks(SAVE, "90 00 00 00");
+    host.wait(200);
+    host.asks(GET_107, "8E 00 00 00 00 00 00 00");
+}
+
+/// Behind so many frames and packets it neither answers nor hears: its drives lose their master.
+#[test]
+fn a_silent_target_does_not_act_either() {
+    // RegisterSession, ForwardOpen and the fifteen packets that set it going.
+    let mut host = Host::opened("fault=silent-after:17");
+    host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
+    host.wait(10);
+    assert!(host.status().is_some());
+    for sequence in 16..40 {
+        host.word(sequence, 0x0479);
+        host.wait(10);
+    }
+    assert_eq!((host.status(), get(&mut host)), (None, None));
+    let stands = host.target.with(|station| {
+        let drive = crate::devices::hiperdrive::protocol::DriveNumber::FIRST;
+        station.drive(drive).map(|drive| drive.actual(host.now).speed)
+    });
+    assert_eq!(stands, Some(0));
+}
+
+#[test]
+fn replies_and_packets_get_lost_or_damaged() {
+    let mut late = Host::bare("fault=delay:7");
+    assert_eq!(late.bytes(&bytes(REGISTER)), [0; 0]);
+    late.wait(3);
+    assert_eq!(late.target.poll(late.now).len(), 28);
+
+    let mut lossy = Host::bare("fault=drop:1");
+    assert_eq!(lossy.bytes(&bytes(REGISTER)), [0; 0]);
+    lossy.target.on_datagram(lossy.now, FROM, &frame(0x63, 0, &[]));
+    assert_eq!((lossy.datagrams(), lossy.target.figures().frames), (vec![], 1));
+
+    for (fault, damaged) in [("flip:1", 1..2), ("garbage:1", 30..224)] {
+        let mut noisy = Host::new("");
+        noisy.target.set_faults(&fault.parse().unwrap());
+        let reply = noisy.bytes(&frame(0x64, 0, &[]));
+        let whole = frame(0x64, 0, &[0, 0]);
+        let bits: u32 = reply.iter().zip(&whole).map(|(got, sent)| (got ^ sent).count_ones()).sum();
+        assert_eq!(reply.len(), whole.len());
+        assert!(damaged.contains(&bits), "{fault}: {bits}");
+    }
+}
+
+/// A fifth of the packets is lost both ways: the connection lives, as eight in a row would have to be.
+#[test]
+fn a_lossy_line_is_no_lost_master() {
+    let mut host = Host::opened("seed=3");
+    host.target.set_faults(&"drop:0.2".parse().unwrap());
+    host.words(1, &[0x0400; 100]);
+    let came = host.datagrams().len();
+    assert!((180..300).contains(&came), "{came} of some 300");
+    let figures = host.target.figures();
+    assert!((180..300).contains(&figures.packets), "{figures:?}");
+}

@@ -1,0 +1,168 @@
+//! What goes wrong, what it looks like, and the way out (reference 3, 4 and 7).
+
+use super::*;
+use crate::devices::hiperdrive::protocol::{ACKNOWLEDGE, State, UNLOCK};
+
+/// What an operational drive says after a fault: 2AB8, with ZSW12 and 10 as they were.
+fn is_fault(bench: &mut Bench) -> bool {
+    bench.actual(FIRST).status.word() & 0x2AFF == 0x2AB8
+}
+
+/// Leads out of a fault by the recipe of the reference; every step is done when the next one comes.
+fn acknowledge(bench: &mut Bench) {
+    for step in ACKNOWLEDGE {
+        bench.word(step.word.word());
+        let status = bench.actual(FIRST).status;
+        assert!(step.is_done(status), "{:04X}: {:04X}", step.word.word(), status.word());
+    }
+}
+
+#[test]
+fn a_blocked_drive_fails_and_comes_back() {
+    for (target, wall, code) in [
+        (655_360, Load { wall_above: Some(30_000.0), ..Load::default() }, ErrorCode::BLOCK_FORWARD),
+        (-655_360, Load { wall_below: Some(-30_000.0), ..Load::default() }, ErrorCode::BLOCK_REVERSE),
+    ] {
+        let mut bench = Bench::single();
+        bench.load(wall);
+        bench.start(target);
+        bench.run(2000);
+        assert!(is_fault(&mut bench), "{:04X}", bench.actual(FIRST).status.word());
+        assert_eq!((bench.error(), bench.position().abs()), (code, 30_000));
+        assert_eq!(bench.read(197), Value::Number(1));
+        acknowledge(&mut bench);
+        assert_eq!(bench.read(197), Value::Number(0));
+        assert_eq!(bench.error(), code, "the buffer keeps it");
+        // The job is gone; a new one away from the wall runs.
+        bench.out[FIRST].target = 0;
+        bench.words(&[0x0439, 0x0479]);
+        bench.run(2000);
+        assert_eq!(bench.position(), 0);
+    }
+}
+
+/// 26 % of torque are 50, which is too little for 60.
+#[test]
+fn a_weak_drive_does_not_follow() {
+    let mut bench = Bench::single();
+    bench.load(Load { percent: 60, ..Load::default() });
+    bench.out[FIRST].torque = 26;
+    bench.start(65_536);
+    bench.run(1000);
+    assert!(is_fault(&mut bench));
+    assert_eq!((bench.error(), bench.position()), (ErrorCode::FOLLOWING, 0));
+    acknowledge(&mut bench);
+    bench.out[FIRST].torque = 51;
+    bench.words(&[0x0439, 0x0479]);
+    bench.run(3000);
+    assert_eq!(bench.position(), 65_536);
+}
+
+/// 50 °C around it and 40 K of its own at full torque: above 80 °C after 60 s · ln 4 = 83 s of moving.
+#[test]
+fn a_hot_drive_fails() {
+    let hot = Load { ambient: 50.0, ..Load::default() };
+    let mut bench = Bench::new(Setup { drives: vec![Some((Variant::new(13), hot))], ..Setup::default() });
+    assert_eq!(bench.read(119), Value::Number(50));
+    bench.enable();
+    bench.words(&[0x1419, 0x1459]);
+    bench.run(80_000);
+    assert_eq!(bench.actual(FIRST).status.state(), State::Moving);
+    bench.run(5000);
+    assert!(is_fault(&mut bench));
+    assert_eq!(bench.error(), ErrorCode::OVER_TEMPERATURE);
+}
+
+/// Reference 9: a target beyond the limits; the newest error is first.
+#[test]
+fn a_target_beyond_the_limits_is_a_fault() {
+    let mut bench = Bench::single();
+    bench.enable();
+    // 512 turns, where 511 are the limit.
+    bench.out[FIRST].target = 33_554_432;
+    bench.words(&[0x0439, 0x0479]);
+    assert!(is_fault(&mut bench));
+    assert_eq!((bench.error(), bench.position()), (ErrorCode::INVALID_TARGET, 0));
+    let now = bench.now;
+    bench.drive().fail(now, ErrorCode::OVER_CURRENT);
+    assert_eq!(bench.error(), ErrorCode::OVER_CURRENT);
+    assert_eq!(bench.read(109), Value::Number(0x8503));
+    assert_eq!((bench.read(110), bench.read(197)), (Value::Number(0), Value::Number(2)));
+    assert_ne!(bench.actual(FIRST).status.word() & 0x4000, 0, "over-current is a bit of its own");
+    acknowledge(&mut bench);
+    assert_eq!(bench.actual(FIRST).status.word() & 0x4080, 0);
+    (0..20).for_each(|_| bench.drive().fail(now, ErrorCode::SINCOS));
+    assert_eq!(bench.read(115), Value::Number(0x8502));
+}
+
+/// Below operational something that goes wrong is a warning, which 197 = 0 takes away.
+#[test]
+fn a_drive_that_is_not_on_warns() {
+    let mut bench = Bench::single();
+    let now = bench.now;
+    bench.drive().fail(now, ErrorCode::RS485);
+    assert_eq!(bench.actual(FIRST).status.word(), 0x2AB0);
+    assert_eq!(bench.write(197, 0), Ok(()));
+    assert_eq!(bench.actual(FIRST).status.word(), 0x2A30);
+}
+
+/// Reference 3: where bit 0 has fallen before the acknowledgement, the lock needs a fall of its own.
+#[test]
+fn the_lock_needs_an_edge() {
+    let mut bench = Bench::single();
+    bench.enable();
+    let now = bench.now;
+    bench.drive().fail(now, ErrorCode::CONTROL_LOOP);
+    assert_eq!(bench.words(&[0x0480, 0x0400]), 0x2A70);
+    assert_eq!(bench.word(0x0400), 0x2A70);
+    assert_eq!(bench.words(&UNLOCK.map(|step| step.word.word())), 0x2A31);
+}
+
+/// Reference 7 and 3: 40 ms without a packet, and 100 ms to brake; not a matter of who looks when.
+#[test]
+fn a_lost_master_stops_all_drives() {
+    for looks in [&[][..], &[10, 39, 40, 41, 200]] {
+        let mut bench = Bench::single();
+        bench.start(655_360);
+        bench.run(500);
+        let at = |ms| Duration::from_millis(ms);
+        // The last packet came 10 ms ago.
+        let last = bench.now - at(10);
+        for ms in looks {
+            assert_eq!(bench.station.is_open(last + at(*ms)), *ms < 40, "{ms} ms");
+        }
+        let braked = bench.station.image(last + at(140)).drives[FIRST];
+        let later = bench.station.image(last + at(5000)).drives[FIRST];
+        assert_eq!((braked.speed, later.position), (0, braked.position));
+        assert_eq!(later.status.state(), State::Fault);
+        bench.now = last + at(5000);
+        assert_eq!(bench.error(), ErrorCode::CONNECTION_TIMEOUT);
+        // What comes without a connection is dropped; after another one it takes an acknowledgement.
+        bench.run(500);
+        assert!(!bench.station.is_open(bench.now));
+        bench.station.open(bench.now, at(40));
+        bench.out[FIRST].control = 0x0439;
+        bench.run(500);
+        assert_eq!(bench.position(), later.position);
+        acknowledge(&mut bench);
+    }
+}
+
+/// An idle master stops the drive and is not lost; one that closes the connection is.
+#[test]
+fn an_idle_master_and_one_that_goes() {
+    let mut bench = Bench::single();
+    bench.start(655_360);
+    bench.run(500);
+    for _ in 0..20 {
+        let image = OutImage { drives: bench.out.clone(), pkw: None };
+        bench.station.cyclic(bench.now, &image, false);
+        bench.now = bench.now + Duration::from_millis(10);
+    }
+    assert_eq!(bench.actual(FIRST).status.word(), 0x2A30);
+    assert!(bench.station.is_open(bench.now));
+    bench.enable();
+    bench.station.close(bench.now);
+    assert_eq!(bench.actual(FIRST).status.state(), State::Fault);
+    assert!(!bench.station.is_open(bench.now));
+}

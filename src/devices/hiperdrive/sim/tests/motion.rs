@@ -1,0 +1,218 @@
+//! Jobs, runs, steps: how they begin, and what ends them (reference 3).
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::devices::hiperdrive::protocol::State;
+
+/// Reference 3 and 9: the start sequence with its status words. 2.5 turns at 35 rpm, of which 0.1 s each are for speeding up
+/// and slowing down (0.0583 turns): 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
+#[test]
+fn the_published_start_sequence() {
+    let mut bench = Bench::single();
+    for (control, status) in [(0x0000, 0x2A30), (0x0400, 0x2A31), (0x0401, 0x2A33), (0x0409, 0x2A37), (0x0439, 0x2A37)]
+    {
+        assert_eq!(format!("{:04X}", bench.word(control)), format!("{status:04X}"), "{control:04X}");
+    }
+    bench.out[FIRST].target = 163_840;
+    assert_eq!(bench.word(0x0479), 0x1A37);
+    let took = 30 + bench.until(0x3E37);
+    assert!((4370..=4420).contains(&took), "{took} ms");
+    assert_eq!((bench.position(), bench.actual(FIRST).speed), (163_840, 0));
+    // The next job: another target, and bit 6 the other way.
+    bench.out[FIRST].target = -65_536;
+    assert_eq!(bench.word(0x0439), 0x0A37);
+    bench.until(0x2E37);
+    assert_eq!(bench.position(), -65_536);
+    // The same bit again is none.
+    bench.out[FIRST].target = 0;
+    assert_eq!(bench.word(0x0439), 0x2E37);
+    assert_eq!(bench.word(0x0000), 0x2A30);
+}
+
+/// One step of the state machine follows another while the word stays; a word with reserved bits is as if it had not come.
+#[test]
+fn a_word_leads_as_far_as_it_can() {
+    let mut bench = Bench::single();
+    assert_eq!(bench.word(0x0409), 0x2A37);
+    assert_eq!(bench.word(0x2000), 0x2A37);
+    assert_eq!(bench.word(0x0400), 0x2A31);
+}
+
+/// A stop ends a job for good, in a tenth of a second; a pause does not. Speed is what was asked for.
+#[test]
+fn jobs_are_stopped_and_paused() {
+    let mut bench = Bench::single();
+    bench.out[FIRST].speed = 50;
+    bench.start(655_360);
+    bench.run(500);
+    // 50 % of 35 rpm, in tenths.
+    assert_eq!(bench.actual(FIRST).speed, 175);
+    bench.out[FIRST].control = 0x0459;
+    bench.run(200);
+    let paused = bench.actual(FIRST);
+    assert_eq!((paused.status.word(), paused.speed), (0x3A37, 0));
+    bench.run(500);
+    assert_eq!(bench.position(), paused.position);
+    assert_eq!(bench.word(0x0479), 0x1A37, "it goes on");
+    bench.run(500);
+    bench.out[FIRST].control = 0x0469;
+    bench.run(200);
+    let stopped = bench.actual(FIRST);
+    assert_eq!((stopped.status.word(), stopped.speed), (0x3A37, 0));
+    // Bit 4 comes back: bit 6 is as it was acknowledged.
+    bench.out[FIRST].control = 0x0479;
+    bench.run(500);
+    assert_eq!(bench.position(), stopped.position);
+}
+
+/// Reference 3: whatever takes operation away ends the motion.
+#[test]
+fn what_is_not_enabled_does_not_move() {
+    for control in [0x0401, 0x0400, 0x0000, 0x0008] {
+        let mut bench = Bench::single();
+        bench.start(655_360);
+        bench.run(300);
+        bench.out[FIRST].control = control;
+        bench.run(200);
+        let actual = bench.actual(FIRST);
+        assert_eq!((actual.speed, actual.status.word() & 0x2004), (0, 0x2000), "{control:04X}");
+        // The way back is no start.
+        bench.words(&[0x0400, 0x0401, 0x0409]);
+        assert_eq!(bench.position(), actual.position, "{control:04X}");
+    }
+}
+
+/// Reference 3 and 9: what has to be there for a start.
+#[test]
+fn what_a_start_needs() {
+    for (speed, torque) in [(0, 100), (100, 0)] {
+        let mut bench = Bench::single();
+        bench.enable();
+        (bench.out[FIRST].speed, bench.out[FIRST].torque, bench.out[FIRST].target) = (speed, torque, 65_536);
+        assert_eq!(bench.words(&[0x0439, 0x0479]), 0x2A37);
+        assert_eq!((bench.position(), bench.error()), (0, ErrorCode::NONE));
+    }
+}
+
+/// Reference 3: a run ends at the range, an endless one does not; clearing bit 12 after it is a job to a stale target, and
+/// 0400 is the way out.
+#[test]
+fn speed_mode_and_its_trap() {
+    let mut bench = Bench::single();
+    assert_eq!((bench.write(160, 65_536), bench.write(158, -65_536)), (Ok(()), Ok(())));
+    bench.enable();
+    assert_eq!(bench.word(0x1419), 0x2A37);
+    assert_eq!(bench.word(0x1459), 0x1A37);
+    bench.until(0x3A37);
+    assert_eq!(bench.position(), 65_536, "the end of the range");
+    assert_eq!(bench.words(&[0x1419, 0x1459]), 0x3A37);
+    assert_eq!(bench.position(), 65_536, "nowhere to run");
+    bench.word(0x1419);
+    // ZSW12 is set, bit 6 clear, the target 0 where nobody wants to go.
+    assert_eq!(bench.word(0x0439), 0x0A37);
+    bench.until(0x2E37);
+    assert_eq!(bench.position(), 0);
+    bench.words(&[0x1409, 0x1449]);
+    bench.run(300);
+    let running = bench.actual(FIRST);
+    assert!(running.speed < 0 && running.status.state() == State::Moving, "{running:?}");
+    bench.out[FIRST].control = 0x1409;
+    bench.run(200);
+    let stopped = bench.position();
+    assert_eq!(bench.words(&[0x0400, 0x0401, 0x0409, 0x0439]), 0x2A37);
+    assert_eq!(bench.position(), stopped);
+    // Endless: past the end, which the status tells.
+    bench.words(&[0x1439, 0x1479]);
+    bench.run(4000);
+    let actual = bench.actual(FIRST);
+    assert!(actual.position > 65_536 && actual.status.word() & 0x8000 != 0, "{actual:?}");
+}
+
+/// Reference 3 and 5: 4096 steps, which bit 4 does not stop; 16 of them are a turn.
+#[test]
+fn a_jog_step_runs_to_its_end() {
+    let mut bench = Bench::single();
+    bench.enable();
+    bench.word(0x0509);
+    bench.out[FIRST].control = 0x0409;
+    bench.run(500);
+    assert_eq!(bench.position(), 4096);
+    bench.word(0x0609);
+    bench.run(500);
+    assert_eq!(bench.position(), 0);
+    assert_eq!((bench.write(170, 65_536), bench.write(172, 10)), (Ok(()), Ok(())));
+    bench.word(0x0509);
+    bench.run(1000);
+    // 10 % of 35 rpm, whatever the process data say.
+    assert_eq!(bench.actual(FIRST).speed, 35);
+}
+
+/// Reference 4: drives of a hub come without being requested, and move one by one.
+#[test]
+fn a_hub_moves_what_is_requested() {
+    let mut bench = Bench::hub();
+    bench.out[1].target = 65_536;
+    let both = |bench: &mut Bench, control| {
+        (bench.out[0].control, bench.out[1].control) = (control, control);
+        bench.run(30);
+        [0, 1, 2].map(|drive| bench.actual(drive).status.word())
+    };
+    assert_eq!(both(&mut bench, 0x0400), [0x2A30, 0x2A30, 0]);
+    assert_eq!(bench.write(252, 1), Ok(()));
+    assert_eq!(both(&mut bench, 0x0401), [0x2A30, 0x2A33, 0]);
+    both(&mut bench, 0x0409);
+    both(&mut bench, 0x0439);
+    assert_eq!(both(&mut bench, 0x0479), [0x2A30, 0x1A37, 0]);
+    bench.run(3000);
+    assert_eq!([0, 1].map(|drive| bench.actual(drive).position), [0, 65_536]);
+    // S3 at a drive: nothing begins.
+    bench.station.turn_s3(bench.now, 2);
+    bench.out[1].target = 0;
+    both(&mut bench, 0x0439);
+    bench.run(500);
+    assert_eq!(bench.actual(1).position, 65_536);
+}
+
+/// However often somebody looks, the same happens.
+#[test]
+fn time_passes_the_same_in_any_portions() {
+    let run = |portions: &[u64]| {
+        let mut drive = Drive::new(Variant::new(7), Topology::Adapter, Load::default());
+        let at = |ms| Moment::START + Duration::from_millis(ms);
+        let out = OutData { control: 0x0479, speed: 80, torque: 50, target: 100_000 };
+        drive.command(at(0), out);
+        for ms in portions {
+            drive.actual(at(*ms));
+        }
+        drive.actual(at(1500))
+    };
+    let whole = run(&[]);
+    let fine: Vec<u64> = (0..1500).collect();
+    assert_eq!(run(&fine), whole);
+    assert_eq!(run(&[3, 700, 699, 1499]), whole);
+    assert!(whole.speed == 280 && whole.position > 0, "{whole:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever is sent: no panic, and but for endless runs no motion beyond the range.
+    #[test]
+    fn whatever_is_sent(
+        sent in prop::collection::vec((any::<u16>(), 0u8..=120, 0u8..=120, -200_000i32..200_000, 1u64..400), 1..60)
+    ) {
+        let mut bench = Bench::single();
+        prop_assert_eq!((bench.write(160, 100_000), bench.write(158, -50_000)), (Ok(()), Ok(())));
+        for (control, speed, torque, target, ms) in sent {
+            // Mostly words that a host might send, and never an endless run.
+            let control = if control & 1 == 0 { control & 0x17FF } else { 0x0409 | control & 0x0270 };
+            let control = if control & 0x1020 == 0x1020 { control & !0x0020 } else { control };
+            bench.out[FIRST] = OutData { control, speed, torque, target };
+            bench.run(ms);
+            let actual = bench.actual(FIRST);
+            prop_assert!((-50_000..=100_000).contains(&actual.position), "{:?}", actual);
+            prop_assert!(actual.status.is_present() && actual.status.is_plausible());
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What the user asks of a device and its drives, carried out: edits and motion at once, everything else as a job on its line
+//! or a task.
+
+use super::action::{Action, Motor};
+use super::staged::Edit;
+use super::unit::Unit;
+use super::words;
+use crate::app::services::Services;
+use crate::app::session::{Saved, WithMemory};
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::jobs::HiperdriveJob;
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Wish};
+use crate::devices::hiperdrive::profile::HiperdriveProfile;
+use crate::profile::Body;
+
+impl Unit {
+    /// Does what is asked.
+    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+        match action {
+            // The studio opens links, and knows other sessions.
+            Action::Reconnect | Action::WriteInto(_) => {}
+            Action::Read => {
+                if !self.session.read_file_again(services) {
+                    self.submit(HiperdriveJob::Survey, services);
+                }
+            }
+            Action::ReadStatus => {
+                self.submit(HiperdriveJob::Status, services);
+            }
+            Action::Check => {
+                self.submit(HiperdriveJob::Check, services);
+            }
+            Action::ReadPosition => {
+                self.submit(HiperdriveJob::Position(self.drive()), services);
+            }
+            Action::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            Action::SelectDrive(drive) => {
+                if self.drives().contains(&drive) {
+                    self.show_drive(drive);
+                    self.watch(services);
+                }
+            }
+            Action::SetMeasure(measure) => self.measure = measure,
+            Action::SetPitch(drive, pitch) => {
+                match pitch.filter(|own| own.nanometres > 0) {
+                    Some(pitch) => self.pitches.insert(drive, pitch),
+                    None => self.pitches.remove(&drive),
+                };
+                let ruler = self.ruler(drive);
+                if ruler.of(0, self.measure).is_none() {
+                    self.measure = super::Measure::default();
+                }
+            }
+            Action::Edit(edit) => self.edit(&edit),
+            Action::Undo => {
+                self.staged.undo();
+                self.refusal = None;
+            }
+            Action::Redo => {
+                self.staged.redo();
+                self.refusal = None;
+            }
+            Action::RevertAll => {
+                self.staged.revert();
+                self.refusal = None;
+            }
+            Action::Review => self.review_edits(services),
+            Action::Plan(change) => self.plan(*change, services),
+            Action::Take => self.take_control(services),
+            Action::Give => {
+                self.moves.stop();
+                self.submit(HiperdriveJob::Give, services);
+            }
+            Action::Drive(motor) => self.drive_by(motor, services),
+            Action::Axis(action) => self.act_axis(action, services),
+            Action::AskSave => self.session.ask_where_to_save(services),
+            Action::Save(path) => self.save(path, services),
+            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// What moves a drive: refused in words where it may not be, so that nobody waits for a motion that does not come.
+    fn drive_by(&mut self, motor: Motor, services: &mut Services) {
+        let drive = self.drive();
+        let wish = match motor {
+            Motor::JogHold => return self.moves.hold(),
+            Motor::JogRelease => return self.moves.release(),
+            Motor::Stop => return self.moves.stop(),
+            Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
+            Motor::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
+            Motor::Expert(expert) => return self.moves.set_expert(drive, expert),
+            Motor::FreeOutward(direction) => return self.free_outward(drive, direction, services),
+            Motor::ConfirmLimits(drive) => {
+                self.confirm_limits(drive, services);
+                return;
+            }
+            Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
+            Motor::JogPress { direction, .. } => {
+                let outward = self.moves.is_freed(drive, direction);
+                Wish::Jog { direction, effort: self.moves.jog_effort(drive), outward }
+            }
+            Motor::SlowJogPress { direction, .. } => {
+                let outward = self.moves.is_freed(drive, direction);
+                Wish::Jog { direction, effort: Effort::JOG, outward }
+            }
+            Motor::Lead(goal) => Wish::Lead(goal),
+            Motor::Acknowledge => Wish::Acknowledge,
+            Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort(drive) },
+            Motor::Move { target } => Wish::Move { target, effort: self.moves.move_effort(drive) },
+            Motor::Run { direction, end } => Wish::Run { direction, end, effort: self.moves.move_effort(drive) },
+            Motor::Pause => Wish::Pause,
+            Motor::Resume => Wish::Resume,
+        };
+        if let Err(why) = self.may(drive, wish) {
+            // What was under way goes on: nothing else has begun.
+            return self.tell_of(drive, Severity::Warning, vec![why], services);
+        }
+        match wish {
+            Wish::Jog { .. } => self.moves.press(drive, wish),
+            _ => {
+                self.moves.want(drive, wish);
+            }
+        }
+    }
+
+    /// Opens the cyclic connection; from then on the drive that is shown is seen all the time.
+    fn take_control(&mut self, services: &mut Services) {
+        if let Err(why) = self.can_take() {
+            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+            return;
+        }
+        self.submit(HiperdriveJob::Take, services);
+    }
+
+    pub(super) fn edit(&mut self, edit: &Edit) {
+        self.refusal = match self.session.is_writing() {
+            true => Some(Text::new("session.busy")),
+            false => self.staged.edit(edit).err().map(|error| words::refused(&error)),
+        };
+    }
+
+    /// Starts a job, or says why not and gives false.
+    pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
+        self.session.submit(job, services)
+    }
+
+    /// A profile was read for a file.
+    pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
+        self.notice_scales(&profile.image);
+        self.staged.refresh_some(&profile.image);
+        let edits = self.is_dirty().then(|| self.edits());
+        self.session.write_read(Body::new(profile), edits, Vec::new(), services);
+    }
+}

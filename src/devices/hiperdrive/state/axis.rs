@@ -1,0 +1,338 @@
+//! The set-up of an axis as one run: from a drive that nobody has asked for to limits in millimetres that have survived the
+//! supply. A state machine over what is read ([`Seen`]) and what is to be done ([`Ask`]); it does nothing itself, and no step
+//! goes on before its drive says what the step is about.
+//!
+//! What the steps have made sure of is a chain: each result rests on facts of the drive (its scale, the pitch, the reference,
+//! the limits), and falls with them and with all that come after it, whoever changed them. The step that is shown is another
+//! matter: only a press of a person leaves it.
+//!
+//! Parameters are tried, which means that they are written and read back, but not saved: that is a step of its own, the last
+//! but one. The manual does not promise that what was not saved is gone without supply: what is wanted back is written back.
+
+mod act;
+mod chain;
+mod differences;
+mod entries;
+mod follow;
+mod gate;
+mod places;
+mod report;
+mod seen;
+mod standstill;
+mod supply;
+pub mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use act::{Action, Ask, Button};
+pub use entries::{Entries, Preview, Reference};
+pub use places::{Outcome, Place, Travel};
+pub use report::{Device, end_lines, report};
+pub use seen::Seen;
+pub use supply::{Power, Restart};
+
+use super::ruler::Ruler;
+use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
+use chain::{Basis, Chain, Origin};
+use standstill::Standstill;
+
+/// A step of the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Step {
+    /// The drive is requested: parameter 152.
+    Request,
+    /// Pitch and resolution become parameters 154 and 156.
+    Scale,
+    /// The limits that hold for the set-up are looked at, in millimetres.
+    Confirm,
+    /// The axis is moved slowly, to see which way is +.
+    Jog,
+    /// The place where it stands gets its position: parameter 198.
+    Reference,
+    /// The lower limit is taught.
+    Lower,
+    /// The upper limit is taught, and both are written: parameters 158 and 160.
+    Upper,
+    /// It is moved between the limits, and to both.
+    Test,
+    /// Everything is saved: 47 = 1.
+    Save,
+    /// The supply is switched off and on.
+    PowerCycle,
+}
+
+/// How far a step is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// It is over.
+    Done,
+    /// It counts now.
+    Now,
+    /// It was left out.
+    Skipped,
+    /// It did not hold.
+    Failed,
+    /// It comes later.
+    Ahead,
+}
+
+/// How the run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// To its end.
+    Done,
+    /// Somebody has cancelled it.
+    Cancelled,
+}
+
+/// What has been changed, in its order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// A parameter, by the number of drive 1.
+    Parameter(u16, i64),
+    /// The position of a place.
+    Position(i32),
+}
+
+/// The end of a run: how, when, and what was known then.
+#[derive(Clone, Debug)]
+pub struct Over {
+    /// How.
+    pub end: End,
+    /// The time, as it is written.
+    pub when: String,
+    seen: Box<Seen>,
+}
+
+/// Limits that a person has agreed to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Confirmed {
+    scale: Option<PositionScale>,
+    /// Those that were looked at.
+    seen: (i32, i32),
+    /// Those, or the ones that were taught and written since by a plan that was looked at.
+    agreed: (i32, i32),
+    /// Taught ones of such a plan that was broken off: each of them may be there.
+    begun: Option<(i32, i32)>,
+}
+
+/// The run for one drive.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    drive: DriveNumber,
+    /// Which one is shown.
+    step: Step,
+    /// What is typed.
+    entries: Entries,
+    /// What was made sure of.
+    chain: Chain,
+    confirmed: Option<Confirmed>,
+    travel: Travel,
+    /// The position that the place got, and what places count from since.
+    reference: Option<(i32, Origin)>,
+    /// One that is written, and to be read.
+    sets: Option<i32>,
+    standstill: Standstill,
+    /// How often the position jumped at a standstill.
+    jumps: u32,
+    /// Steps by which the position changed while it was not read, since the reference.
+    unexplained: Option<i64>,
+    outcomes: [Option<Outcome>; 3],
+    /// The test move under way: where it leads, and the act that began it.
+    going: Option<(Place, i32, u64)>,
+    saved: bool,
+    power: Option<Power>,
+    changes: Vec<Change>,
+    /// Not all of the changes may have been made.
+    partly: bool,
+    /// What was written back.
+    returned: Vec<(u16, i64)>,
+    /// What is being written.
+    asked: Option<Ask>,
+    over: Option<Over>,
+}
+
+impl Step {
+    /// All steps in their order.
+    pub const ALL: [Step; 10] = [
+        Step::Request,
+        Step::Scale,
+        Step::Confirm,
+        Step::Jog,
+        Step::Reference,
+        Step::Lower,
+        Step::Upper,
+        Step::Test,
+        Step::Save,
+        Step::PowerCycle,
+    ];
+
+    /// It needs the cyclic connection.
+    pub const fn moves(self) -> bool {
+        matches!(self, Step::Jog | Step::Reference | Step::Lower | Step::Upper | Step::Test)
+    }
+
+    /// The drive is moved by hand in it.
+    pub const fn jogs(self) -> bool {
+        matches!(self, Step::Jog | Step::Reference | Step::Lower | Step::Upper)
+    }
+
+    /// It may be left out.
+    pub const fn may_be_skipped(self) -> bool {
+        matches!(self, Step::Reference | Step::PowerCycle)
+    }
+
+    /// Its place, from 0.
+    pub const fn index(self) -> usize {
+        // In the order of `ALL`.
+        self as usize
+    }
+
+    fn beside(self, by: isize) -> Option<Step> {
+        Step::ALL.get(self.index().checked_add_signed(by)?).copied()
+    }
+}
+
+impl Axis {
+    /// At its beginning, with what is known of the spindle.
+    pub fn new(drive: DriveNumber, ruler: Option<Ruler>) -> Self {
+        Axis {
+            drive,
+            step: Step::Request,
+            entries: Entries::new(ruler),
+            chain: Chain::default(),
+            confirmed: None,
+            travel: Travel::default(),
+            reference: None,
+            sets: None,
+            standstill: Standstill::default(),
+            jumps: 0,
+            unexplained: None,
+            outcomes: [None; 3],
+            going: None,
+            saved: false,
+            power: None,
+            changes: Vec::new(),
+            partly: false,
+            returned: Vec::new(),
+            asked: None,
+            over: None,
+        }
+    }
+
+    /// Whose it is.
+    pub const fn drive(&self) -> DriveNumber {
+        self.drive
+    }
+
+    /// The step that is shown.
+    pub const fn step(&self) -> Step {
+        self.step
+    }
+
+    /// What is typed.
+    pub const fn entries(&self) -> &Entries {
+        &self.entries
+    }
+
+    /// How it ended; `None`: it goes on.
+    pub fn end(&self) -> Option<End> {
+        self.over.as_ref().map(|over| over.end)
+    }
+
+    /// Its end, with the time.
+    pub const fn over(&self) -> Option<&Over> {
+        self.over.as_ref()
+    }
+
+    /// What was known at its end; before that, what is.
+    pub fn as_seen<'a>(&'a self, now: &'a Seen) -> &'a Seen {
+        self.over.as_ref().map_or(now, |over| &over.seen)
+    }
+
+    /// What was changed, the first first.
+    pub fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
+    /// A write ended early: some of the changes may not have been made.
+    pub const fn is_partly_written(&self) -> bool {
+        self.partly
+    }
+
+    /// All that was changed is saved.
+    pub const fn is_saved(&self) -> bool {
+        self.saved
+    }
+
+    /// Something is being written for it.
+    pub const fn is_writing(&self) -> bool {
+        self.asked.is_some()
+    }
+
+    /// How far the axis was moved by hand.
+    pub const fn travel(&self) -> Travel {
+        self.travel
+    }
+
+    /// The position that was set.
+    pub fn reference(&self) -> Option<i32> {
+        self.reference.map(|(position, _)| position)
+    }
+
+    /// What came of a test move.
+    pub fn outcome(&self, place: Place) -> Option<Outcome> {
+        self.outcomes.get(place as usize).copied().flatten()
+    }
+
+    /// The test move under way.
+    pub fn going(&self) -> Option<Place> {
+        self.going.map(|(place, ..)| place)
+    }
+
+    /// What came of the supply.
+    pub const fn power(&self) -> Option<Power> {
+        self.power
+    }
+
+    /// An earlier step whose result the drive does not have any more: it has to be done again, and all behind it.
+    pub fn fallen(&self) -> Option<Step> {
+        self.chain.end().filter(|step| *step < self.step)
+    }
+
+    /// How far each step is.
+    pub fn reached(&self, step: Step) -> Reached {
+        let is_shown = step == self.step && self.over.is_none();
+        match step {
+            Step::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => Reached::Failed,
+            _ if self.fallen() == Some(step) => Reached::Failed,
+            _ if is_shown => Reached::Now,
+            _ if self.chain.is_skipped(step) => Reached::Skipped,
+            _ if self.chain.holds(step) => Reached::Done,
+            _ => Reached::Ahead,
+        }
+    }
+
+    /// The supply was off, what was saved is there, and the axis stands where it stood.
+    pub fn survived(&self) -> bool {
+        self.power.is_some_and(Power::is_survived)
+    }
+
+    fn origin(&self, seen: &Seen) -> Origin {
+        Origin::of(seen, self.jumps)
+    }
+
+    /// The facts of now on which results rest.
+    fn basis(&self, seen: &Seen) -> Basis {
+        Basis {
+            requested: seen.requested,
+            scale: seen.scale,
+            pitch: seen.pitch,
+            confirmed: self.is_confirmed(seen),
+            origin: self.origin(seen),
+            limits: seen.limits,
+            lower: self.entries.lower(seen.ruler()).ok(),
+        }
+    }
+}

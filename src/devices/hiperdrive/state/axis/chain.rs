@@ -1,0 +1,104 @@
+//! What the set-up has made sure of, step by step. Each result keeps the facts of the drive that it rests on. Where one of
+//! them is another by now, whoever changed it, the result falls, and with it all that come after it.
+
+use super::differences::REFERENCE;
+use super::{Seen, Step};
+use crate::devices::hiperdrive::protocol::{Length, PositionScale};
+
+/// What the numbers of places count from: the position that was set last (198), how often one was set from here, and how often
+/// the position jumped at a standstill, by which alone a reference that was set again at the same number shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Origin {
+    set: Option<i64>,
+    times: u32,
+    jumps: u32,
+}
+
+/// The facts on which results rest, at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Basis {
+    pub(super) requested: Option<bool>,
+    pub(super) scale: Option<PositionScale>,
+    pub(super) pitch: Option<Length>,
+    /// The limits of the drive are confirmed under this scale.
+    pub(super) confirmed: bool,
+    pub(super) origin: Origin,
+    pub(super) limits: Option<(i32, i32)>,
+    /// The lower limit as it is taught.
+    pub(super) lower: Option<i32>,
+}
+
+/// The result of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Made {
+    on: Basis,
+    /// It was left out.
+    skipped: bool,
+}
+
+/// Results, from the first step on without a gap.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chain(Vec<Made>);
+
+impl Origin {
+    pub(super) fn of(seen: &Seen, jumps: u32) -> Self {
+        Origin { set: seen.values.get(&REFERENCE).copied(), times: seen.times_set, jumps }
+    }
+}
+
+impl Chain {
+    /// The first step that has no result; `None`: all of them have.
+    pub(super) fn end(&self) -> Option<Step> {
+        Step::ALL.get(self.0.len()).copied()
+    }
+
+    /// A step has a result.
+    pub(super) fn holds(&self, step: Step) -> bool {
+        step.index() < self.0.len()
+    }
+
+    /// A step was left out.
+    pub(super) fn is_skipped(&self, step: Step) -> bool {
+        self.0.get(step.index()).is_some_and(|made| made.skipped)
+    }
+
+    /// A step has a result now. The same as before leaves those behind it; another one lets them fall: true.
+    pub(super) fn make(&mut self, step: Step, on: Basis, skipped: bool) -> bool {
+        let made = Made { on, skipped };
+        let before = self.0.get(step.index()).copied();
+        if before.is_some_and(|before| before.skipped == skipped && is_same(step, &before.on, &on)) {
+            return false;
+        }
+        if step.index() <= self.0.len() {
+            self.0.truncate(step.index());
+            self.0.push(made);
+        }
+        before.is_some()
+    }
+
+    /// Lets fall what does not rest on the facts of now any more: the first step of those.
+    pub(super) fn fall(&mut self, now: &Basis) -> Option<Step> {
+        let stands = |(step, made): (&Step, &Made)| stands(*step, &made.on, now);
+        let left = Step::ALL.iter().zip(&self.0).take_while(|own| stands(*own)).count();
+        let fallen = (left < self.0.len()).then(|| Step::ALL.get(left).copied()).flatten();
+        self.0.truncate(left);
+        fallen
+    }
+}
+
+/// Whether the drive's own facts of a step are what they were. Those of earlier steps are looked at there.
+fn stands(step: Step, on: &Basis, now: &Basis) -> bool {
+    match step {
+        Step::Request => now.requested == Some(true),
+        Step::Scale => (on.scale, on.pitch) == (now.scale, now.pitch),
+        Step::Confirm => now.confirmed,
+        Step::Reference => on.origin == now.origin,
+        Step::Upper => on.limits == now.limits,
+        Step::Jog | Step::Lower | Step::Test | Step::Save | Step::PowerCycle => true,
+    }
+}
+
+/// Whether a result is the same as the one before.
+fn is_same(step: Step, before: &Basis, now: &Basis) -> bool {
+    stands(step, before, now) && (step != Step::Lower || before.lower == now.lower)
+}

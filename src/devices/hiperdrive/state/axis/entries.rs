@@ -1,0 +1,159 @@
+//! What is typed in the set-up of an axis: pitch and resolution, the position of a place, both limits; and what comes of it.
+
+use super::{Seen, words};
+use crate::app::number::within;
+use crate::app::texts::signed;
+use crate::app::{Language, Text};
+use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, nearest_reference};
+use crate::devices::hiperdrive::state::ruler::{Beyond, Measure, Ruler};
+
+/// What is typed, in millimetres.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Entries {
+    /// Of the spindle, a turn.
+    pub pitch: String,
+    /// Of a step.
+    pub resolution: String,
+    /// Of the place where the axis stands.
+    pub reference: String,
+    /// The lower limit.
+    pub lower: String,
+    /// The upper limit.
+    pub upper: String,
+}
+
+/// What pitch and resolution come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preview {
+    /// Parameters 154 and 156.
+    pub scale: PositionScale,
+    /// How they measure.
+    pub ruler: Ruler,
+    /// The limits that hold for the set-up: as far as the drive turns.
+    pub lower: i32,
+    /// As `lower`.
+    pub upper: i32,
+    /// What the limits of now would be under the new scale, in millimetres, if nobody changed their numbers.
+    pub unchanged: Option<(f64, f64)>,
+}
+
+/// What setting a position comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reference {
+    /// As typed.
+    pub asked: i32,
+    /// As the drive takes it: a multiple of 64 steps.
+    pub becomes: i32,
+}
+
+impl Entries {
+    /// As they begin: with what is known of the spindle. No pitch is proposed: one that nobody confirmed would measure wrong.
+    pub(super) fn new(ruler: Option<Ruler>) -> Self {
+        let known = ruler.and_then(|own| Some((own.pitch?, own)));
+        let pitch = known.map(|(pitch, _)| trimmed(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
+        let step = known.filter(|(_, own)| own.scale != PositionScale::FACTORY);
+        let resolution = step.and_then(|(_, own)| own.of(1, Measure::Millimetres)).map(trimmed);
+        let resolution = resolution.unwrap_or_else(|| "0.01".to_owned());
+        Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
+    }
+
+    /// The same with the language's decimal sign, in which numbers are shown beside them.
+    pub fn shown(&self, language: Language) -> Self {
+        let shown = |text: &String| signed(text, language);
+        Entries {
+            pitch: shown(&self.pitch),
+            resolution: shown(&self.resolution),
+            reference: shown(&self.reference),
+            lower: shown(&self.lower),
+            upper: shown(&self.upper),
+        }
+    }
+
+    /// Of the spindle.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn pitch(&self) -> Result<Length, Text> {
+        length("hd_axis.pitch", &self.pitch, 1000.0)
+    }
+
+    /// What pitch and resolution come to.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn preview(&self, seen: &Seen) -> Result<Preview, Text> {
+        let (pitch, step) = (self.pitch()?, length("hd_axis.resolution", &self.resolution, 100.0)?);
+        let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
+        let ruler = Ruler { scale, pitch: Some(pitch) };
+        let turns = seen.family.unwrap_or(Family::Short).factory_turns();
+        // Steps too fine for 32 bits leave a part of the way out.
+        let lower = scale.steps_of_turns(-turns).unwrap_or(i32::MIN);
+        let upper = scale.steps_of_turns(turns).unwrap_or(i32::MAX);
+        let unchanged = seen.limits.and_then(|(low, high)| {
+            let mm = |steps: i32| ruler.of(steps.into(), Measure::Millimetres);
+            Some((mm(low)?, mm(high)?))
+        });
+        Ok(Preview { scale, ruler, lower, upper, unchanged })
+    }
+
+    /// What the place where the axis stands would get.
+    ///
+    /// # Errors
+    /// In words, also where it is not within the limits.
+    pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<Reference, Text> {
+        let asked = position("hd_axis.reference", &self.reference, ruler)?;
+        let (low, high) = limits.ok_or_else(|| Text::new("hd_axis.unread"))?;
+        let becomes = nearest_reference(asked).filter(|own| (low..=high).contains(own));
+        let becomes = becomes.ok_or_else(|| {
+            let mm = |steps: i32| words::millimetres(ruler, steps.into());
+            Text::new("hd_axis.reference_outside").with_text("low", mm(low)).with_text("high", mm(high))
+        })?;
+        Ok(Reference { asked, becomes })
+    }
+
+    /// The lower limit.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn lower(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
+        position("hd_axis.lower", &self.lower, ruler)
+    }
+
+    /// The upper limit.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn upper(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
+        position("hd_axis.upper", &self.upper, ruler)
+    }
+}
+
+/// A number without zeros at its end.
+fn trimmed(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Steps as they are typed: with as many decimals as tell one from another.
+pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
+    let decimals = ruler.decimals(Measure::Millimetres);
+    Some(format!("{:.decimals$}", ruler.of(steps.into(), Measure::Millimetres)?))
+}
+
+fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
+    let millimetres = within(what, text, 0.001, most)?;
+    // At least a thousand, at most a thousand million.
+    Ok(Length { nanometres: (millimetres * 1e6).round() as u64 })
+}
+
+fn position(what: &'static str, text: &str, ruler: Option<Ruler>) -> Result<i32, Text> {
+    let ruler = ruler.ok_or_else(|| Text::new("hd_axis.unread"))?;
+    let value = within(what, text, -1e6, 1e6)?;
+    ruler.steps(value, Measure::Millimetres).map_err(|why| match why {
+        Beyond::NoPitch => Text::new("hd_axis.unread"),
+        Beyond::Bits { least, most } => Text::new("hd_axis.beyond")
+            .with_text("what", Text::new(what))
+            .with_number("least", least, 0)
+            .with_number("most", most, 0),
+    })
+}

@@ -1,0 +1,241 @@
+//! What can be pressed in the set-up of an axis, what that asks for, and what is missing before the next step.
+
+use super::supply::{MARK, Power, Restart, is_marked, mark};
+use super::{Ask, Axis, Button, Place, Seen, Step, differences, words};
+use crate::app::Text;
+use crate::devices::hiperdrive::procedures::dead_man::Lock;
+use crate::devices::hiperdrive::protocol::State;
+use crate::devices::hiperdrive::state::explain as explained;
+
+impl Axis {
+    /// What pressing would ask for.
+    ///
+    /// # Errors
+    /// Why it cannot be pressed now.
+    pub fn ask(&self, button: Button, seen: &Seen) -> Result<Ask, Text> {
+        if !seen.connected {
+            return Err(Text::new("hd_axis.not_connected"));
+        }
+        if seen.busy || self.asked.is_some() {
+            return Err(Text::new("hd_axis.busy"));
+        }
+        if seen.stale && button != Button::Give {
+            return Err(Text::new("hd_axis.unread"));
+        }
+        let stands = || if seen.moves { Err(Text::new("hd_axis.moving")) } else { Ok(()) };
+        match button {
+            Button::Take | Button::Give if seen.controlled == (button == Button::Take) => {
+                Err(Text::new("hd_axis.already"))
+            }
+            Button::Take => Ok(Ask::Take),
+            Button::Give => stands().map(|()| Ask::Give),
+            Button::Recall => {
+                stands()?;
+                let back = differences::to_write_back(seen);
+                match (back.is_empty(), differences::is_place_other(seen)) {
+                    (false, _) => Ok(Ask::Restore(back)),
+                    (true, false) => Err(Text::new("hd_axis.nothing_back")),
+                    (true, true) => Err(Text::new("hd_axis.place_left")),
+                }
+            }
+            _ if self.over.is_some() => Err(Text::new("hd_axis.over")),
+            Button::Acknowledge if !seen.controlled => Err(Text::new("hd_axis.no_control")),
+            Button::Acknowledge if !seen.has_failed() => Err(Text::new("hd_axis.no_fault")),
+            Button::Acknowledge => Ok(Ask::Acknowledge),
+            _ if let Some(step) = self.fallen() => Err(words::fallen(step)),
+            Button::Do => stands().and_then(|()| self.ask_of_step(seen)),
+            Button::Confirm => match (seen.scale, seen.limits) {
+                (Some(_), Some(_)) => Ok(Ask::ConfirmLimits),
+                _ => Err(Text::new("hd_axis.unread")),
+            },
+            Button::Widen => {
+                let preview = self.entries.preview(seen)?;
+                stands().map(|()| Ask::Try(vec![(158, preview.lower.into()), (160, preview.upper.into())]))
+            }
+            Button::Go(place) => {
+                self.may_move(seen)?;
+                stands().and_then(|()| self.target(place, seen).map(Ask::Move))
+            }
+            Button::PowerCycle if !seen.is_virtual => Err(Text::new("hd_axis.not_virtual")),
+            Button::PowerCycle if seen.controlled => Err(Text::new("hd_axis.give_first")),
+            Button::PowerCycle => Ok(Ask::PowerCycle),
+            Button::Restarted => match self.power {
+                Some(Power::Back { restart: Restart::Unproven, .. }) => Ok(Ask::BelieveRestart),
+                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(Text::new("hd_axis.not_restarted")),
+                Some(Power::Back { .. }) => Err(Text::new("hd_axis.already")),
+                _ => Err(Text::new("hd_axis.needs_power")),
+            },
+        }
+    }
+
+    /// What the step itself does to the drive.
+    fn ask_of_step(&self, seen: &Seen) -> Result<Ask, Text> {
+        match self.step {
+            Step::Request if seen.requested == Some(true) => Err(Text::new("hd_axis.already")),
+            Step::Request => Ok(Ask::Try(vec![(152, 1)])),
+            Step::Scale => {
+                let preview = self.entries.preview(seen)?;
+                if seen.scale == Some(preview.scale) {
+                    return Err(Text::new("hd_axis.already"));
+                }
+                let (numerator, denominator) = (preview.scale.numerator(), preview.scale.denominator());
+                let (low, high) = (preview.lower, preview.upper);
+                let all = [(154, numerator.into()), (156, denominator.into()), (158, low.into()), (160, high.into())];
+                Ok(Ask::Try(all.to_vec()))
+            }
+            Step::Reference => {
+                let reference = self.entries.reference(seen.ruler(), seen.limits)?;
+                Ok(Ask::SetPosition(reference.becomes))
+            }
+            Step::Upper => {
+                let (low, high) = self.taught(seen)?;
+                if seen.limits == Some((low, high)) {
+                    return Err(Text::new("hd_axis.already"));
+                }
+                Ok(Ask::Try(vec![(158, low.into()), (160, high.into())]))
+            }
+            Step::Save => Ok(Ask::Save),
+            Step::PowerCycle => match (self.power, is_marked(seen), mark()) {
+                (Some(Power::On(_) | Power::Back { restart: Restart::Unproven, .. }), Some(false), Some(mark)) => {
+                    Ok(Ask::Try(vec![(MARK, mark)]))
+                }
+                _ => Err(Text::new("hd_axis.already")),
+            },
+            Step::Confirm | Step::Jog | Step::Lower | Step::Test => Err(Text::new("hd_axis.already")),
+        }
+    }
+
+    /// Both limits as they were taught, and where the axis stands between them.
+    fn taught(&self, seen: &Seen) -> Result<(i32, i32), Text> {
+        let ruler = seen.ruler();
+        let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
+        let mm = |steps: i32| words::millimetres(ruler, steps.into());
+        if low >= high {
+            return Err(Text::new("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
+        }
+        let position = seen.position.ok_or_else(|| Text::new("hd_axis.no_position"))?;
+        if !(low..=high).contains(&position) {
+            let outside = Text::new("hd_axis.outside").with_text("position", mm(position));
+            return Err(outside.with_text("low", mm(low)).with_text("high", mm(high)));
+        }
+        Ok((low, high))
+    }
+
+    /// Why the axis must not be moved.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn may_move(&self, seen: &Seen) -> Result<(), Text> {
+        if !seen.connected {
+            return Err(Text::new("hd_axis.not_connected"));
+        }
+        if !seen.controlled {
+            return Err(Text::new("hd_axis.no_control"));
+        }
+        if self.asked.is_some() {
+            return Err(Text::new("hd_axis.busy"));
+        }
+        if let Some(step) = self.fallen() {
+            return Err(words::fallen(step));
+        }
+        match seen.actual.map(|actual| actual.status.state()) {
+            Some(State::Fault) => return Err(Text::new("hd_refused.fault")),
+            Some(State::Locked) => return Err(Text::new("hd_refused.lock")),
+            _ => {}
+        }
+        match seen.locks.first() {
+            Some(lock) => Err(explained::lock(*lock)),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the place where the axis stands can become a limit.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_take_place(&self, seen: &Seen) -> Result<(), Text> {
+        if let Some(step) = self.fallen() {
+            return Err(words::fallen(step));
+        }
+        if self.asked.is_some() {
+            return Err(Text::new("hd_axis.busy"));
+        }
+        if seen.moves {
+            return Err(Text::new("hd_axis.moving"));
+        }
+        seen.position.map(|_| ()).ok_or_else(|| Text::new("hd_axis.no_position"))
+    }
+
+    /// Whether the step can be left out now.
+    pub fn may_skip(&self, seen: &Seen) -> bool {
+        self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.fallen().is_none()
+    }
+
+    /// Whether the step that counts is done, so that the next one may come.
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn may_go_on(&self, seen: &Seen) -> Result<(), Text> {
+        let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(Text::new(id)) };
+        if self.asked.is_some() {
+            return Err(Text::new("hd_axis.busy"));
+        }
+        if seen.moves {
+            return Err(Text::new("hd_axis.moving"));
+        }
+        if let Some(step) = self.fallen() {
+            return Err(words::fallen(step));
+        }
+        match self.step {
+            Step::Request => {
+                lacks(seen.requested == Some(true), "hd_axis.needs_request")?;
+                lacks(seen.actual.is_some_and(|own| own.status.is_present()), "hd_axis.needs_drive")
+            }
+            Step::Scale => {
+                let preview = self.entries.preview(seen)?;
+                lacks(seen.scale == Some(preview.scale), "hd_axis.needs_scale")
+            }
+            Step::Confirm => lacks(self.is_confirmed(seen), "hd_axis.needs_confirm"),
+            Step::Jog => {
+                lacks(self.travel.up > 0, "hd_axis.needs_up")?;
+                lacks(self.travel.down > 0, "hd_axis.needs_down")
+            }
+            Step::Reference => {
+                let is_set = self.reference.is_some_and(|(_, origin)| origin == self.origin(seen));
+                lacks(is_set || self.chain.holds(Step::Reference), "hd_axis.needs_reference")
+            }
+            Step::Lower => self.entries.lower(seen.ruler()).map(|_| ()),
+            Step::Upper => {
+                let taught = self.taught(seen)?;
+                lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
+            }
+            Step::Test => {
+                let reached = |place| self.outcome(place).is_some_and(|own| own.is_good());
+                lacks(Place::ALL.into_iter().all(reached), "hd_axis.needs_test")
+            }
+            Step::Save => lacks(self.saved, "hd_axis.needs_save"),
+            Step::PowerCycle => match self.power {
+                Some(Power::Back { restart: Restart::Unproven, .. }) => Err(Text::new("hd_axis.needs_proof")),
+                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(Text::new("hd_axis.not_restarted")),
+                _ => lacks(self.survived(), "hd_axis.needs_power"),
+            },
+        }
+    }
+
+    /// A person has agreed to the limits that the drive has, under the scale that it has.
+    pub(super) fn is_confirmed(&self, seen: &Seen) -> bool {
+        let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
+        let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));
+        let are_agreed = (low == agreed.0 || low == begun.0) && (high == agreed.1 || high == begun.1);
+        own.scale == seen.scale && are_agreed && !seen.locks.contains(&Lock::LimitsUnconfirmed)
+    }
+
+    /// Where a test move leads.
+    ///
+    /// # Errors
+    /// Without limits.
+    pub fn target(&self, place: Place, seen: &Seen) -> Result<i32, Text> {
+        let (low, high) = seen.limits.ok_or_else(|| Text::new("hd_axis.unread"))?;
+        Ok(place.between(low, high))
+    }
+}

@@ -1,0 +1,91 @@
+//! How far an axis was moved by hand, and the three places that the test moves to.
+
+use super::Seen;
+use crate::devices::hiperdrive::procedures::dead_man::Ended;
+use crate::devices::hiperdrive::protocol::Direction;
+
+/// Where a test move leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Place {
+    /// In the middle of the range.
+    Middle,
+    /// To the lower limit.
+    Lower,
+    /// To the upper limit.
+    Upper,
+}
+
+/// What came of a test move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Where it led.
+    pub target: i32,
+    /// Where the drive stood when it was over.
+    pub position: i32,
+    /// How it ended.
+    pub ended: Ended,
+    /// So many steps beside the target are allowed: 1° (reference 5, repeatability).
+    pub allowed: i64,
+}
+
+/// How far an axis was moved by hand, in steps. Only what it turns under a held pad counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Travel {
+    /// The farthest up while a pad was held once; 0 until that can be told from nothing.
+    pub up: i64,
+    /// The farthest down.
+    pub down: i64,
+    /// Turning clockwise counts up; `None`: not seen yet.
+    pub clockwise_is_up: Option<bool>,
+    /// The act that moves it, and where it was at its beginning.
+    from: Option<(u64, i32)>,
+}
+
+impl Place {
+    /// All of them, as they are moved to.
+    pub const ALL: [Place; 3] = [Place::Middle, Place::Lower, Place::Upper];
+
+    /// The steps between two limits.
+    pub const fn between(self, low: i32, high: i32) -> i32 {
+        match self {
+            Place::Middle => low.midpoint(high),
+            Place::Lower => low,
+            Place::Upper => high,
+        }
+    }
+}
+
+impl Outcome {
+    /// Steps between target and position.
+    pub fn missed(&self) -> i64 {
+        i64::from(self.position) - i64::from(self.target)
+    }
+
+    /// It is there.
+    pub fn is_good(&self) -> bool {
+        self.ended == Ended::Arrived && self.missed().abs() <= self.allowed
+    }
+}
+
+impl Travel {
+    /// The drive is somewhere. Less than a 64th of a turn is not told from nothing.
+    pub(super) fn note(&mut self, seen: &Seen) {
+        let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
+            self.from = None;
+            return;
+        };
+        let Some((_, from)) = self.from.filter(|(own, _)| *own == act) else {
+            self.from = Some((act, position));
+            return;
+        };
+        let grain = (scale.steps_per_turn() / 64.0).max(1.0) as i64;
+        let way = i64::from(position) - i64::from(from);
+        if way.abs() < grain {
+            return;
+        }
+        self.up = self.up.max(way);
+        self.down = self.down.max(-way);
+        self.clockwise_is_up = Some((way > 0) == (direction == Direction::Clockwise));
+    }
+}

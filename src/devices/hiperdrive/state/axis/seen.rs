@@ -1,0 +1,72 @@
+//! What is known of a drive while its axis is set up.
+
+use std::collections::BTreeMap;
+
+use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
+use crate::devices::hiperdrive::protocol::{Actual, Direction, ErrorCode, Family, Length, PositionScale, State};
+use crate::devices::hiperdrive::state::ruler::Ruler;
+use crate::units::Moment;
+
+/// What is known of the drive at a moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// The device answers.
+    pub connected: bool,
+    /// It is asked for something, or a review is open.
+    pub busy: bool,
+    /// Its parameters may be others than those that were read.
+    pub stale: bool,
+    /// It is a virtual one.
+    pub is_virtual: bool,
+    /// The cyclic connection is open.
+    pub controlled: bool,
+    /// Something moves, or is about to.
+    pub moves: bool,
+    /// The act of a pad that is held, and which way the drive turns by it.
+    pub held: Option<(u64, Direction)>,
+    /// What the drive said last.
+    pub actual: Option<Actual>,
+    /// When it said that, on the clock of the session; `None` where that is not known.
+    pub actual_at: Option<Moment>,
+    /// Where it is. The first packets after taking control say nothing about that.
+    pub position: Option<i32>,
+    /// Parameters of the drive as they were read, by the numbers of drive 1.
+    pub values: BTreeMap<u16, i64>,
+    /// What was saved where that is known to be something else than what was written since: the same numbers.
+    pub unsaved: BTreeMap<u16, i64>,
+    /// How often its position was set from here.
+    pub times_set: u32,
+    /// Parameter 152.
+    pub requested: Option<bool>,
+    /// Parameters 154 and 156.
+    pub scale: Option<PositionScale>,
+    /// The pitch of the spindle, where a person has confirmed one.
+    pub pitch: Option<Length>,
+    /// Parameters 158 and 160.
+    pub limits: Option<(i32, i32)>,
+    /// How far it turns.
+    pub family: Option<Family>,
+    /// Why it may not move.
+    pub locks: Vec<Lock>,
+    /// The last act of a person that is over.
+    pub ended: Option<(u64, Ended)>,
+    /// Its latest error since the acknowledgement, where it was read.
+    pub error: Option<ErrorCode>,
+}
+
+impl Seen {
+    /// What it says can be concluded from.
+    pub(super) fn is_settled(&self) -> bool {
+        self.connected && !self.busy && !self.stale
+    }
+
+    /// The drive has failed, and does not move until that is acknowledged.
+    pub fn has_failed(&self) -> bool {
+        self.actual.is_some_and(|actual| matches!(actual.status.state(), State::Fault | State::Locked))
+    }
+
+    /// How steps are measured: in millimetres where a person has confirmed a pitch.
+    pub fn ruler(&self) -> Option<Ruler> {
+        Some(Ruler { scale: self.scale?, pitch: self.pitch })
+    }
+}

@@ -1,0 +1,88 @@
+//! What the position of an axis says while it stands. Parameter 198 is the number that was written last, and no parameter tells
+//! the place where that was (manual, 198 and 107): a reference that is set again at the same number elsewhere shows only as a
+//! position that jumps although nothing moves. So two readings of an axis that stands are held against each other.
+
+use std::time::Duration;
+
+use super::Seen;
+use super::chain::Origin;
+use super::supply::READJUSTS;
+use crate::devices::hiperdrive::procedures::dead_man::SETTLE;
+use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};
+use crate::units::Moment;
+
+/// The fastest a shaft turns: the largest value of parameter 166.
+const FASTEST_RPM: f64 = 35.0;
+/// An axis that was not read for longer may have been moved meanwhile, and have come to rest.
+const UNREAD: Duration = Duration::from_secs(1);
+
+/// The axis as it stood last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Standstill {
+    last: Option<Stand>,
+    /// The connection was lost since: the clock of a session counts for that session alone.
+    interrupted: bool,
+}
+
+/// A reading of an axis that stands.
+#[derive(Clone, Copy, Debug)]
+struct Stand {
+    /// `None`: read with everything else, behind a connection that was lost.
+    at: Option<Moment>,
+    position: i32,
+    scale: PositionScale,
+    origin: Origin,
+    /// The last act of a person that was over.
+    act: Option<u64>,
+}
+
+/// A change of position that no motion explains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shift {
+    /// Farther than the shaft can turn in that time: the reference was set again.
+    Jump,
+    /// Steps by which it changed while it was not read: it was moved, or its reference was set again.
+    Unexplained(i64),
+}
+
+impl Standstill {
+    /// The connection is gone.
+    pub(super) const fn interrupt(&mut self) {
+        self.interrupted = true;
+    }
+
+    /// The drive was off, and may have been turned by hand meanwhile: the check over the supply compares that by itself.
+    pub(super) fn forget(&mut self) {
+        *self = Standstill::default();
+    }
+
+    /// Takes a reading. Returns what changed since the one before, where no motion explains it.
+    pub(super) fn note(&mut self, seen: &Seen, origin: Origin) -> Option<Shift> {
+        let (actual, position, scale, at) = (seen.actual?, seen.position?, seen.scale?, seen.actual_at);
+        if at.is_none() && !self.interrupted {
+            return None;
+        }
+        let stands = !seen.moves && actual.status.has(StatusBit::StandingStill) && actual.speed == 0;
+        let now = Stand { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
+        let is_interrupted = std::mem::take(&mut self.interrupted);
+        // Behind a motion it stands elsewhere, which says nothing.
+        let before = std::mem::replace(&mut self.last, stands.then_some(now))?;
+        let same_act = is_interrupted || stands && before.act == now.act;
+        let is_comparable = same_act && before.scale == scale && before.origin == origin;
+        if is_comparable { shift(&before, &now, is_interrupted) } else { None }
+    }
+}
+
+fn shift(before: &Stand, now: &Stand, is_interrupted: bool) -> Option<Shift> {
+    let way = i64::from(now.position) - i64::from(before.position);
+    let allowed = |degrees: f64| way.abs() <= i64::from(now.scale.steps_of_degrees(degrees));
+    // Each session has a clock of its own.
+    let elapsed = now.at.zip(before.at).filter(|_| !is_interrupted).map(|(now, before)| now.since(before));
+    let turned = |elapsed: Duration| FASTEST_RPM * 6.0 * (elapsed + SETTLE).as_secs_f64();
+    match elapsed {
+        _ if allowed(READJUSTS) => None,
+        Some(elapsed) if !allowed(READJUSTS + turned(elapsed)) => Some(Shift::Jump),
+        Some(elapsed) if elapsed <= UNREAD => None,
+        _ => Some(Shift::Unexplained(way)),
+    }
+}

@@ -1,0 +1,150 @@
+//! The check over the supply: what was before it went, what is after it came back, and what proves that it was off at all. A
+//! connection that was lost and found again proves nothing.
+
+use super::Seen;
+use crate::devices::hiperdrive::protocol::{Factory, PARAMETERS, PositionScale};
+
+/// The parameter by which a restart of the drive can be read: it is never saved, so that only a restart makes it what it is
+/// from the factory (manual, 182: the wait before the hand drive; nothing moves by it).
+pub(super) const MARK: u16 = 182;
+
+/// Degrees by which a drive may readjust its position by itself, at power-up and behind a stop (manual, 8.3).
+pub(super) const READJUSTS: f64 = 5.0;
+
+/// What is known before the supply goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Before {
+    scale: Option<PositionScale>,
+    limits: Option<(i32, i32)>,
+    position: Option<i32>,
+    /// [`MARK`] was not as from the factory.
+    marked: bool,
+}
+
+/// What says that the supply was off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Restart {
+    /// It was read: parameter 182 is as from the factory again.
+    Read,
+    /// The virtual supply was switched from here.
+    Switched,
+    /// A person said so; nothing was read that proves it.
+    Said,
+    /// Nothing: the connection was lost, which happens without that too.
+    Unproven,
+    /// It was not off: parameter 182 still has what only a restart takes away.
+    Disproved,
+}
+
+/// What came of the supply's going and coming back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Power {
+    /// The device still answers.
+    On(Before),
+    /// It has stopped answering, or its parameters were not read since.
+    Gone(Before),
+    /// It is back.
+    Back {
+        /// As it was.
+        before: Before,
+        /// What was saved is there.
+        kept: bool,
+        /// Steps between where it stood and where it stands; `None` where one of them is not known.
+        moved: Option<i64>,
+        /// So many are allowed.
+        allowed: i64,
+        /// What says that the supply was off.
+        restart: Restart,
+    },
+}
+
+impl Power {
+    pub(super) fn on(seen: &Seen) -> Self {
+        Power::On(Before::default()).followed(seen)
+    }
+
+    /// While it is on, the latest counts. As long as the mark is there, it was not off since the mark was set.
+    pub(super) fn followed(self, seen: &Seen) -> Self {
+        match self {
+            Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
+                if seen.is_settled() && is_marked(seen) == Some(true) =>
+            {
+                let before = Before { marked: true, ..before };
+                Power::Back { before, kept, moved, allowed, restart: Restart::Disproved }
+            }
+            Power::On(_) if seen.is_settled() => Power::On(Before {
+                scale: seen.scale,
+                limits: seen.limits,
+                position: seen.position,
+                marked: is_marked(seen) == Some(true),
+            }),
+            own => own,
+        }
+    }
+
+    /// It has stopped answering.
+    pub(super) const fn gone(self) -> Self {
+        match self {
+            Power::On(before) | Power::Gone(before) | Power::Back { before, .. } => Power::Gone(before),
+        }
+    }
+
+    /// Its parameters were read again. As long as nothing says that the supply was off, each reading may.
+    pub(super) fn back(self, seen: &Seen, switched: bool) -> Self {
+        let mut before = match self {
+            Power::Gone(before) | Power::Back { before, restart: Restart::Unproven | Restart::Disproved, .. } => before,
+            own => return own,
+        };
+        let Some(scale) = seen.scale else { return self };
+        let restart = match (switched, before.marked, is_marked(seen)) {
+            (true, ..) => Restart::Switched,
+            // Also where the line was lost before the mark was known to be set.
+            (_, _, Some(true)) => Restart::Disproved,
+            (_, true, Some(false)) => Restart::Read,
+            _ => Restart::Unproven,
+        };
+        before.marked |= restart == Restart::Disproved;
+        let position = seen.actual.filter(|actual| actual.status.is_present()).map(|actual| actual.position);
+        Power::Back {
+            before,
+            kept: before.scale == seen.scale && before.limits == seen.limits && seen.requested == Some(true),
+            moved: position.zip(before.position).map(|(now, own)| i64::from(now) - i64::from(own)),
+            allowed: scale.steps_of_degrees(READJUSTS).into(),
+            restart,
+        }
+    }
+
+    /// A person says that the supply was off, where nothing proves or disproves it.
+    pub(super) const fn said(self) -> Self {
+        match self {
+            Power::Back { before, kept, moved, allowed, restart: Restart::Unproven } => {
+                Power::Back { before, kept, moved, allowed, restart: Restart::Said }
+            }
+            own => own,
+        }
+    }
+
+    /// What was saved is there, the axis stands where it stood, and the supply was off.
+    pub(super) fn is_survived(self) -> bool {
+        matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
+            if moved.abs() <= allowed && matches!(restart, Restart::Read | Restart::Switched | Restart::Said))
+    }
+}
+
+/// [`MARK`] is not as from the factory; `None` where it was not read.
+pub(super) fn is_marked(seen: &Seen) -> Option<bool> {
+    Some(*seen.values.get(&MARK)? != from_the_factory()?)
+}
+
+/// What marks a drive: the value beside the factory's.
+pub(super) fn mark() -> Option<i64> {
+    from_the_factory().map(|value| value + 1)
+}
+
+fn from_the_factory() -> Option<i64> {
+    let row = PARAMETERS.iter().find(|row| row.number == MARK)?;
+    match row.factory {
+        Factory::Number(value) => Some(value),
+        Factory::None | Factory::Topology { .. } | Factory::Turns(_) | Factory::Automatic => None,
+    }
+}

@@ -1,0 +1,420 @@
+//! The run against what a drive might say, step by step, without a drive.
+
+mod facts;
+mod standstill;
+mod supply;
+
+use std::collections::BTreeMap;
+
+use super::*;
+use crate::app::{Language, Text};
+use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
+use crate::devices::hiperdrive::protocol::{Actual, Direction, Family, StatusWord};
+
+/// A drive that nobody has asked for, as it comes from the factory.
+fn fresh() -> Seen {
+    Seen {
+        connected: true,
+        actual: Some(Actual { status: StatusWord::new(0x2A30), speed: 0, position: 0 }),
+        position: Some(0),
+        // 182 is 1000 from the factory, 198 is 0.
+        values: BTreeMap::from([(152, 0), (182, 1000), (198, 0)]),
+        requested: Some(false),
+        scale: Some(PositionScale::FACTORY),
+        // 511 · 65536.
+        limits: Some((-33_488_896, 33_488_896)),
+        family: Some(Family::Short),
+        ..Seen::default()
+    }
+}
+
+fn run() -> Axis {
+    Axis::new(DriveNumber::FIRST, None)
+}
+
+fn at(seen: &mut Seen, position: i32) {
+    if let Some(actual) = &mut seen.actual {
+        actual.position = position;
+    }
+    seen.position = Some(position);
+}
+
+/// The drive does what is asked for.
+#[track_caller]
+fn obey(axis: &mut Axis, seen: &mut Seen, ask: Ask) {
+    axis.begin(ask.clone(), seen);
+    match ask {
+        Ask::Try(values) | Ask::Restore(values) => {
+            seen.values.extend(values.iter().copied());
+            let number = |own: u16| values.iter().find(|(number, _)| *number == own).map(|(_, value)| *value);
+            if let Some(value) = number(152) {
+                seen.requested = Some(value == 1);
+            }
+            if let (Some(numerator), Some(denominator)) = (number(154), number(156)) {
+                let part = |value: i64| u16::try_from(value).unwrap();
+                seen.scale = Some(PositionScale::new(part(numerator), part(denominator)).unwrap());
+                seen.locks = vec![Lock::LimitsUnconfirmed];
+            }
+            if let (Some(low), Some(high)) = (number(158), number(160)) {
+                seen.limits = Some((low.try_into().unwrap(), high.try_into().unwrap()));
+            }
+            axis.written();
+        }
+        Ask::SetPosition(position) => {
+            at(seen, position);
+            seen.values.insert(198, position.into());
+            seen.times_set += 1;
+            axis.written();
+        }
+        Ask::ConfirmLimits => seen.locks.clear(),
+        Ask::Take => seen.controlled = true,
+        Ask::Give => seen.controlled = false,
+        Ask::Save => axis.written(),
+        Ask::Move(_) | Ask::PowerCycle | Ask::Acknowledge | Ask::BelieveRestart => {}
+    }
+    axis.look(seen);
+}
+
+#[track_caller]
+fn press(axis: &mut Axis, seen: &mut Seen, button: Button) -> Ask {
+    let ask = axis.ask(button, seen).unwrap();
+    obey(axis, seen, ask.clone());
+    ask
+}
+
+#[track_caller]
+fn next(axis: &mut Axis, seen: &Seen, step: Step) {
+    assert_eq!(axis.may_go_on(seen), Ok(()));
+    go_on(axis, seen);
+    assert_eq!(axis.step(), step);
+}
+
+fn go_on(axis: &mut Axis, seen: &Seen) {
+    // The pitch that is typed is confirmed with that.
+    let pitch = axis.entries().pitch().ok().filter(|_| axis.step() >= Step::Scale);
+    axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
+}
+
+/// The step with the spindle: 4 mm a turn, a step 0.01 mm.
+fn type_spindle(axis: &mut Axis) {
+    axis.edit(Entries { pitch: "4".to_owned(), ..axis.entries().clone() });
+}
+
+/// Past it: what was confirmed measures from then on.
+#[track_caller]
+fn confirm_spindle(axis: &mut Axis, seen: &mut Seen) {
+    next(axis, seen, Step::Confirm);
+    seen.pitch = axis.entries().pitch().ok();
+    axis.look(seen);
+}
+
+/// A step that is proposed reads as the numbers beside it do, and is taken in either language.
+#[test]
+fn what_is_proposed_has_the_decimal_sign_of_the_language() {
+    for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
+        let shown = run().entries().shown(language);
+        assert_eq!(shown.resolution, step);
+        let preview = Entries { pitch: "4".to_owned(), ..shown }.preview(&fresh()).unwrap();
+        assert_eq!((preview.scale.numerator(), preview.scale.denominator()), (400, 256));
+    }
+}
+
+/// A limit that was written twice is told once, as the drive has it.
+#[test]
+fn what_was_written_again_is_told_as_it_is_now() {
+    let mut axis = run();
+    axis.changes = vec![Change::Parameter(158, 9), Change::Parameter(160, 10_050), Change::Parameter(160, 250)];
+    let said = words::changes(&axis).words(Language::English);
+    assert_eq!(said, "Written: 158 = 9, 160 = 250.");
+}
+
+/// From the beginning to the step with the slow jog: 4 mm a turn, a step 0.01 mm.
+fn until_jog() -> (Axis, Seen) {
+    let (mut axis, mut seen) = (run(), fresh());
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(152, 1)]));
+    next(&mut axis, &seen, Step::Scale);
+    type_spindle(&mut axis);
+    // Reference 5: 400/256; 511 · 400 = 204400.
+    let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(values));
+    confirm_spindle(&mut axis, &mut seen);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_confirm");
+    press(&mut axis, &mut seen, Button::Confirm);
+    next(&mut axis, &seen, Step::Jog);
+    (axis, seen)
+}
+
+fn jog(axis: &mut Axis, seen: &mut Seen, to: i32, turns: Direction) {
+    let from = seen.position.unwrap();
+    (seen.moves, seen.held) = (true, Some((from.unsigned_abs().into(), turns)));
+    for part in 0..=4 {
+        at(seen, from + (to - from) * part / 4);
+        axis.look(seen);
+    }
+    (seen.moves, seen.held) = (false, None);
+    axis.look(seen);
+}
+
+fn until_test() -> (Axis, Seen) {
+    let (mut axis, mut seen) = until_jog();
+    press(&mut axis, &mut seen, Button::Take);
+    jog(&mut axis, &mut seen, 500, Direction::Clockwise);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_down");
+    jog(&mut axis, &mut seen, 100, Direction::Counterclockwise);
+    assert_eq!((axis.travel().up, axis.travel().down), (500, 400));
+    assert_eq!(axis.travel().clockwise_is_up, Some(true));
+    next(&mut axis, &seen, Step::Reference);
+    axis.edit(Entries { reference: "1,00".to_owned(), ..axis.entries().clone() });
+    // 100 steps become 128: the nearest multiple of 64.
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::SetPosition(128));
+    next(&mut axis, &seen, Step::Lower);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
+    at(&mut seen, -1000);
+    axis.take_limit(&seen);
+    assert_eq!(axis.entries().lower, "-10.00");
+    next(&mut axis, &seen, Step::Upper);
+    at(&mut seen, 2000);
+    axis.take_limit(&seen);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_limits");
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(158, -1000), (160, 2000)]));
+    next(&mut axis, &seen, Step::Test);
+    (axis, seen)
+}
+
+fn go(axis: &mut Axis, seen: &mut Seen, place: Place, ends: i32) {
+    let Ask::Move(target) = axis.ask(Button::Go(place), seen).unwrap() else { panic!("no move") };
+    let act = seen.ended.map_or(1, |(act, _)| act + 1);
+    axis.went(place, target, act);
+    seen.moves = true;
+    axis.look(seen);
+    assert_eq!(axis.going(), Some(place));
+    (seen.moves, seen.ended) = (false, Some((act, Ended::Arrived)));
+    at(seen, ends);
+    axis.look(seen);
+}
+
+fn until_power() -> (Axis, Seen) {
+    let (mut axis, mut seen) = until_test();
+    for (place, ends) in [(Place::Middle, 500), (Place::Lower, -1001), (Place::Upper, 2002)] {
+        assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_test");
+        go(&mut axis, &mut seen, place, ends);
+    }
+    next(&mut axis, &seen, Step::Save);
+    press(&mut axis, &mut seen, Button::Do);
+    assert!(axis.is_saved());
+    next(&mut axis, &seen, Step::PowerCycle);
+    press(&mut axis, &mut seen, Button::Give);
+    (axis, seen)
+}
+
+#[test]
+fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
+    let (mut axis, mut seen) = until_power();
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_power");
+    // Reading without switching off proves nothing.
+    axis.surveyed(&seen, false);
+    assert!(matches!(axis.power(), Some(Power::On(_))));
+    // By hand: 182 is 1000 from the factory.
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(182, 1001)]));
+    axis.lose();
+    seen.connected = false;
+    axis.look(&seen);
+    seen.connected = true;
+    seen.values.insert(182, 1000);
+    // 5° of 400 steps are 5.6: six.
+    at(&mut seen, 2002 - 6);
+    axis.surveyed(&seen, false);
+    let Some(Power::Back { kept, moved, allowed, restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
+    assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, Restart::Read));
+    go_on(&mut axis, &seen);
+    assert_eq!(axis.end(), Some(End::Done));
+    assert!(Step::ALL.into_iter().all(|step| axis.reached(step) == Reached::Done));
+    // By hand, in the order in which they were written.
+    let numbers = [(152, 1), (154, 400), (156, 256), (158, -204_400), (160, 204_400)];
+    let mut changes: Vec<Change> = numbers.map(|(number, value)| Change::Parameter(number, value)).to_vec();
+    changes.push(Change::Position(128));
+    let more = [(158, -1000), (160, 2000), (182, 1001)];
+    changes.extend(more.map(|(number, value)| Change::Parameter(number, value)));
+    assert_eq!((axis.changes(), axis.is_saved()), (&changes[..], true));
+}
+
+#[test]
+fn what_did_not_survive_the_supply_is_told() {
+    let survive = |change: fn(&mut Seen)| {
+        let (mut axis, mut seen) = until_power();
+        press(&mut axis, &mut seen, Button::Do);
+        axis.lose();
+        seen.values.insert(182, 1000);
+        change(&mut seen);
+        axis.surveyed(&seen, false);
+        assert!(!axis.survived() && axis.reached(Step::PowerCycle) == Reached::Failed);
+        assert!(axis.may_go_on(&seen).is_err());
+        words::found(&axis, Step::PowerCycle, &seen).unwrap().id()
+    };
+    assert_eq!(survive(|seen| at(seen, 2002 + 7)), "hd_axis.power_moved");
+    assert_eq!(survive(|seen| seen.limits = Some((-1000, 1000))), "hd_axis.power_lost");
+    assert_eq!(survive(|seen| seen.scale = Some(PositionScale::FACTORY)), "hd_axis.power_lost");
+    assert_eq!(survive(|seen| seen.requested = Some(false)), "hd_axis.power_lost");
+}
+
+#[test]
+fn nothing_is_pressed_that_cannot_be_done() {
+    let why = |axis: &Axis, seen: &Seen, button| axis.ask(button, seen).unwrap_err().id();
+    let (axis, seen) = until_jog();
+    for (label, changed, id) in [
+        ("gone", Seen { connected: false, ..seen.clone() }, "hd_axis.not_connected"),
+        ("busy", Seen { busy: true, stale: true, ..seen.clone() }, "hd_axis.busy"),
+        ("stale", Seen { stale: true, ..seen.clone() }, "hd_axis.unread"),
+        ("no control", seen.clone(), "hd_axis.no_control"),
+    ] {
+        assert_eq!(why(&axis, &changed, Button::Go(Place::Middle)), id, "{label}");
+    }
+    let (mut axis, mut seen) = until_test();
+    seen.moves = true;
+    for button in [Button::Do, Button::Widen, Button::Go(Place::Lower), Button::Give, Button::Recall] {
+        assert_eq!(why(&axis, &seen, button), "hd_axis.moving", "{button:?}");
+    }
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.moving");
+    seen.moves = false;
+    assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.not_virtual");
+    seen.is_virtual = true;
+    assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.give_first");
+    // While a write is under way nothing else is done.
+    axis.begin(Ask::Save, &seen);
+    assert_eq!(why(&axis, &seen, Button::Go(Place::Lower)), "hd_axis.busy");
+    go_on(&mut axis, &seen);
+    axis.back(&seen);
+    assert_eq!(axis.step(), Step::Test);
+}
+
+#[test]
+fn what_is_taught_has_to_hold_the_axis() {
+    let (mut axis, mut seen) = until_test();
+    axis.back(&seen);
+    let typed = |lower: &str, upper: &str, axis: &Axis| Entries {
+        lower: lower.to_owned(),
+        upper: upper.to_owned(),
+        ..axis.entries().clone()
+    };
+    at(&mut seen, 2000);
+    for (lower, upper, id) in [
+        ("20", "-10", "hd_axis.crossed"),
+        ("20", "20", "hd_axis.crossed"),
+        ("-10", "19.99", "hd_axis.outside"),
+        ("-10", "ten", "entry.number"),
+        ("", "20", "entry.missing"),
+        ("-10", "1e99", "entry.number"),
+    ] {
+        axis.edit(typed(lower, upper, &axis));
+        assert_eq!(axis.ask(Button::Do, &seen).unwrap_err().id(), id, "{lower} {upper}");
+    }
+    axis.edit(typed("-10,00", "20.01", &axis));
+    assert_eq!(axis.ask(Button::Do, &seen), Ok(Ask::Try(vec![(158, -1000), (160, 2001)])));
+}
+
+#[test]
+fn a_test_that_did_not_arrive_does_not_count() {
+    let (mut axis, mut seen) = until_test();
+    // 1° of 400 steps are 1.1: two.
+    go(&mut axis, &mut seen, Place::Middle, 503);
+    assert!(!axis.outcome(Place::Middle).unwrap().is_good());
+    go(&mut axis, &mut seen, Place::Middle, 498);
+    assert!(axis.outcome(Place::Middle).unwrap().is_good());
+    let Ask::Move(target) = axis.ask(Button::Go(Place::Upper), &seen).unwrap() else { panic!("no move") };
+    axis.went(Place::Upper, target, 9);
+    // An earlier act says nothing of this one.
+    axis.look(&seen);
+    assert_eq!((axis.going(), axis.outcome(Place::Upper)), (Some(Place::Upper), None));
+    seen.ended = Some((9, Ended::Stopped));
+    axis.look(&seen);
+    assert!(axis.outcome(Place::Upper).is_some_and(|own| !own.is_good()) && axis.may_go_on(&seen).is_err());
+}
+
+#[test]
+fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
+    let (mut axis, mut seen) = until_test();
+    axis.cancel(&seen, "");
+    assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
+    assert!(axis.changes().len() == 8 && axis.reached(Step::Test) == Reached::Ahead);
+    assert_eq!(axis.ask(Button::Go(Place::Lower), &seen).unwrap_err().id(), "hd_axis.over");
+    seen.unsaved = BTreeMap::from([(152, 0)]);
+    assert_eq!(press(&mut axis, &mut seen, Button::Recall), Ask::Restore(vec![(152, 0)]));
+    // The place has the position that it got.
+    assert_eq!(axis.changes(), [Change::Position(128)]);
+    let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
+    assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved", "hd_axis.place_left"]);
+    let mut axis = run();
+    axis.cancel(&seen, "");
+    assert_eq!(told(&axis), ["hd_axis.nothing_written"]);
+    assert!(axis.changes().is_empty());
+    // A write that did not begin has changed nothing; one that was cut off may have.
+    for (begun, changes) in [(false, 0), (true, 1)] {
+        let mut axis = run();
+        axis.begin(Ask::Try(vec![(152, 1)]), &fresh());
+        axis.not_written(begun);
+        assert_eq!((axis.changes().len(), axis.is_partly_written()), (changes, begun));
+    }
+}
+
+#[test]
+fn a_position_that_is_right_is_left_as_it_is() {
+    let (mut axis, mut seen) = until_jog();
+    axis.skip(&seen, "");
+    assert_eq!(axis.step(), Step::Jog, "this one cannot be left out");
+    press(&mut axis, &mut seen, Button::Take);
+    jog(&mut axis, &mut seen, 500, Direction::Counterclockwise);
+    jog(&mut axis, &mut seen, 0, Direction::Clockwise);
+    assert_eq!(axis.travel().clockwise_is_up, Some(false));
+    next(&mut axis, &seen, Step::Reference);
+    axis.skip(&seen, "");
+    assert_eq!((axis.step(), axis.reached(Step::Reference)), (Step::Lower, Reached::Skipped));
+    axis.back(&seen);
+    assert_eq!(axis.reached(Step::Reference), Reached::Now);
+}
+
+#[test]
+fn pitch_and_step_are_seen_before_they_are_written() {
+    let preview = |pitch: &str, resolution: &str, family| {
+        let entries = Entries { pitch: pitch.to_owned(), resolution: resolution.to_owned(), ..Entries::default() };
+        entries.preview(&Seen { family: Some(family), ..fresh() }).map_err(|text| text.id())
+    };
+    let own = preview("4", "0,01", Family::Short).unwrap();
+    assert_eq!((own.scale.numerator(), own.scale.denominator()), (400, 256));
+    assert_eq!((own.lower, own.upper, own.ruler.scale.steps_per_turn()), (-204_400, 204_400, 400.0));
+    // 33488896 steps of 0.01 mm.
+    let (low, high) = own.unchanged.unwrap();
+    assert!((low + 334_888.96).abs() < 1e-6 && (high - 334_888.96).abs() < 1e-6);
+    // 2 mm in tenths: 20 steps a turn; 16000 turns of them.
+    let own = preview("2", "0.1", Family::Long).unwrap();
+    assert_eq!((own.scale.numerator(), own.upper), (20, 320_000));
+    for (pitch, resolution, id) in [
+        ("0", "0.01", "entry.number"),
+        ("", "0.01", "entry.missing"),
+        ("4", "0", "entry.number"),
+        ("4", "-1", "entry.number"),
+        ("3.141593", "0.017", "hd_axis.too_fine"),
+    ] {
+        assert_eq!(preview(pitch, resolution, Family::Short), Err(id), "{pitch} {resolution}");
+    }
+}
+
+#[test]
+fn every_step_says_what_to_do_and_what_was_found() {
+    let (axis, seen) = until_power();
+    for step in Step::ALL {
+        let texts = [words::title(step), words::todo(step, &seen), words::button(step)];
+        let found = words::found(&axis, step, &seen).unwrap();
+        for text in texts.iter().chain([&found]) {
+            for language in [Language::English, Language::German] {
+                let said = text.words(language);
+                assert!(said != text.id() && !said.contains('{'), "{said}");
+            }
+        }
+    }
+    let found = |step| words::found(&axis, step, &seen).unwrap().words(Language::English);
+    assert_eq!(found(Step::Scale), "The drive has 400/256: 400 steps a turn.");
+    assert_eq!(found(Step::Confirm), "The drive has -2044.00 mm … 2044.00 mm.", "those that were looked at");
+    assert_eq!(found(Step::Upper), "The drive has -10.00 mm … 20.00 mm.");
+    assert_eq!(found(Step::Jog), "Moved 5.00 mm up and 4.00 mm down. Clockwise counts up.");
+    assert_eq!(found(Step::Test), "Places reached: 3 of 3; at most 0.02 mm off target.");
+}

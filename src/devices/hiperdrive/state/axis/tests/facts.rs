@@ -1,0 +1,277 @@
+//! The facts that results rest on: what falls with them, what proves them, what is told of them.
+
+use super::*;
+use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
+
+/// Back to the step that does not hold any more: by a press, and not before.
+#[track_caller]
+fn back_to(axis: &mut Axis, seen: &Seen, step: Step) {
+    let shown = axis.step();
+    axis.look(seen);
+    assert_eq!((axis.step(), axis.fallen()), (shown, Some(step)), "the page is left by a press alone");
+    assert_eq!(axis.reached(step), Reached::Failed);
+    assert_eq!(axis.may_go_on(seen).unwrap_err().id(), "hd_axis.fallen");
+    assert_eq!(axis.may_move(seen).unwrap_err().id(), "hd_axis.fallen");
+    axis.back(seen);
+    assert_eq!((axis.step(), axis.fallen()), (step, None));
+}
+
+#[test]
+fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
+    let (mut axis, mut seen) = until_jog();
+    press(&mut axis, &mut seen, Button::Take);
+    assert_eq!(axis.may_move(&seen), Ok(()));
+    // Somebody else has changed the scale.
+    seen.scale = Some(PositionScale::FACTORY);
+    back_to(&mut axis, &seen, Step::Scale);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_scale");
+    press(&mut axis, &mut seen, Button::Do);
+    next(&mut axis, &seen, Step::Confirm);
+    assert!(axis.may_go_on(&seen).is_err(), "what was confirmed before was for another scale");
+    // Locked, although it was confirmed once: the lock counts.
+    press(&mut axis, &mut seen, Button::Confirm);
+    next(&mut axis, &seen, Step::Jog);
+    seen.locks = vec![Lock::LimitsUnconfirmed];
+    back_to(&mut axis, &seen, Step::Confirm);
+}
+
+/// Issue 21.6 (i): an earlier fact falls, and the page stays until somebody goes back.
+#[test]
+fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
+    let (mut axis, mut seen) = until_test();
+    // Everything is gone.
+    seen = Seen { controlled: true, pitch: seen.pitch, ..fresh() };
+    back_to(&mut axis, &seen, Step::Request);
+    assert!(Step::ALL[1..].iter().all(|step| axis.reached(*step) == Reached::Ahead));
+    // Nothing is concluded from a drive that does not answer.
+    let (mut axis, mut seen) = until_test();
+    seen.connected = false;
+    seen.scale = None;
+    axis.look(&seen);
+    assert_eq!((axis.step(), axis.fallen()), (Step::Test, None));
+}
+
+/// Issue 21.6 (c): whoever changes pitch, reference or a limit makes everything behind it undone; taught limits as well.
+#[test]
+fn what_rests_on_a_changed_fact_falls_with_it() {
+    let tested = || {
+        let (mut axis, mut seen) = until_test();
+        go(&mut axis, &mut seen, Place::Middle, 500);
+        assert!(axis.outcome(Place::Middle).is_some());
+        (axis, seen)
+    };
+    let done = |axis: &Axis| Step::ALL.into_iter().filter(|step| axis.reached(*step) == Reached::Done).count();
+    // Changed by somebody else, on another page, by another master: the drive has it, and that counts.
+    type Case<'c> = (&'c str, fn(&mut Seen), Step);
+    let cases: [Case<'_>; 5] = [
+        ("a limit", |seen| seen.limits = Some((-1000, 2001)), Step::Confirm),
+        ("the reference to another number", |seen| _ = seen.values.insert(198, 34_800), Step::Reference),
+        // By another master at another place: `standstill`.
+        ("the reference from this window, to the same number", |seen| seen.times_set += 1, Step::Reference),
+        ("the pitch", |seen| seen.pitch = Some(Length { nanometres: 5_000_000 }), Step::Scale),
+        ("the request", |seen| seen.requested = Some(false), Step::Request),
+    ];
+    for (label, change, falls) in cases {
+        let (mut axis, mut seen) = tested();
+        change(&mut seen);
+        axis.look(&seen);
+        assert_eq!((axis.fallen(), done(&axis)), (Some(falls), falls.index()), "{label}");
+        assert!(axis.outcome(Place::Middle).is_none(), "{label}");
+        assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
+        assert!(axis.ask(Button::Go(Place::Upper), &seen).is_err(), "{label}");
+    }
+    // The same by the run itself: back to the reference, 13.44 mm beside the one before. 1500 steps become 1472.
+    let (mut axis, mut seen) = tested();
+    (0..3).for_each(|_| axis.back(&seen));
+    assert_eq!((axis.step(), done(&axis)), (Step::Reference, 6));
+    axis.edit(Entries { reference: "15".to_owned(), ..axis.entries().clone() });
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::SetPosition(1472));
+    next(&mut axis, &seen, Step::Lower);
+    assert_eq!(done(&axis), 5);
+    assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""));
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
+    // Another lower limit: the test was between others.
+    let (mut axis, mut seen) = tested();
+    (0..2).for_each(|_| axis.back(&seen));
+    axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
+    next(&mut axis, &seen, Step::Upper);
+    assert!(axis.outcome(Place::Middle).is_none() && axis.may_go_on(&seen).is_err());
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(158, -900), (160, 2000)]));
+    next(&mut axis, &seen, Step::Test);
+    assert_eq!(axis.fallen(), None, "the review of their plan confirms them");
+    // Who only looks back and goes on loses nothing.
+    let (mut axis, seen) = tested();
+    (0..4).for_each(|_| axis.back(&seen));
+    for step in [Step::Reference, Step::Lower, Step::Upper, Step::Test] {
+        next(&mut axis, &seen, step);
+    }
+    assert!(axis.outcome(Place::Middle).is_some());
+}
+
+/// Issue 21.6 (b): a jump of the position, and motion that no pad makes, are no jog.
+#[test]
+fn only_motion_under_a_held_pad_is_a_jog() {
+    let (mut axis, mut seen) = until_jog();
+    press(&mut axis, &mut seen, Button::Take);
+    for position in [0, 5000, -5000, 0] {
+        at(&mut seen, position);
+        axis.look(&seen);
+    }
+    assert_eq!((axis.travel(), axis.may_go_on(&seen).unwrap_err().id()), (Travel::default(), "hd_axis.needs_up"));
+    // The first packets under a held pad: none of them is a position yet.
+    seen.held = Some((7, Direction::Clockwise));
+    seen.position = None;
+    axis.look(&seen);
+    at(&mut seen, 5000);
+    axis.look(&seen);
+    assert_eq!(axis.travel().up, 0, "it is where the motion begins");
+    at(&mut seen, 5100);
+    axis.look(&seen);
+    assert_eq!((axis.travel().up, axis.travel().clockwise_is_up), (100, Some(true)));
+    // Let go, it is moved by something else, and pressed again.
+    seen.held = None;
+    at(&mut seen, -9000);
+    axis.look(&seen);
+    seen.held = Some((8, Direction::Counterclockwise));
+    axis.look(&seen);
+    assert_eq!((axis.travel().up, axis.travel().down), (100, 0));
+}
+
+/// Issue 21.6 (e): a connection that was lost and found again is no proof that the supply was off.
+#[test]
+fn a_restart_is_read_or_said() {
+    let found = |axis: &Axis, seen: &Seen| words::found(axis, Step::PowerCycle, seen).unwrap().words(Language::English);
+    let again = |axis: &mut Axis, seen: &Seen| {
+        axis.lose();
+        axis.surveyed(seen, false);
+    };
+    // Nothing was marked: a person has to say it, and the result tells so.
+    let (mut axis, mut seen) = until_power();
+    assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
+    again(&mut axis, &seen);
+    assert!(!axis.survived() && axis.reached(Step::PowerCycle) == Reached::Failed);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
+    press(&mut axis, &mut seen, Button::Restarted);
+    assert!(axis.survived() && found(&axis, &seen).contains("confirmed by hand, not read"), "{}", found(&axis, &seen));
+    // It was marked, and still is: nobody can say anything else.
+    let (mut axis, mut seen) = until_power();
+    press(&mut axis, &mut seen, Button::Do);
+    again(&mut axis, &seen);
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
+    // Then it is off indeed.
+    axis.lose();
+    seen.values.insert(182, 1000);
+    axis.surveyed(&seen, false);
+    assert!(axis.survived() && found(&axis, &seen).contains("The restart was read"));
+    // Somebody else has changed it before: that proves it as well.
+    let (mut axis, mut seen) = until_power();
+    seen.values.insert(182, 500);
+    axis.look(&seen);
+    assert_eq!(axis.ask(Button::Do, &seen).unwrap_err().id(), "hd_axis.already");
+    axis.lose();
+    seen.values.insert(182, 1000);
+    axis.surveyed(&seen, false);
+    assert!(axis.survived());
+}
+
+/// Issue 21.6 (g): a fault is told with its code, keeps everything from moving, and can be acknowledged here.
+#[test]
+fn a_fault_is_told_and_acknowledged_in_the_run() {
+    let (axis, mut seen) = until_test();
+    assert_eq!(axis.ask(Button::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
+    // Reference 9: 2AB8 is a fault, 2A70 the lock; 8300 is a block in reverse.
+    for (word, why) in [(0x2AB8, "hd_refused.fault"), (0x2A70, "hd_refused.lock")] {
+        seen.actual = seen.actual.map(|actual| Actual { status: StatusWord::new(word), ..actual });
+        seen.error = None;
+        assert_eq!(words::fault(&seen).unwrap().id(), "hd_axis.fault_unread");
+        seen.error = Some(ErrorCode::BLOCK_REVERSE);
+        assert!(words::fault(&seen).unwrap().words(Language::English).starts_with("Fault 8300: "));
+        assert_eq!(axis.may_move(&seen).unwrap_err().id(), why);
+        assert_eq!(axis.ask(Button::Go(Place::Middle), &seen).unwrap_err().id(), why);
+        assert_eq!(axis.ask(Button::Acknowledge, &seen), Ok(Ask::Acknowledge));
+    }
+}
+
+/// Issue 21.6 (d, h): what is other than saved is told, and written back and compared; a position is set at its place.
+#[test]
+fn what_is_other_than_saved_is_told_and_written_back() {
+    let (mut axis, mut seen) = (run(), fresh());
+    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
+    seen.values.extend([(154, 400), (156, 256), (158, -1000), (198, 128)]);
+    seen.unsaved = BTreeMap::from([(154, 256), (156, 1), (158, -1000), (198, 0)]);
+    let told = words::differences(&seen).unwrap().words(Language::English);
+    assert!(told.contains("154 is 400 instead of 256") && told.contains("156 is 256 instead of 1"), "{told}");
+    assert!(told.contains("198 is 128 instead of 0 (set the position again") && !told.contains("158"), "{told}");
+    let back = vec![(154, 256), (156, 1)];
+    assert_eq!(axis.ask(Button::Recall, &seen), Ok(Ask::Restore(back.clone())));
+    axis.begin(Ask::Restore(back), &seen);
+    axis.written();
+    let returned = |seen: &Seen| words::returned(&axis, seen).unwrap().words(Language::English);
+    assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
+    seen.values.extend([(154, 256), (156, 1)]);
+    assert!(returned(&seen).contains("2 of 2 parameters are as they were"));
+    // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
+    let told = words::place_left(&axis, &seen).unwrap().words(Language::English);
+    assert!(told.starts_with("The position (198) is not written back: 198 numbers the place where"), "{told}");
+    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.place_left", "and not that nothing differs");
+    axis.cancel(&seen, "");
+    let device = Device { name: String::new(), variant: None, serial_number: String::new() };
+    let text = report(&axis, &seen, &device, Language::German).unwrap();
+    assert!(text.contains("Die Position (198) wird nicht zurückgeschrieben"), "{text}");
+    seen.values.insert(198, 0);
+    assert_eq!(words::place_left(&axis, &seen), None);
+    assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
+}
+
+/// Issue 21.6 (f): a pitch that nobody confirmed is no spindle: 65536 steps a turn stay steps until there is one.
+#[test]
+fn millimetres_come_with_a_spindle() {
+    let (mut axis, mut seen) = (run(), fresh());
+    let position = |seen: &Seen| words::millimetres(seen.ruler(), 400).words(Language::English);
+    press(&mut axis, &mut seen, Button::Do);
+    next(&mut axis, &seen, Step::Scale);
+    // A drive with 400 steps a turn, of whatever spindle: nothing is proposed that would fit it by accident.
+    seen.scale = PositionScale::new(400, 256).ok();
+    assert_eq!(axis.entries().pitch, "");
+    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
+    type_spindle(&mut axis);
+    assert_eq!((position(&seen), axis.may_go_on(&seen)), ("400 steps".to_owned(), Ok(())));
+    confirm_spindle(&mut axis, &mut seen);
+    assert_eq!(position(&seen), "4.00 mm");
+    let pitch = Some(Length { nanometres: 8_000_000 });
+    let known = Axis::new(axis.drive(), Some(Ruler { scale: seen.scale.unwrap(), pitch }));
+    assert_eq!((known.entries().pitch.as_str(), known.entries().resolution.as_str()), ("8", "0.02"));
+}
+
+/// Issue 21.6 (j): the end as text, in millimetres, on lines that fit a page.
+#[test]
+fn the_end_of_a_run_is_a_report() {
+    let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
+    let (mut axis, mut seen) = until_power();
+    assert_eq!(report(&axis, &seen, &device, Language::English), None, "it goes on");
+    axis.lose();
+    axis.surveyed(&seen, true);
+    go_on(&mut axis, &seen);
+    // What comes later is not of this run.
+    at(&mut seen, 0);
+    seen.limits = Some((-5, 5));
+    for language in [Language::English, Language::German] {
+        let text = report(&axis, &seen, &device, language).unwrap();
+        assert!(text.lines().all(|line| line.chars().count() < 80) && !text.contains('{'), "{text}");
+    }
+    let text = report(&axis, &seen, &device, Language::English).unwrap();
+    for part in [
+        "Axis set-up, 2026-11-23 06:00",
+        "HIPERDRIVE HUB-4 · 16, drive 1",
+        "serial number 77",
+        "Spindle pitch: 4.000 mm a turn",
+        "7. Upper limit: done\n   The drive has -10.00 mm … 20.00 mm.",
+        "Test moves at 10 % speed and 25 % torque.",
+        "Lower limit: reached -10.01 mm (-0.01 mm off target)",
+        "The virtual supply was switched off and on.",
+        "Everything that can be saved is saved.",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}

@@ -1,0 +1,269 @@
+//! What the steps of an axis set-up are called, what to do in them, and what was found.
+
+use super::{Axis, Change, Outcome, Place, Power, Reached, Restart, Seen, Step};
+use crate::app::Text;
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended};
+use crate::devices::hiperdrive::protocol::{ErrorCode, ScaleError};
+use crate::devices::hiperdrive::state::explain as words;
+use crate::devices::hiperdrive::state::ruler::{Measure, Ruler};
+
+/// What a step is called.
+pub fn title(step: Step) -> Text {
+    Text::new(match step {
+        Step::Request => "hd_axis.step_request",
+        Step::Scale => "hd_axis.step_scale",
+        Step::Confirm => "hd_axis.step_confirm",
+        Step::Jog => "hd_axis.step_jog",
+        Step::Reference => "hd_axis.step_reference",
+        Step::Lower => "hd_axis.step_lower",
+        Step::Upper => "hd_axis.step_upper",
+        Step::Test => "hd_axis.step_test",
+        Step::Save => "hd_axis.step_save",
+        Step::PowerCycle => "hd_axis.step_power",
+    })
+}
+
+/// What to do in it.
+pub fn todo(step: Step, seen: &Seen) -> Text {
+    Text::new(match step {
+        Step::Request => "hd_axis.do_request",
+        Step::Scale => "hd_axis.do_scale",
+        Step::Confirm => "hd_axis.do_confirm",
+        Step::Jog => "hd_axis.do_jog",
+        Step::Reference => "hd_axis.do_reference",
+        Step::Lower => "hd_axis.do_lower",
+        Step::Upper => "hd_axis.do_upper",
+        Step::Test => "hd_axis.do_test",
+        Step::Save => "hd_axis.do_save",
+        Step::PowerCycle if seen.is_virtual => "hd_axis.do_power_virtual",
+        Step::PowerCycle => "hd_axis.do_power",
+    })
+}
+
+/// How far it is, in a word.
+pub fn reached(own: Reached) -> Text {
+    Text::new(match own {
+        Reached::Done => "guide.done",
+        Reached::Now => "guide.waits",
+        Reached::Skipped => "guide.left_out",
+        Reached::Failed => "guide.failed",
+        Reached::Ahead => "guide.ahead",
+    })
+}
+
+/// What its button does.
+pub fn button(step: Step) -> Text {
+    Text::new(match step {
+        Step::Request => "hd_axis.request",
+        Step::Reference => "hd_axis.set",
+        Step::Save => "hd_axis.save",
+        Step::PowerCycle => "hd_axis.mark",
+        _ => "hd_axis.write",
+    })
+}
+
+/// What was found in it, as far as there is something.
+pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
+    let ruler = seen.ruler();
+    let mm = |steps: i32| millimetres(ruler, steps.into());
+    match step {
+        Step::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
+            (true, Some(true)) => Some(Text::new("hd_axis.found_drive")),
+            (true, Some(false)) => Some(Text::new("hd_axis.found_no_drive")),
+            // Nothing was heard of the drive: that says nothing of its cable.
+            (true, None) => None,
+            (false, _) => Some(Text::new("hd_axis.found_unrequested")),
+        },
+        Step::Scale => {
+            let ruler = ruler?;
+            let text = Text::new("hd_axis.found_scale").with("numerator", ruler.scale.numerator());
+            let text = text.with("denominator", ruler.scale.denominator());
+            let per_turn = ruler.scale.steps_per_turn();
+            let decimals = if per_turn.fract() == 0.0 { 0 } else { 3 };
+            Some(text.with_number("steps", per_turn, decimals))
+        }
+        Step::Confirm | Step::Upper => {
+            // What was confirmed stays what it was, also after others were taught.
+            let confirmed = axis.confirmed.filter(|_| step == Step::Confirm).map(|own| own.seen);
+            let (low, high) = confirmed.or(seen.limits)?;
+            Some(Text::new("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))
+        }
+        Step::Jog => {
+            let travel = axis.travel();
+            let way = Text::new(match travel.clockwise_is_up {
+                Some(true) => "hd_axis.clockwise_up",
+                Some(false) => "hd_axis.clockwise_down",
+                None => return (travel.up + travel.down > 0).then(|| moved(ruler, travel.up, travel.down)),
+            });
+            let moved = moved(ruler, travel.up, travel.down);
+            Some(Text::new("hd_axis.found_jog").with_text("moved", moved).with_text("way", way))
+        }
+        Step::Reference => Some(Text::new("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
+        Step::Lower => {
+            Some(Text::new("hd_axis.found_lower").with_text("position", mm(axis.entries.lower(ruler).ok()?)))
+        }
+        Step::Test => {
+            let good = Place::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
+            let worst = good.clone().map(|own| own.missed().abs()).max()?;
+            let text = Text::new("hd_axis.found_test").with("count", good.count());
+            Some(text.with_text("missed", millimetres(ruler, worst)))
+        }
+        Step::Save => axis.is_saved().then(|| Text::new("hd_axis.found_saved")),
+        Step::PowerCycle => power(axis, ruler),
+    }
+}
+
+fn moved(ruler: Option<Ruler>, up: i64, down: i64) -> Text {
+    let text = Text::new("hd_axis.found_moved").with_text("up", millimetres(ruler, up));
+    text.with_text("down", millimetres(ruler, down))
+}
+
+fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
+    let (kept, moved, allowed, restart) = match axis.power()? {
+        Power::On(_) => return Some(Text::new("hd_axis.power_on")),
+        Power::Gone(_) => return Some(Text::new("hd_axis.power_gone")),
+        Power::Back { kept, moved, allowed, restart, .. } => (kept, moved, allowed, restart),
+    };
+    let proof = Text::new(match restart {
+        Restart::Read => "hd_axis.restart_read",
+        Restart::Switched => "hd_axis.restart_switched",
+        Restart::Said => "hd_axis.restart_said",
+        Restart::Unproven => "hd_axis.restart_unproven",
+        Restart::Disproved => "hd_axis.not_restarted",
+    });
+    let Some(moved) = moved else { return Some(Text::new("hd_axis.power_unknown")) };
+    let id = match (kept, moved.abs() <= allowed) {
+        (false, _) => "hd_axis.power_lost",
+        (true, false) => "hd_axis.power_moved",
+        (true, true) => "hd_axis.power_kept",
+    };
+    let text = Text::new(id).with_text("moved", millimetres(ruler, moved));
+    Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
+}
+
+/// Why a step does not hold any more.
+pub fn fallen(step: Step) -> Text {
+    let why = Text::new(match step {
+        Step::Request => "hd_axis.fell_request",
+        Step::Scale => "hd_axis.fell_scale",
+        Step::Confirm => "hd_axis.fell_confirm",
+        Step::Reference => "hd_axis.fell_reference",
+        Step::Upper => "hd_axis.fell_limits",
+        Step::Jog | Step::Lower | Step::Test | Step::Save | Step::PowerCycle => "hd_axis.fell_undone",
+    });
+    let text = Text::new("hd_axis.fallen").with("number", step.index() + 1);
+    text.with_text("step", title(step)).with_text("why", why)
+}
+
+/// The fault of the drive, with its code where that was read; `None`: it has none.
+pub fn fault(seen: &Seen) -> Option<Text> {
+    if !seen.has_failed() {
+        return None;
+    }
+    let Some(code) = seen.error.filter(|code| *code != ErrorCode::NONE) else {
+        return Some(Text::new("hd_axis.fault_unread"));
+    };
+    let words = words::error(code);
+    let text = Text::new("hd_axis.fault").with("code", format!("{:04X}", code.code()));
+    Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
+}
+
+/// How the pads and the test move: as they are sent.
+pub fn effort(id: &'static str) -> Text {
+    let Effort { speed, torque } = Effort::JOG;
+    Text::new(id).with("speed", speed.get()).with("torque", torque.get())
+}
+
+/// What came of a test move.
+pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
+    let mm = |steps: i64| millimetres(seen.ruler(), steps);
+    if outcome.ended == Ended::Arrived {
+        let text = Text::new("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
+        return text.with_text("missed", mm(outcome.missed()));
+    }
+    let why = words::ended(outcome.ended, |steps| mm(steps.into()));
+    Text::new("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
+}
+
+/// What is known to be other than saved; `None`: nothing is.
+pub fn differences(seen: &Seen) -> Option<Text> {
+    let difference = |own: super::differences::Difference| {
+        let id = if own.number == super::differences::REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
+        Text::new(id).with("number", own.number).with("now", own.now).with("saved", own.saved)
+    };
+    let all: Vec<Text> = seen.differences().into_iter().map(difference).collect();
+    (!all.is_empty()).then(|| Text::new("hd_axis.unsaved").with_list("differences", all))
+}
+
+/// What came of writing back; `None`: nothing was.
+pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
+    if axis.returned.is_empty() {
+        return None;
+    }
+    let is_there = |(number, value): &&(u16, i64)| seen.values.get(number) == Some(value);
+    let good = axis.returned.iter().filter(is_there).count();
+    let text = Text::new("hd_axis.returned").with("count", good);
+    Some(text.with("all", axis.returned.len()))
+}
+
+/// The position is left as it was set, although parameters were written back; `None`: that is not so.
+pub fn place_left(axis: &Axis, seen: &Seen) -> Option<Text> {
+    let is_set = axis.changes().iter().any(|own| matches!(own, Change::Position(_)));
+    let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
+    is_left.then(|| Text::new("hd_axis.place_left"))
+}
+
+/// The position changed while it was not read; `None`: not since the reference.
+pub fn unexplained(axis: &Axis, seen: &Seen) -> Option<Text> {
+    let way = axis.unexplained?;
+    Some(Text::new("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
+}
+
+/// What a place of the test is called.
+pub fn place(place: Place) -> Text {
+    Text::new(match place {
+        Place::Middle => "hd_axis.middle",
+        Place::Lower => "hd_axis.to_lower",
+        Place::Upper => "hd_axis.to_upper",
+    })
+}
+
+/// All that was changed, where something was: of a parameter that was written again what it has now.
+pub fn changes(axis: &Axis) -> Text {
+    let number = |own: &Change| match own {
+        Change::Parameter(number, _) => *number,
+        Change::Position(_) => super::differences::REFERENCE,
+    };
+    let all = axis.changes();
+    let is_last = |(at, own): &(usize, &Change)| !all.iter().skip(at + 1).any(|later| number(later) == number(own));
+    let last = all.iter().enumerate().filter(is_last);
+    Text::new("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
+}
+
+/// As the number that was written: the scale may be another by now.
+fn change(own: &Change) -> Text {
+    let text = Text::new("hd_axis.changed");
+    match own {
+        Change::Parameter(number, value) => text.with("number", number).with("value", value),
+        Change::Position(steps) => text.with("number", super::differences::REFERENCE).with("value", steps),
+    }
+}
+
+/// Steps in millimetres, with as many decimals as tell one step from another; as steps where nobody knows the spindle.
+pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
+    match ruler.and_then(|ruler| Some((ruler.of(steps, Measure::Millimetres)?, ruler))) {
+        Some((value, ruler)) => {
+            let decimals = ruler.decimals(Measure::Millimetres).min(4);
+            Text::new("hd_axis.millimetres").with_number("value", value, decimals)
+        }
+        None => Text::new("hd_axis.steps").with("value", steps),
+    }
+}
+
+/// Why a pitch and a resolution make no scale.
+pub fn scale(error: &ScaleError) -> Text {
+    match error {
+        ScaleError::TooFine { steps, .. } => Text::new("hd_axis.too_fine").with("steps", steps),
+        ScaleError::Zero | ScaleError::NoLength => Text::new("hd_axis.no_length"),
+    }
+}

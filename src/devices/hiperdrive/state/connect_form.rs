@@ -1,0 +1,209 @@
+//! What a person fills in to connect a HIPERDRIVE, and the link it stands for. Nothing is opened here.
+
+use crate::app::Text;
+use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
+use crate::devices::hiperdrive::jobs::check;
+use crate::devices::hiperdrive::procedures::PARAMETERS;
+use crate::devices::hiperdrive::sim::Config;
+use crate::link::{LinkUrl, Scheme};
+
+/// How the drives are reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HiperdriveWay {
+    /// Virtual drives in this program.
+    #[default]
+    Virtual,
+    /// Over the network.
+    Network,
+    /// A recorded trace.
+    Replay,
+}
+
+/// What the virtual device is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VirtualHub {
+    /// An adapter with its drive.
+    #[default]
+    Adapter,
+    /// A hub with four places.
+    Four,
+    /// A hub with eight places.
+    Eight,
+}
+
+/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
+/// for what is usual.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HiperdriveForm {
+    /// How the drives are reached.
+    pub way: HiperdriveWay,
+    /// What the virtual device is.
+    pub hub: VirtualHub,
+    /// Name or address of the device.
+    pub host: String,
+    /// Its TCP port; empty: 44818.
+    pub tcp_port: String,
+    /// The recording.
+    pub file: String,
+    /// Milliseconds from one cyclic packet to the next; empty: 10.
+    pub interval: String,
+    /// The high byte of process data comes first.
+    pub big_endian: bool,
+    /// Where cyclic data go, unless the device says so itself; empty: as usual.
+    pub udp: String,
+    /// Milliseconds that a reply may take; empty: as usual.
+    pub timeout: String,
+    /// Which places of a virtual hub have a drive, such as `1,0,1`.
+    pub drives: String,
+    /// What goes wrong with a virtual device on purpose.
+    pub fault: String,
+    /// Parameters of the link that have no entry.
+    pub rest: Vec<(String, String)>,
+}
+
+/// The parameter for the byte order, and the order that is not usual.
+const BIG_ENDIAN: (&str, &str) = ("order", "big");
+/// The port of explicit messages.
+const PORT: &str = "44818";
+
+impl VirtualHub {
+    /// As the link says it.
+    const fn word(self) -> Option<&'static str> {
+        match self {
+            VirtualHub::Adapter => None,
+            VirtualHub::Four => Some("4"),
+            VirtualHub::Eight => Some("8"),
+        }
+    }
+
+    fn of_word(word: &str) -> Option<Self> {
+        [VirtualHub::Four, VirtualHub::Eight].into_iter().find(|hub| hub.word() == Some(word))
+    }
+}
+
+impl HiperdriveForm {
+    /// The virtual drive as the window begins with it: an adapter.
+    pub fn usual() -> LinkUrl {
+        LinkUrl::sim()
+    }
+
+    /// The form filled in as a link says.
+    pub fn from_url(url: &LinkUrl) -> Self {
+        let way = match url.scheme {
+            Scheme::Sim => HiperdriveWay::Virtual,
+            Scheme::Replay => HiperdriveWay::Replay,
+            Scheme::Enip | Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp => HiperdriveWay::Network,
+        };
+        let mut form = HiperdriveForm { way, ..HiperdriveForm::default() };
+        match form.way {
+            HiperdriveWay::Replay => form.file = url.target.clone(),
+            HiperdriveWay::Network => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
+            HiperdriveWay::Virtual => {}
+        }
+        form.rest = without_entry(&url.query, |name, value| form.take(name, value));
+        form
+    }
+
+    /// Fills in the entry of a parameter; false where there is none that can show it.
+    fn take(&mut self, name: &str, value: &str) -> bool {
+        let is_virtual = self.way == HiperdriveWay::Virtual;
+        let entry = match name {
+            "rpi" => &mut self.interval,
+            "udp" => &mut self.udp,
+            "timeout" => &mut self.timeout,
+            "drives" if is_virtual => &mut self.drives,
+            "fault" if is_virtual => &mut self.fault,
+            "hub" if is_virtual => {
+                let Some(hub) = VirtualHub::of_word(value) else { return false };
+                self.hub = hub;
+                return true;
+            }
+            _ => {
+                self.big_endian |= (name, value) == BIG_ENDIAN;
+                return (name, value) == BIG_ENDIAN;
+            }
+        };
+        value.clone_into(entry);
+        true
+    }
+
+    /// The link that the entries stand for. What is as usual is left out.
+    ///
+    /// # Errors
+    /// A sentence that says which entry cannot be used and what would be allowed.
+    pub fn url(&self) -> Result<LinkUrl, Text> {
+        checked(self.parameters().link(self.target()?)?, check)
+    }
+
+    fn target(&self) -> Result<(Scheme, String), Text> {
+        Ok(match self.way {
+            HiperdriveWay::Virtual => (Scheme::Sim, String::new()),
+            HiperdriveWay::Network => {
+                (Scheme::Enip, host_and_usual_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
+            }
+            HiperdriveWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        })
+    }
+
+    fn parameters(&self) -> Parameters {
+        let is_virtual = self.way == HiperdriveWay::Virtual;
+        let mut parameters = Parameters::default();
+        if is_virtual {
+            parameters.entry("hub", self.hub.word().unwrap_or_default());
+            parameters.entry("drives", &self.drives);
+            parameters.entry("fault", &self.fault);
+        }
+        parameters.entry("rpi", &self.interval);
+        if self.big_endian {
+            parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
+        }
+        parameters.entry("udp", &self.udp);
+        parameters.entry("timeout", &self.timeout);
+        // What only a virtual device has is not taken along.
+        let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !Config::KEYS.contains(&name);
+        parameters.rest(&self.rest, belongs);
+        parameters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::connect::parameters::tests::assert_comes_back;
+
+    #[test]
+    fn a_link_is_shown_and_comes_back_as_it_was() {
+        let links = [
+            "sim:",
+            "sim:?hub=4",
+            "sim:?hub=8&drives=1,0,1&rpi=20&order=big&seed=7",
+            "sim:?order=little",
+            "enip:192.168.1.5:44818",
+            "enip:192.168.1.5:50123?rpi=5&order=big&udp=2222&timeout=250",
+            "replay:monday.trace",
+        ];
+        assert_comes_back(&links, |url| HiperdriveForm::from_url(url).url());
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_with_its_entry() {
+        let refused = |change: fn(&mut HiperdriveForm)| {
+            let mut form = HiperdriveForm::default();
+            change(&mut form);
+            form.url().unwrap_err().id()
+        };
+        assert_eq!(refused(|form| form.way = HiperdriveWay::Network), "form.device_missing");
+        assert_eq!(refused(|form| form.way = HiperdriveWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.interval = "4".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.drives = "2".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.timeout = "x".to_owned()), "form.parameter");
+    }
+
+    #[test]
+    fn another_way_takes_along_only_what_it_has() {
+        let mut form = HiperdriveForm::from_url(&"sim:?hub=4&seed=5&rpi=20".parse().unwrap());
+        (form.way, form.host) = (HiperdriveWay::Network, "192.168.1.5".to_owned());
+        assert_eq!(form.url().unwrap().to_string(), "enip:192.168.1.5:44818?rpi=20");
+    }
+}

@@ -1,0 +1,47 @@
+//! Edits of a device's parameters, kept over a crash.
+
+use super::staged::Kept;
+use super::unit::Unit;
+use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
+use crate::devices::hiperdrive::jobs::Hiperdrive;
+use crate::devices::hiperdrive::profile::HiperdriveProfile;
+use crate::profile::Document;
+
+/// What is edited, each with its number.
+pub(crate) type Edits = Vec<Kept>;
+
+impl OnDesk for Unit {
+    type Device = Hiperdrive;
+
+    fn session(&self) -> &Session<Hiperdrive> {
+        &self.session
+    }
+
+    fn session_mut(&mut self) -> &mut Session<Hiperdrive> {
+        &mut self.session
+    }
+}
+
+impl Drafted for Unit {
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        self.key().map(|key| (key.device_type, key.serial_number))
+    }
+
+    fn edited(&self) -> Edits {
+        self.staged.kept()
+    }
+
+    fn take_edits(&mut self, edits: Edits) {
+        self.staged.take_draft(edits);
+    }
+
+    fn revert_edits(&mut self) {
+        self.staged.revert();
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
+        let Some(profile) = document.body.get::<HiperdriveProfile>() else { return };
+        self.staged.saved(profile.image.clone());
+        self.session.take_document(file, document);
+    }
+}

@@ -1,0 +1,55 @@
+//! A HIPERDRIVE in words: the errors of jobs with it, what its states, bits, errors and parameters are called, how a motion
+//! ended.
+
+mod check;
+mod error;
+mod motion;
+mod names;
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub use check::{check, source, switch};
+pub use error::{damage, device, out_of_range, range, wrong_length};
+pub use motion::{LOST, ended, goal, lock, lost, phase, refusal, weight};
+pub use names::{ErrorWords, control_bit, error, parameter, state, status_bit, variant};
+pub use write::{change, item, op, other_type, plan, service, warning, written};
+
+use crate::app::Text;
+use crate::app::explain::{link, plain};
+use crate::devices::hiperdrive::jobs::{Doing, JobError};
+use crate::devices::hiperdrive::procedures::Error;
+
+/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+pub fn job(error: &JobError) -> Vec<Text> {
+    match error {
+        JobError::Device(error) => vec![device(error)],
+        JobError::Plan(error) => vec![plan(error)],
+        JobError::NotBegun(why) => vec![crate::app::explain::not_begun(why)],
+        JobError::Interrupted { interrupted, backup, planned, kind } => {
+            write::interruption(interrupted, backup, *planned, *kind)
+        }
+    }
+}
+
+/// The wire itself failed, so that nothing more can be asked over it: why.
+pub fn loss(error: &JobError) -> Option<Text> {
+    match error.device()? {
+        Error::Link(error) => Some(link(error)),
+        _ => None,
+    }
+}
+
+/// The link is open, and nobody answers over it.
+pub fn is_silence(error: &JobError) -> bool {
+    matches!(error.device(), Some(Error::NoReply { .. }))
+}
+
+/// What a job does at the moment.
+pub fn doing(doing: &Doing) -> Text {
+    match doing {
+        Doing::Parameter(number) => parameter(*number),
+        Doing::Step(own) => check::step(*own),
+        Doing::Operation(item) => plain(item),
+    }
+}

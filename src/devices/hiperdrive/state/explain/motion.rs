@@ -1,0 +1,124 @@
+//! Motion in words: why a drive may not move, why an act was refused, how one ended.
+
+use super::names::state;
+use crate::app::explain::link;
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
+use crate::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase, Refusal};
+use crate::devices::hiperdrive::protocol::State;
+
+/// Why nothing may move, and what to do.
+pub fn lock(lock: Lock) -> Text {
+    Text::new(match lock {
+        Lock::Unread => "hd_lock.unread",
+        Lock::NoTimeout => "hd_lock.no_timeout",
+        Lock::LimitsUnconfirmed => "hd_lock.limits",
+        Lock::NotRequested => "hd_lock.not_requested",
+        Lock::Outdated => "hd_lock.old",
+        Lock::NoAnswer => "hd_lock.no_answer",
+    })
+}
+
+/// Why an act was refused, and what to do; `place` says steps as a person measures.
+pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
+    match refusal {
+        Refusal::Locked(own) => lock(own),
+        Refusal::NoEffort => Text::new("hd_refused.no_effort"),
+        Refusal::Outside { target, low, high } => Text::new("hd_refused.outside")
+            .with_text("target", place(target))
+            .with_text("low", place(low))
+            .with_text("high", place(high)),
+        Refusal::Outward { position, low, high } => Text::new("hd_refused.outward")
+            .with_text("position", place(position))
+            .with_text("low", place(low))
+            .with_text("high", place(high)),
+        Refusal::Unclear { position, low, high } => Text::new("hd_refused.unclear")
+            .with_text("position", place(position))
+            .with_text("low", place(low))
+            .with_text("high", place(high)),
+        Refusal::Endless => Text::new("hd_refused.endless"),
+        Refusal::Fault => Text::new("hd_refused.fault"),
+        Refusal::SwitchOnLock => Text::new("hd_refused.lock"),
+        Refusal::NothingToPause => Text::new("hd_refused.nothing_to_pause"),
+        Refusal::NothingToResume => Text::new("hd_refused.nothing_to_resume"),
+        Refusal::Absent => Text::new("hd_refused.absent"),
+    }
+}
+
+/// How an act ended, and what to do where it did not end well.
+pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
+    match ended {
+        Ended::Done => Text::new("hd_end.done"),
+        Ended::Arrived => Text::new("hd_end.arrived"),
+        Ended::RangeEnd => Text::new("hd_end.range_end"),
+        Ended::Stopped => Text::new("hd_end.stopped"),
+        Ended::Replaced => Text::new("hd_end.replaced"),
+        Ended::Stale => Text::new("hd_end.stale"),
+        Ended::Deaf => Text::new("hd_end.deaf"),
+        Ended::Lost => Text::new("hd_end.lost"),
+        Ended::Fault => Text::new("hd_end.fault"),
+        Ended::Locked(own) => lock(own),
+        Ended::Refused(why) => refusal(why, place),
+        Ended::NoAnswer(own) => Text::new("hd_end.no_answer").with_text("state", state(own)),
+        Ended::NotStarted => Text::new("hd_end.not_started"),
+        Ended::Left(own) => Text::new("hd_end.left").with_text("state", state(own)),
+        Ended::Short => Text::new("hd_end.short"),
+        Ended::Beyond { position } => Text::new("hd_end.beyond").with_text("position", place(position)),
+        Ended::WrongWay { position } => Text::new("hd_end.wrong_way").with_text("position", place(position)),
+    }
+}
+
+/// How much an end matters to whoever looks at the window.
+pub const fn weight(ended: Ended) -> Severity {
+    match ended {
+        Ended::Done | Ended::Arrived | Ended::Stopped | Ended::Replaced => Severity::Note,
+        Ended::RangeEnd | Ended::Refused(_) | Ended::Locked(_) | Ended::Short => Severity::Warning,
+        Ended::Stale
+        | Ended::Deaf
+        | Ended::Lost
+        | Ended::Fault
+        | Ended::NoAnswer(_)
+        | Ended::NotStarted
+        | Ended::Left(_)
+        | Ended::Beyond { .. }
+        | Ended::WrongWay { .. } => Severity::Error,
+    }
+}
+
+/// A state that a drive can be led to.
+pub fn goal(goal: Goal) -> Text {
+    state(match goal {
+        Goal::Off => State::NotReady,
+        Goal::Ready => State::Ready,
+        Goal::Operational => State::Operational,
+        Goal::Enabled => State::Enabled,
+    })
+}
+
+/// What a drive does for its person.
+pub fn phase(phase: Phase) -> Text {
+    match phase {
+        Phase::Idle => Text::new("hd_phase.idle"),
+        Phase::Leading(own) => Text::new("hd_phase.leading").with_text("goal", goal(own)),
+        Phase::Starting(_) => Text::new("hd_phase.starting"),
+        Phase::Moving(_) => Text::new("hd_phase.moving"),
+        Phase::Paused { .. } => Text::new("hd_phase.paused"),
+        Phase::Stopping(_) => Text::new("hd_phase.stopping"),
+    }
+}
+
+/// What [`lost`] says, as rows of the texts: true no more once somebody has control again.
+pub const LOST: [&str; 6] =
+    ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
+
+/// Why the cyclic connection is gone, and what to do.
+pub fn lost(lost: Option<&CyclicLost>) -> Text {
+    match lost {
+        Some(CyclicLost::Silent { after }) => Text::new("hd_lost.silent").with("milliseconds", after.as_millis()),
+        Some(CyclicLost::Port(error)) => Text::new("hd_lost.port").with_text("why", link(error)),
+        Some(CyclicLost::DoesNotStand(drive)) => Text::new("hd_lost.does_not_stand").with("drive", drive.get()),
+        Some(CyclicLost::Session) => Text::new("hd_lost.session"),
+        Some(CyclicLost::Failed) => Text::new("hd_lost.failed"),
+        None => Text::new("hd_end.lost"),
+    }
+}

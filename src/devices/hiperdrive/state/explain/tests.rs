@@ -1,0 +1,167 @@
+//! What is said of HIPERDRIVE drives: a sentence on what happened and one on what to do, in both languages.
+
+use std::time::Duration;
+
+use super::{device, ended, lock, plan, warning, weight, wrong_length};
+use crate::app::explain::plain;
+use crate::app::{Language, Severity, Text};
+use crate::buses::ethernet_ip::protocol::{AddressError, GeneralStatus, Service};
+use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock, Refusal};
+use crate::devices::hiperdrive::procedures::{Asked, Damage, Error, Late, Refusal as Refused, WrongLength};
+use crate::devices::hiperdrive::profile::{Item, OtherType, PlanError, Warning};
+use crate::devices::hiperdrive::protocol::{
+    DriveNumber, OutOfRange, ParameterNumber, Range, State, Topology, ValueError, Variant,
+};
+
+const ONE: DriveNumber = DriveNumber::FIRST;
+
+fn number(number: u16) -> ParameterNumber {
+    ParameterNumber::new(number).unwrap()
+}
+
+/// Sentences, with nothing left open in them.
+#[track_caller]
+fn says(text: &Text, sentences: usize) {
+    for words in [text.words(Language::English), text.words(Language::German), text.terminal()] {
+        assert!(!words.contains(['{', '}']), "{words}");
+        assert!(words.ends_with('.') && words.matches(['.', ':', ';', '?']).count() >= sentences, "{words}");
+    }
+}
+
+#[test]
+fn bad_input_has_its_sentence_and_its_remedy() {
+    let english = |text: &Text| text.words(Language::English);
+    let out = OutOfRange { number: number(166), name: "maximum speed", value: 351, range: Range::Within(5, 350) };
+    assert_eq!(
+        english(&device(&Error::OutOfRange(out))),
+        "Parameter 166 (Maximum speed) cannot be 351: it may be 5 to 350. Give a value within that."
+    );
+    let outside = PlanError::PositionOutside { drive: ONE, position: 5000, lower: 0, upper: 4000 };
+    assert!(english(&plan(&outside)).starts_with("Drive 1 stands at 5000, outside the limits 0 to 4000"));
+    let read_only = PlanError::ReadOnly { item: Item(number(107)) };
+    assert_eq!(english(&plan(&read_only)), "Parameter 107 (Actual position) can only be read. Leave it as it is.");
+    assert_eq!(
+        english(&device(&Error::NotRequested { drive: ONE })),
+        "Drive 1 is not requested: parameter 152 is 0. Set it to 1 first."
+    );
+    let switch = ended(Ended::NotStarted, plain);
+    assert!(english(&switch).contains("S3 of the hub is 0"), "{}", english(&switch));
+    let master = device(&Error::OtherMaster { extended: 0x0106 });
+    assert!(english(&master).starts_with("Another master controls these drives already (0x0106). End its connection"));
+}
+
+#[test]
+fn errors_say_what_happened_and_what_to_do() {
+    let asked = Asked::Set(number(158));
+    let refusal =
+        |status: u8| Refused { service: Service::SET, status: GeneralStatus::new(status), extended: Vec::new() };
+    let late = Late { took: Duration::from_millis(1300), waited: Duration::from_millis(1050) };
+    let ranged = |range| OutOfRange { number: number(186), name: "RS-485 time-out", value: 0, range };
+    let length = WrongLength { number: number(107), name: "actual position", expected: 4, got: 2 };
+    let errors = [
+        Error::NeverSilent,
+        Error::NoReply { asked: Asked::Session, tries: 5, late: None },
+        Error::NoReply { asked: Asked::Session, tries: 5, late: Some(late) },
+        Error::Damaged { asked: Asked::Identity, tries: 5, cause: Damage::Empty },
+        Error::Damaged { asked: Asked::Mac, tries: 5, cause: Damage::Cut { bytes: 7 } },
+        Error::InControl,
+        Error::NoCyclic,
+        Error::Unknown(number(44)),
+        Error::NoNumber(900),
+        Error::NoPlace { drive: ONE, topology: Topology::Hub4 },
+        Error::NoDrive { drive: ONE },
+        Error::OutOfRange(ranged(Range::WithinOr(1, 100, 255))),
+        Error::Refuses(ranged(Range::OneOf(&[9600, 19200, 38400]))),
+        Error::Value { number: number(158), cause: ValueError::Kind("a number is expected, not a text") },
+        length.into(),
+        Error::ReadOnly { number: number(107), name: "actual position" },
+        Error::WriteOnly { number: number(199), name: "reset drive" },
+        Error::Motion { number: number(104), name: "target position" },
+        Error::Moving { drive: ONE },
+        Error::NotHiperdrive { says: "1769-L16ER".to_owned() },
+        Error::NotTaken { number: number(198), wanted: 100, reads: 128 },
+        Error::NetworkNotTaken { attribute: 5 },
+        Error::Busy { reads: 1, milliseconds: 2000 },
+        Error::Changed { item: "158".to_owned() },
+        Error::OtherPlan,
+    ];
+    for error in errors {
+        says(&device(&error), 2);
+    }
+    // Issue 21.9: both lengths, in both languages.
+    for (language, said) in [
+        (Language::English, "Parameter 107 (Actual position) has the wrong length (bytes received: 2, expected: 4)"),
+        (Language::German, "Parameter 107 (Istposition) hat die falsche Länge (Bytes empfangen: 2, erwartet: 4)"),
+    ] {
+        assert!(wrong_length(&length).words(language).starts_with(said), "{}", wrong_length(&length).words(language));
+    }
+    // Where more time may help, the command line says how to give it, and the window speaks of no link.
+    for late in [None, Some(late)] {
+        let text = device(&Error::NoReply { asked: Asked::Session, tries: 5, late });
+        assert!(text.terminal().contains("timeout=2000 in the link"), "{}", text.terminal());
+        assert!(!text.words(Language::English).contains("timeout="));
+    }
+    for status in 0..=0x30 {
+        says(&device(&Error::Refused { asked, refusal: refusal(status) }), 2);
+    }
+}
+
+#[test]
+fn plans_and_ends_say_what_to_do() {
+    let item = Item(number(258));
+    let (profile, here) = (|| "17".to_owned(), || "18".to_owned());
+    let plans = [
+        PlanError::OtherDevice { profile: profile(), device: here() },
+        PlanError::OtherDrive { drive: ONE, profile: profile(), device: here() },
+        OtherType::Device { profile: Topology::Hub8, device: Topology::Adapter }.into(),
+        OtherType::Drive { drive: ONE, profile: Variant::new(7), device: Variant::OTHER }.into(),
+        PlanError::Moves { item },
+        PlanError::Acts { item },
+        PlanError::NotRead { item },
+        PlanError::LimitsCrossed { drive: ONE, lower: 2, upper: 1 },
+        PlanError::PositionTooLarge { drive: ONE, position: i64::MAX },
+        PlanError::ReferenceOutside { drive: ONE, position: 1, becomes: 0, lower: 64, upper: 128 },
+        PlanError::Address(AddressError::None),
+        PlanError::Source(7),
+    ];
+    plans.iter().for_each(|error| says(&plan(error), 2));
+    let turns = (-511.0, 511.0);
+    let warnings = [
+        Warning::LimitsMove { drive: ONE, now: turns, then: (-83_722.24, 83_722.24) },
+        Warning::AfterReset(item),
+        Warning::NoTimeout(ONE),
+        Warning::NotRequested(ONE),
+    ];
+    warnings.iter().for_each(|own| says(&warning(own), 2));
+    let locks = [Lock::Unread, Lock::NoTimeout, Lock::LimitsUnconfirmed, Lock::NotRequested];
+    let refusals = [
+        Refusal::NoEffort,
+        Refusal::Outside { target: 3, low: 1, high: 2 },
+        Refusal::Endless,
+        Refusal::Fault,
+        Refusal::SwitchOnLock,
+        Refusal::NothingToPause,
+        Refusal::NothingToResume,
+        Refusal::Absent,
+    ];
+    let bad = [
+        Ended::RangeEnd,
+        Ended::Stale,
+        Ended::Deaf,
+        Ended::Lost,
+        Ended::Fault,
+        Ended::NoAnswer(State::Ready),
+        Ended::NotStarted,
+        Ended::Left(State::Fault),
+        Ended::Short,
+    ];
+    locks.iter().for_each(|own| says(&lock(*own), 2));
+    for own in bad.into_iter().chain(refusals.map(Ended::Refused)).chain(locks.map(Ended::Locked)) {
+        says(&ended(own, plain), 2);
+        assert!(weight(own) >= Severity::Warning, "{own:?}");
+    }
+    for own in [Ended::Done, Ended::Arrived, Ended::Stopped, Ended::Replaced] {
+        says(&ended(own, plain), 1);
+        assert_eq!(weight(own), Severity::Note, "nobody has to do anything");
+    }
+}

@@ -1,0 +1,289 @@
+//! What the lamps say: what is lit is picked, what it means and what to do stand beside it. It needs no device.
+
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, LedSubject, PortLight, Topology};
+
+/// What somebody sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Leds {
+    /// It is a hub; else a bus adapter.
+    pub hub: bool,
+    /// Switch S3 of a hub: 0 for all drives, else the drive that the lamp RS485 is about.
+    pub s3: u8,
+    /// RS485.
+    pub drives: DriveLight,
+    /// MS.
+    pub module: BusLight,
+    /// NS.
+    pub network: BusLight,
+    /// Of a port.
+    pub port: PortLight,
+}
+
+/// A lamp, or the two of a port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Lamp {
+    /// RS485.
+    Drives,
+    /// MS or NS.
+    Bus(BusLamp),
+    /// P1 or P2.
+    Port,
+}
+
+/// What a lamp says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// How much it matters.
+    pub severity: Severity,
+    /// What it means.
+    pub meaning: Text,
+    /// What to do.
+    pub remedy: Text,
+}
+
+impl Default for Leds {
+    /// All is well.
+    fn default() -> Self {
+        Leds {
+            hub: true,
+            s3: 0,
+            drives: DriveLight::Green,
+            module: BusLight::Green,
+            network: BusLight::Green,
+            port: PortLight::Active,
+        }
+    }
+}
+
+impl Lamp {
+    /// All of them, as they are drawn.
+    pub const ALL: [Lamp; 4] = [Lamp::Drives, Lamp::Bus(BusLamp::Module), Lamp::Bus(BusLamp::Network), Lamp::Port];
+
+    /// As it is printed beside it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Lamp::Drives => "RS485",
+            Lamp::Bus(lamp) => lamp.name(),
+            Lamp::Port => "P1/P2",
+        }
+    }
+}
+
+impl Leds {
+    /// All well, at a device of this kind.
+    pub fn of(topology: Topology) -> Self {
+        Leds { hub: topology != Topology::Adapter, ..Leds::default() }
+    }
+
+    /// What the lamp RS485 is about.
+    pub const fn subject(&self) -> LedSubject {
+        match (self.hub, self.s3) {
+            (false, _) => LedSubject::Adapter,
+            (true, 0) => LedSubject::Drives,
+            (true, _) => LedSubject::Drive,
+        }
+    }
+
+    /// Another device, or S3 elsewhere. A light that the lamp then cannot show is off.
+    pub fn look_at(&mut self, hub: bool, s3: u8) {
+        (self.hub, self.s3) = (hub, s3.min(8));
+        if self.subject().row(self.drives).is_none() {
+            self.drives = DriveLight::Off;
+        }
+    }
+
+    /// The lamp shows the next of what it can.
+    pub fn click(&mut self, lamp: Lamp) {
+        match lamp {
+            Lamp::Drives => {
+                let lights: Vec<DriveLight> = self.subject().rows().iter().map(|row| row.light).collect();
+                self.drives = next(&lights, self.drives);
+            }
+            Lamp::Bus(BusLamp::Module) => self.module = next(&BUS, self.module),
+            Lamp::Bus(BusLamp::Network) => self.network = next(&BUS, self.network),
+            Lamp::Port => self.port = next(&[PortLight::Off, PortLight::Link, PortLight::Active], self.port),
+        }
+    }
+
+    /// What a lamp says as it is.
+    pub fn said(&self, lamp: Lamp) -> Said {
+        let (severity, meaning, remedy) = match lamp {
+            Lamp::Drives => drives(self.subject(), self.drives),
+            Lamp::Bus(lamp) => bus(lamp, if lamp == BusLamp::Module { self.module } else { self.network }),
+            Lamp::Port => port(self.port),
+        };
+        Said { severity, meaning: Text::new(meaning), remedy: Text::new(remedy) }
+    }
+
+    /// What a lamp shows, in words.
+    pub fn shown(&self, lamp: Lamp) -> Text {
+        Text::new(match lamp {
+            Lamp::Drives => match self.drives {
+                DriveLight::Off => "hd_led.off",
+                DriveLight::Green => "hd_led.green",
+                DriveLight::Red => "hd_led.red",
+                DriveLight::RedGreen => "hd_led.red_green",
+                DriveLight::GreenFlashing => "hd_led.green_flashing",
+                DriveLight::RedGreenFlashing => "hd_led.red_green_flashing",
+                DriveLight::Alternating => "hd_led.alternating",
+            },
+            Lamp::Bus(lamp) => match if lamp == BusLamp::Module { self.module } else { self.network } {
+                BusLight::Off => "hd_led.off",
+                BusLight::Green => "hd_led.green",
+                BusLight::GreenFlashing => "hd_led.green_flashing",
+                BusLight::Red => "hd_led.red",
+                BusLight::RedFlashing => "hd_led.red_flashing",
+                BusLight::Alternating => "hd_led.alternating",
+            },
+            Lamp::Port => match self.port {
+                PortLight::Off => "hd_led.off",
+                PortLight::Link => "hd_led.green",
+                PortLight::Active => "hd_led.green_yellow",
+            },
+        })
+    }
+}
+
+const BUS: [BusLight; 6] = [
+    BusLight::Off,
+    BusLight::Green,
+    BusLight::GreenFlashing,
+    BusLight::RedFlashing,
+    BusLight::Red,
+    BusLight::Alternating,
+];
+
+/// The one behind `now`, the first behind the last.
+fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
+    let at = all.iter().position(|own| *own == now).map_or(0, |at| at + 1);
+    all.get(at).or(all.first()).copied().unwrap_or(now)
+}
+
+/// What it means and what to do, as rows of the table of texts: in English they are the protocol's words.
+type Row = (Severity, &'static str, &'static str);
+
+fn drives(subject: LedSubject, light: DriveLight) -> Row {
+    use DriveLight::{Alternating, Green, GreenFlashing, Off, Red, RedGreen, RedGreenFlashing};
+    use LedSubject::{Adapter, Drive, Drives};
+    use Severity::{Error, Good, Note, Warning};
+    match (subject, light) {
+        (Adapter | Drives, Off) => (Error, "hd_led.no_supply", "hd_led.check_supply"),
+        (_, Alternating) => (Note, "hd_led.presence", "hd_led.wait"),
+        (Adapter, Red) => (Error, "hd_led.adapter_red", "hd_led.adapter_red_do"),
+        (Drives, Red) => (Error, "hd_led.hub_red", "hd_led.hub_red_do"),
+        (Drive, Red) => (Error, "hd_led.drive_red", "hd_led.drive_red_do"),
+        (Adapter | Drive, RedGreen) => (Error, "hd_led.drive_error", "hd_led.drive_error_do"),
+        (Drives, RedGreen) => (Error, "hd_led.hub_error", "hd_led.hub_error_do"),
+        (Adapter, GreenFlashing) => (Warning, "hd_led.adapter_flashing", "hd_led.adapter_flashing_do"),
+        (Drives | Drive, GreenFlashing) => (Warning, "hd_led.hub_flashing", "hd_led.hub_flashing_do"),
+        (Adapter, RedGreenFlashing) => (Warning, "hd_led.adapter_both", "hd_led.adapter_both_do"),
+        (Drives | Drive, RedGreenFlashing) => (Warning, "hd_led.hub_both", "hd_led.hub_both_do"),
+        (Adapter, Green) => (Good, "hd_led.drive_well", "hd_led.nothing"),
+        (Drives, Green) => (Good, "hd_led.hub_well", "hd_led.nothing"),
+        (Drive, Off) => (Note, "hd_led.absent", "hd_led.absent_do"),
+        (Drive, Green) => (Good, "hd_led.drive_well", "hd_led.drive_well_do"),
+    }
+}
+
+fn bus(lamp: BusLamp, light: BusLight) -> Row {
+    use BusLamp::{Module, Network};
+    use Severity::{Error, Good, Note, Warning};
+    match (lamp, light) {
+        (Module, BusLight::Off) => (Error, "hd_led.no_supply", "hd_led.check_supply"),
+        (Module, BusLight::Green) => (Good, "hd_led.works", "hd_led.nothing"),
+        (Module, BusLight::GreenFlashing) => (Note, "hd_led.not_configured", "hd_led.not_configured_do"),
+        (Module, BusLight::RedFlashing) => (Warning, "hd_led.minor", "hd_led.minor_do"),
+        (Module, BusLight::Red) => (Error, "hd_led.major", "hd_led.major_do"),
+        (_, BusLight::Alternating) => (Note, "hd_led.self_test", "hd_led.wait"),
+        (Network, BusLight::Off) => (Error, "hd_led.no_address", "hd_led.no_address_do"),
+        (Network, BusLight::Green) => (Good, "hd_led.open", "hd_led.nothing"),
+        (Network, BusLight::GreenFlashing) => (Note, "hd_led.no_connection", "hd_led.no_connection_do"),
+        (Network, BusLight::RedFlashing) => (Warning, "hd_led.timed_out", "hd_led.timed_out_do"),
+        (Network, BusLight::Red) => (Error, "hd_led.same_address", "hd_led.same_address_do"),
+    }
+}
+
+fn port(light: PortLight) -> Row {
+    match light {
+        PortLight::Off => (Severity::Error, "hd_led.no_link", "hd_led.no_link_do"),
+        PortLight::Link => (Severity::Note, "hd_led.quiet", "hd_led.nothing"),
+        PortLight::Active => (Severity::Good, "hd_led.data", "hd_led.nothing"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+    use crate::devices::hiperdrive::protocol::{BUS_LEDS, PORT_LEDS};
+
+    /// A sentence of the window is the phrase of the table with a capital letter and a full stop.
+    #[track_caller]
+    fn same(said: &Text, phrase: &str) {
+        let words = said.words(Language::English);
+        assert_eq!(words.trim_end_matches('.').to_lowercase(), phrase.to_lowercase(), "{}", said.id());
+        assert!(words.ends_with('.') && words.starts_with(|c: char| c.is_uppercase()), "{words}");
+        assert_ne!(words, said.words(Language::German));
+    }
+
+    #[test]
+    fn lamps_say_what_the_tables_of_the_protocol_say() {
+        for (hub, s3) in [(false, 0), (true, 0), (true, 3)] {
+            let mut leds = Leds { hub, s3, ..Leds::default() };
+            for row in leds.subject().rows() {
+                leds.drives = row.light;
+                let said = leds.said(Lamp::Drives);
+                same(&said.meaning, row.meaning);
+                same(&said.remedy, row.remedy);
+            }
+        }
+        for row in BUS_LEDS {
+            let leds = Leds { module: row.light, network: row.light, ..Leds::default() };
+            let said = leds.said(Lamp::Bus(row.lamp));
+            same(&said.meaning, row.meaning);
+            same(&said.remedy, row.remedy);
+        }
+        for row in PORT_LEDS {
+            let said = Leds { port: row.light, ..Leds::default() }.said(Lamp::Port);
+            same(&said.meaning, row.meaning);
+            same(&said.remedy, row.remedy);
+        }
+    }
+
+    #[test]
+    fn clicking_goes_through_all_that_a_lamp_can_show() {
+        for (hub, s3, lights) in [(false, 0, 7), (true, 0, 7), (true, 8, 4)] {
+            let mut leds = Leds { hub, s3, ..Leds::default() };
+            let mut seen = Vec::new();
+            for _ in 0..lights {
+                leds.click(Lamp::Drives);
+                assert!(leds.subject().row(leds.drives).is_some() && !seen.contains(&leds.drives));
+                seen.push(leds.drives);
+            }
+            leds.click(Lamp::Drives);
+            assert_eq!(seen.first(), Some(&leds.drives));
+        }
+        for (lamp, lights) in [(Lamp::Bus(BusLamp::Module), 6), (Lamp::Bus(BusLamp::Network), 6), (Lamp::Port, 3)] {
+            let mut leds = Leds::default();
+            let mut said = Vec::new();
+            (0..lights).for_each(|_| {
+                leds.click(lamp);
+                said.push(leds.said(lamp).meaning);
+            });
+            said.dedup();
+            assert!(said.len() == lights && leds == Leds::default(), "{lamp:?}");
+        }
+    }
+
+    #[test]
+    fn a_light_that_the_lamp_of_one_drive_does_not_have_is_off() {
+        let mut leds = Leds { drives: DriveLight::Alternating, ..Leds::of(Topology::Hub8) };
+        leds.look_at(true, 9);
+        assert_eq!((leds.s3, leds.subject(), leds.drives), (8, LedSubject::Drive, DriveLight::Off));
+        leds.drives = DriveLight::Red;
+        leds.look_at(false, 8);
+        assert_eq!((leds.subject(), leds.drives), (LedSubject::Adapter, DriveLight::Red));
+        assert!(!Leds::of(Topology::Adapter).hub);
+    }
+}

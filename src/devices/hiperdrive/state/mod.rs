@@ -1,0 +1,47 @@
+//! The HIPERDRIVE tab: what is known of an adapter or a hub and its drives, what is wanted of them beside that, and the
+//! drives as a person moves them. Complete without a window.
+
+mod act;
+mod action;
+pub mod axis;
+mod connect_form;
+mod desk;
+mod discovery;
+mod drafts;
+pub mod explain;
+pub mod forms;
+mod job;
+pub mod leds;
+mod moves;
+pub mod network;
+mod news;
+mod outside;
+mod record;
+mod remembered;
+mod review;
+mod rows;
+mod ruler;
+mod said;
+mod setup;
+mod staged;
+mod survey;
+mod trace;
+mod unit;
+mod unsaved;
+pub mod words;
+mod write;
+
+pub use action::{Action, Motor};
+pub use connect_form::{HiperdriveForm, HiperdriveWay, VirtualHub};
+pub(crate) use discovery::ask_all;
+pub use discovery::{Discovery, FoundDevice};
+pub use moves::Moves;
+pub use record::Record;
+pub(crate) use remembered::LocksAlone;
+pub use remembered::Remembered;
+pub use review::{Review, ReviewState};
+pub use rows::Row;
+pub use ruler::{Beyond, Measure, Ruler};
+pub use said::Said;
+pub use staged::{Differs, Edit, EditError, Kept, LimitsStay, Mark, Staged, is_editable};
+pub use unit::Unit;

@@ -1,0 +1,436 @@
+//! The drives as a person moves them from the window: what is held, what is under way, how the last act ended. What a drive
+//! is sent the dead-man behind [`Motion`] alone decides; here is its heartbeat, and what ends it at once.
+//!
+//! A jog is kept alive by what holds it, which says so with every picture; a move, a step and a run by the pictures
+//! themselves. A window that stands still says nothing, and 250 ms later everything stands.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::devices::hiperdrive::jobs::{DriveView, Glance, Motion, View};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, HEARD, Lock, Motive, Permit, Phase, Wish};
+use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
+use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Setpoint, State};
+use crate::units::Moment;
+
+/// The drives of a session as a person moves them.
+pub struct Moves {
+    /// While the session is open.
+    motion: Option<Motion>,
+    /// What the drives said at the last look.
+    view: View,
+    act: Option<Act>,
+    /// How drives are jogged, and moved, where that is not as it usually is.
+    jogs: BTreeMap<DriveNumber, Effort>,
+    jobs: BTreeMap<DriveNumber, Effort>,
+    /// Drives for which a person has allowed an endless run.
+    experts: BTreeSet<DriveNumber>,
+    /// The way further out from outside the limits, freed for the next press, and used by the one that is held.
+    freed: Option<(DriveNumber, Direction)>,
+    used: Option<(DriveNumber, Direction)>,
+    /// What drives might do at the last look, and when that was. Limits to be confirmed outlive a session.
+    limits: BTreeMap<DriveNumber, DriveLimits>,
+    looked: Moment,
+    /// Drives whose limits have changed since somebody asked.
+    limits_changed: BTreeSet<DriveNumber>,
+    /// The cyclic connection was opened since somebody asked.
+    taken: bool,
+}
+
+/// What was asked for last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Act {
+    drive: DriveNumber,
+    number: u64,
+    kind: Kind,
+    /// The drive moves by it, or has a job that waits.
+    moves: bool,
+    /// How it ended was told.
+    told: bool,
+}
+
+/// What keeps an act alive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A button or a key that is held.
+    Held,
+    /// Every picture; it has no end of its own.
+    Run,
+    /// Every picture.
+    Other,
+}
+
+impl Default for Moves {
+    fn default() -> Self {
+        Moves {
+            motion: None,
+            view: View::default(),
+            act: None,
+            jogs: BTreeMap::new(),
+            jobs: BTreeMap::new(),
+            experts: BTreeSet::new(),
+            freed: None,
+            used: None,
+            limits: BTreeMap::new(),
+            looked: Moment::START,
+            limits_changed: BTreeSet::new(),
+            taken: false,
+        }
+    }
+}
+
+impl Moves {
+    /// A session is open. Limits that nobody has looked at stay so, and nobody is an expert yet.
+    pub(super) fn begin(&mut self, motion: Motion) {
+        for drive in self.unconfirmed() {
+            motion.unconfirm_limits(drive);
+        }
+        (self.experts, self.act) = (BTreeSet::new(), None);
+        self.limits_changed.clear();
+        self.taken = false;
+        let Glance { at, view, limits } = motion.glance();
+        (self.looked, self.view, self.limits) = (at, view, limits);
+        self.motion = Some(motion);
+    }
+
+    /// The session is gone, and every motion with it.
+    pub(super) fn end(&mut self) {
+        self.stop();
+        self.look();
+        self.motion = None;
+        (self.view, self.act) = (View::default(), None);
+    }
+
+    /// Another device: its limits are others.
+    pub(super) fn forget(&mut self) {
+        self.stop();
+        self.limits.clear();
+        self.limits_changed.clear();
+        (self.jogs, self.jobs) = (BTreeMap::new(), BTreeMap::new());
+        for drive in std::mem::take(&mut self.experts) {
+            self.set_expert(drive, false);
+        }
+    }
+
+    /// Looks at what the drives say, and keeps alive what pictures keep alive. Called for every picture.
+    pub(super) fn beat(&mut self) {
+        if let (Some(motion), Some(act)) = (&self.motion, &self.act)
+            && act.kind != Kind::Held
+            && motion.is_latest(act.number)
+            && !self.has_ended(act.number, act.drive)
+        {
+            motion.refresh();
+        }
+        self.look();
+    }
+
+    /// Looks at what the drives say, and at what they may do.
+    pub(super) fn look(&mut self) {
+        let Some(motion) = &self.motion else { return };
+        let Glance { at, view, limits } = motion.glance();
+        self.taken |= view.open && !self.view.open;
+        for (drive, own) in &limits {
+            let before = self.limits.get(drive).map(|before| (before.rules(), before.locks()));
+            if before.is_some_and(|before| before != (own.rules(), own.locks())) {
+                self.limits_changed.insert(*drive);
+            }
+        }
+        (self.looked, self.view, self.limits) = (at, view, limits);
+    }
+
+    /// Drives whose limits have changed since this was asked last: here, or by another master.
+    pub(super) fn take_limits_changed(&mut self) -> BTreeSet<DriveNumber> {
+        std::mem::take(&mut self.limits_changed)
+    }
+
+    /// The cyclic connection was opened since this was asked last.
+    pub(super) fn take_taken(&mut self) -> bool {
+        std::mem::take(&mut self.taken)
+    }
+
+    /// How the last act ended, once it has: to be told once.
+    pub(super) fn take_end(&mut self) -> Option<(DriveNumber, Ended)> {
+        let act = self.act.filter(|act| !act.told)?;
+        let (number, ended) = self.drive(act.drive)?.ended?;
+        if number < act.number {
+            return None;
+        }
+        self.act = Some(Act { told: true, ..act });
+        Some((act.drive, ended))
+    }
+
+    fn has_ended(&self, number: u64, drive: DriveNumber) -> bool {
+        self.drive(drive).and_then(|own| own.ended).is_some_and(|(own, _)| own >= number)
+    }
+
+    fn intend(&mut self, drive: DriveNumber, wish: Wish, kind: Kind) -> Option<u64> {
+        // For one press: whatever is asked for next needs it freed again.
+        self.freed = None;
+        let number = self.motion.as_ref()?.intend(drive, wish);
+        let moves = wish.moves() || wish == Wish::Pause;
+        self.act = Some(Act { drive, number, kind, moves, told: false });
+        Some(number)
+    }
+
+    /// A jog is pressed. While one is held, nothing begins.
+    pub(super) fn press(&mut self, drive: DriveNumber, jog: Wish) {
+        if !self.is_held() {
+            self.intend(drive, jog, Kind::Held);
+            self.used = match jog {
+                Wish::Jog { direction, outward: true, .. } => Some((drive, direction)),
+                _ => None,
+            };
+        }
+    }
+
+    /// The jog is still held.
+    pub(super) fn hold(&self) {
+        if let (Some(motion), Some(act)) = (&self.motion, self.act)
+            && act.kind == Kind::Held
+            && motion.is_latest(act.number)
+        {
+            motion.refresh();
+        }
+    }
+
+    /// The jog was let go, or can be seen no more: the drive stops now, not at the next look.
+    pub(crate) fn release(&mut self) {
+        self.stop_those(|kind| kind == Kind::Held);
+    }
+
+    /// Nobody is there for what has no end of its own: a jog, a run.
+    pub(crate) fn let_go(&mut self) {
+        self.freed = None;
+        self.stop_those(|kind| matches!(kind, Kind::Held | Kind::Run));
+    }
+
+    fn stop_those(&mut self, which: impl FnOnce(Kind) -> bool) {
+        let Some(act) = self.act.filter(|act| which(act.kind)) else { return };
+        if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest(act.number)) {
+            motion.intend(act.drive, Wish::Stop);
+        }
+        // Its end is still to be told; nothing keeps it alive any more.
+        self.act = Some(Act { kind: Kind::Other, ..act });
+    }
+
+    /// A person frees the way further out, for one press.
+    pub(super) fn free(&mut self, drive: DriveNumber, direction: Direction) {
+        self.freed = Some((drive, direction));
+    }
+
+    /// A jog this way may lead further out: the next one, or the one that is held.
+    pub fn is_freed(&self, drive: DriveNumber, direction: Direction) -> bool {
+        let way = Some((drive, direction));
+        self.freed == way || self.used == way && self.is_held()
+    }
+
+    /// A move, a step, another state: kept alive by pictures. The number of the act; `None` while the session is not open.
+    pub(super) fn want(&mut self, drive: DriveNumber, wish: Wish) -> Option<u64> {
+        let kind = if matches!(wish, Wish::Run { .. }) { Kind::Run } else { Kind::Other };
+        self.intend(drive, wish, kind)
+    }
+
+    /// All drives stop, whatever moves them.
+    pub(crate) fn stop(&mut self) {
+        self.freed = None;
+        if let Some(motion) = &self.motion {
+            motion.stop();
+        }
+        if let Some(act) = &mut self.act {
+            act.kind = Kind::Other;
+        }
+    }
+
+    /// The limits of a drive are to be confirmed before it moves.
+    pub(super) fn unconfirm(&mut self, drive: DriveNumber) {
+        self.limits.entry(drive).or_default().unconfirm();
+        if let Some(motion) = &self.motion {
+            motion.unconfirm_limits(drive);
+        }
+    }
+
+    /// A person confirms the limits as they were shown. Returns whether that counts.
+    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: LimitsSeen) -> bool {
+        let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
+        self.look();
+        counts
+    }
+
+    /// Drives whose limits are to be confirmed.
+    pub fn unconfirmed(&self) -> BTreeSet<DriveNumber> {
+        self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
+    }
+
+    pub(super) fn set_jog_effort(&mut self, drive: DriveNumber, effort: Effort) {
+        self.jogs.insert(drive, effort);
+    }
+
+    pub(super) fn set_move_effort(&mut self, drive: DriveNumber, effort: Effort) {
+        self.jobs.insert(drive, effort);
+    }
+
+    pub(super) fn set_expert(&mut self, drive: DriveNumber, expert: bool) {
+        if expert {
+            self.experts.insert(drive);
+        } else {
+            self.experts.remove(&drive);
+        }
+        if let Some(motion) = &self.motion {
+            motion.allow_endless(drive, expert);
+        }
+    }
+
+    /// The handle of the session's motion; `None` while it is not open.
+    pub fn motion(&self) -> Option<&Motion> {
+        self.motion.as_ref()
+    }
+
+    /// The cyclic connection is open: drives can be moved.
+    pub fn is_open(&self) -> bool {
+        self.view.open
+    }
+
+    /// What the drives said at the last look, and how well their connection works.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// What a drive said at the last look; `None` without a cyclic connection.
+    pub fn drive(&self, drive: DriveNumber) -> Option<&DriveView> {
+        self.view.drives.iter().find(|own| own.number == drive).filter(|_| self.view.open)
+    }
+
+    /// Where a drive is.
+    pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
+        self.drive(drive).map(|own| own.actual)
+    }
+
+    /// What a drive was sent last.
+    pub fn sent(&self, drive: DriveNumber) -> Option<Setpoint> {
+        self.drive(drive).map(|own| own.sent)
+    }
+
+    /// What is done with a drive.
+    pub fn phase(&self, drive: DriveNumber) -> Option<Phase> {
+        self.drive(drive).map(|own| own.phase)
+    }
+
+    /// What a drive may do; `None` while the session is not open.
+    pub fn permit(&self, drive: DriveNumber) -> Option<Permit> {
+        self.motion.as_ref().map(|motion| motion.permitted(drive))
+    }
+
+    /// What a drive might do at the last look; `None` where nothing is known of it.
+    pub fn limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
+        self.limits.get(&drive)
+    }
+
+    /// A motion of a drive may begin by what was read of its limits at the last look.
+    pub(super) fn are_limits_valid(&self, drive: DriveNumber) -> bool {
+        self.limits(drive).is_some_and(|limits| limits.is_valid(self.looked))
+    }
+
+    /// The limits of a drive are to be read before it moves.
+    pub(super) fn doubt_limits(&mut self, drive: DriveNumber) {
+        self.limits.entry(drive).or_default().doubt(self.looked);
+        if let Some(motion) = &self.motion {
+            motion.doubt_limits(drive);
+        }
+    }
+
+    /// Why a drive may not move.
+    pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
+        let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
+        // Without control nothing moves, the limits are read with it, and a slow answer ends nothing.
+        locks.retain(|lock| !matches!(lock, Lock::Outdated | Lock::NoAnswer) || self.view.open);
+        locks
+    }
+
+    /// A jog is held.
+    pub fn is_held(&self) -> bool {
+        let held = self.act.filter(|act| act.kind == Kind::Held && !self.has_ended(act.number, act.drive));
+        held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
+    }
+
+    /// The act by which a drive turns while its pad is held, and which way.
+    pub fn held(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
+        let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
+        match self.phase(drive)? {
+            Phase::Moving(Motive::Run { direction, .. }) => Some((act.number, direction)),
+            _ => None,
+        }
+    }
+
+    /// What the drives say has come for a while: the first packets of a connection are no position of theirs.
+    pub fn is_heard(&self) -> bool {
+        let link = &self.view.link;
+        let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
+        self.view.open && link.interval.saturating_mul(packets) >= HEARD
+    }
+
+    /// Some drive moves, is about to, or is led to where it may.
+    pub fn is_moving(&self) -> bool {
+        self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
+    }
+
+    /// An act is under way that has to be kept alive.
+    pub fn is_under_way(&self) -> bool {
+        let own = |act: &Act| {
+            let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number));
+            self.view.open && is_latest && !self.has_ended(act.number, act.drive)
+        };
+        self.act.as_ref().is_some_and(own)
+    }
+
+    /// A drive moves, is about to, or is led to where it may.
+    pub fn is_drive_moving(&self, drive: DriveNumber) -> bool {
+        self.drive(drive).is_some_and(moves) || self.mover() == Some(drive)
+    }
+
+    /// The drive that is being moved from here, or whose job waits. Whatever is asked of a drive ends that.
+    pub fn mover(&self) -> Option<DriveNumber> {
+        let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
+        let has_job =
+            |own: &&DriveView| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Paused { .. });
+        let busy = self.view.drives.iter().find(has_job).filter(|_| self.view.open);
+        asked.or_else(|| busy.map(|own| own.number))
+    }
+
+    /// How a jog of a drive turns.
+    pub fn jog_effort(&self, drive: DriveNumber) -> Effort {
+        self.jogs.get(&drive).copied().unwrap_or(Effort::JOG)
+    }
+
+    /// How a move, a step and a run of a drive turn.
+    pub fn move_effort(&self, drive: DriveNumber) -> Effort {
+        self.jobs.get(&drive).copied().unwrap_or(Effort::MOVE)
+    }
+
+    /// With which effort a drive is being jogged; `None` while it is not.
+    pub fn jogs_with(&self, drive: DriveNumber) -> Option<Effort> {
+        self.sent_effort(drive).filter(|_| self.is_jog(drive))
+    }
+
+    /// With which effort a move, a step or a run is under way; `None` while none is.
+    pub fn moves_with(&self, drive: DriveNumber) -> Option<Effort> {
+        self.sent_effort(drive).filter(|_| !self.is_jog(drive))
+    }
+
+    fn is_jog(&self, drive: DriveNumber) -> bool {
+        self.act.is_some_and(|act| act.drive == drive && act.kind == Kind::Held)
+    }
+
+    fn sent_effort(&self, drive: DriveNumber) -> Option<Effort> {
+        let own = self.drive(drive).filter(|own| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_)))?;
+        Some(Effort { speed: own.sent.speed, torque: own.sent.torque })
+    }
+
+    /// A person has allowed an endless run of a drive.
+    pub fn is_expert(&self, drive: DriveNumber) -> bool {
+        self.experts.contains(&drive)
+    }
+}
+
+fn moves(own: &DriveView) -> bool {
+    own.actual.status.state() == State::Moving
+        || matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Stopping(_))
+}

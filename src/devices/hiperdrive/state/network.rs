@@ -1,0 +1,336 @@
+//! How a device gets its address: what its TCP/IP object says beside what is wanted of it, what the switches S1 and S2 make of
+//! that, and what will be at the next power-up (reference 1). Nothing is asked of the device here.
+
+use core::net::Ipv4Addr;
+
+use crate::app::{Severity, Text};
+use crate::buses::ethernet_ip::protocol::{AddressError, AddressSource, InterfaceConfiguration};
+use crate::devices::hiperdrive::profile::NetworkSettings;
+use crate::devices::hiperdrive::protocol::AddressSwitch;
+
+/// What is wanted, as it is typed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// Attribute 3.
+    pub source: AddressSource,
+    /// The device's own.
+    pub address: String,
+    /// Of its network.
+    pub mask: String,
+    /// To other networks; empty for none.
+    pub gateway: String,
+    /// Empty for none.
+    pub name_servers: [String; 2],
+    /// The domain's name.
+    pub domain: String,
+}
+
+/// From where a device has its address once it is switched on again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PowerUp {
+    /// The switches say it.
+    Fixed(Ipv4Addr),
+    /// It is stored.
+    Stored(Ipv4Addr),
+    /// It should be stored, and none is.
+    NothingStored,
+    /// A BOOTP server says it.
+    Bootp,
+    /// A DHCP server says it.
+    Dhcp,
+    /// The device knows.
+    Unknown(u8),
+}
+
+/// A row of the table of switch positions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// The two digits: `0`, `1…96`.
+    pub digits: &'static str,
+    /// What they mean.
+    pub meaning: Text,
+    /// They stand so.
+    pub is_now: bool,
+}
+
+impl Form {
+    /// As the device has it.
+    pub fn of(settings: &NetworkSettings) -> Self {
+        let own = &settings.interface;
+        let text = |address: Ipv4Addr| if address.is_unspecified() { String::new() } else { address.to_string() };
+        Form {
+            source: settings.source,
+            address: text(own.address),
+            mask: text(own.mask),
+            gateway: text(own.gateway),
+            name_servers: own.name_servers.map(text),
+            domain: own.domain.clone(),
+        }
+    }
+
+    /// Addresses are typed only where they are stored; elsewhere a server says them.
+    pub fn has_addresses(&self) -> bool {
+        self.source == AddressSource::Stored
+    }
+
+    /// What is wanted. Where a server says the addresses, those of now stay as they are.
+    ///
+    /// # Errors
+    /// In words.
+    pub fn settings(&self, now: &NetworkSettings) -> Result<NetworkSettings, Text> {
+        if !self.has_addresses() {
+            return Ok(NetworkSettings { source: self.source, interface: now.interface.clone() });
+        }
+        let [first, second] = &self.name_servers;
+        let interface = InterfaceConfiguration {
+            address: needed("hd_net.address", &self.address)?,
+            mask: needed("hd_net.mask", &self.mask)?,
+            gateway: address("hd_net.gateway", &self.gateway)?,
+            name_servers: [address("hd_net.name_server", first)?, address("hd_net.name_server", second)?],
+            domain: self.domain.trim().to_owned(),
+        };
+        interface.check().map_err(|why| refused(&why))?;
+        Ok(NetworkSettings { source: self.source, interface })
+    }
+}
+
+/// Four numbers with points, or nothing for none.
+fn address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
+    match text.trim() {
+        "" => Ok(Ipv4Addr::UNSPECIFIED),
+        own => own
+            .parse()
+            .map_err(|_| Text::new("hd_net.no_address").with_text("what", Text::new(what)).with("entry", own)),
+    }
+}
+
+fn needed(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
+    match text.trim() {
+        "" => Err(Text::new("entry.missing").with_text("what", Text::new(what))),
+        own => address(what, own),
+    }
+}
+
+/// Why a device could not be reached so.
+pub fn refused(error: &AddressError) -> Text {
+    match error {
+        AddressError::None => Text::new("hd_net.none"),
+        AddressError::Reserved(address) => Text::new("hd_net.reserved").with("address", address),
+        AddressError::Mask(mask) => Text::new("hd_net.bad_mask").with("mask", mask),
+        AddressError::Network(address) => Text::new("hd_net.is_network").with("address", address),
+        AddressError::Broadcast(address) => Text::new("hd_net.is_broadcast").with("address", address),
+        AddressError::GatewayOutside { gateway, network, prefix } => {
+            Text::new("hd_net.gateway_outside").with("gateway", gateway).with("network", format!("{network}/{prefix}"))
+        }
+        AddressError::Gateway(gateway) => Text::new("hd_net.bad_gateway").with("gateway", gateway),
+        AddressError::Domain(domain) => Text::new("hd_net.bad_domain").with("domain", domain),
+    }
+}
+
+impl PowerUp {
+    /// With the switches and settings as they are. Switches that nobody can read are taken for 0: not all devices have any.
+    pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
+        let stored = match settings.interface.address {
+            address if address.is_unspecified() => PowerUp::NothingStored,
+            address => PowerUp::Stored(address),
+        };
+        match switch.unwrap_or(AddressSwitch::Object) {
+            AddressSwitch::Fixed(address) => PowerUp::Fixed(address),
+            AddressSwitch::Stored => stored,
+            AddressSwitch::Bootp => PowerUp::Bootp,
+            AddressSwitch::Dhcp => PowerUp::Dhcp,
+            AddressSwitch::Object => match settings.source {
+                AddressSource::Stored => stored,
+                AddressSource::Bootp => PowerUp::Bootp,
+                AddressSource::Dhcp => PowerUp::Dhcp,
+                AddressSource::Unknown(number) => PowerUp::Unknown(number),
+            },
+        }
+    }
+
+    /// The address that it will have, where that is known now.
+    pub const fn address(self) -> Option<Ipv4Addr> {
+        match self {
+            PowerUp::Fixed(address) | PowerUp::Stored(address) => Some(address),
+            PowerUp::NothingStored | PowerUp::Bootp | PowerUp::Dhcp | PowerUp::Unknown(_) => None,
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> Text {
+        match self {
+            PowerUp::Fixed(address) => Text::new("hd_net.up_fixed").with("address", address),
+            PowerUp::Stored(address) => Text::new("hd_net.up_stored").with("address", address),
+            PowerUp::NothingStored => Text::new("hd_net.up_nothing"),
+            PowerUp::Bootp => Text::new("hd_net.up_bootp"),
+            PowerUp::Dhcp => Text::new("hd_net.up_dhcp"),
+            PowerUp::Unknown(number) => Text::new("hd_net.up_unknown").with("number", number),
+        }
+    }
+}
+
+/// What will be after the next power-up if this is written, and what follows from it for the link. `host` is where the device
+/// answers now, where that is a number.
+pub fn consequences(
+    switch: Option<AddressSwitch>,
+    now: &NetworkSettings,
+    wanted: &NetworkSettings,
+    host: Option<Ipv4Addr>,
+) -> Vec<(Severity, Text)> {
+    let after = PowerUp::of(switch, wanted);
+    let mut texts = Vec::new();
+    let decides = switch.filter(|own| *own != AddressSwitch::Object);
+    // At 97 addresses count, and where they come from does not.
+    let is_lost = decides.is_some_and(|own| own != AddressSwitch::Stored || now.source != wanted.source);
+    if let Some(own) = decides.filter(|_| is_lost) {
+        texts.push((Severity::Warning, Text::new("hd_net.switch_decides").with("digits", own.number())));
+    }
+    let severity = match after {
+        PowerUp::NothingStored | PowerUp::Unknown(_) => Severity::Warning,
+        _ => Severity::Note,
+    };
+    texts.push((severity, after.words()));
+    match (host, after.address()) {
+        (Some(host), Some(address)) if host != address => {
+            texts.push((Severity::Note, Text::new("hd_net.then_at").with("address", address)));
+        }
+        (Some(_), None) => texts.push((Severity::Note, Text::new("hd_net.then_find"))),
+        _ => {}
+    }
+    if wanted.source == AddressSource::Stored && now.interface != wanted.interface {
+        texts.push((Severity::Note, Text::new("hd_net.maybe_now")));
+    }
+    texts
+}
+
+/// What each position of the switches S1 and S2 means.
+pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
+    let row = |digits, meaning, is_now| Position { digits, meaning: Text::new(meaning), is_now };
+    let at = |own: AddressSwitch| switch == Some(own);
+    [
+        row("0", "hd_net.switch_object", at(AddressSwitch::Object)),
+        row("1…96", "hd_net.switch_fixed", matches!(switch, Some(AddressSwitch::Fixed(_)))),
+        row("97", "hd_net.switch_stored", at(AddressSwitch::Stored)),
+        row("98", "hd_net.switch_bootp", at(AddressSwitch::Bootp)),
+        row("99", "hd_net.switch_dhcp", at(AddressSwitch::Dhcp)),
+    ]
+}
+
+/// Where an address comes from.
+pub fn source(own: AddressSource) -> Text {
+    match own {
+        AddressSource::Stored => Text::new("hd_net.source_stored"),
+        AddressSource::Bootp => Text::new("hd_net.source_bootp"),
+        AddressSource::Dhcp => Text::new("hd_net.source_dhcp"),
+        AddressSource::Unknown(number) => Text::new("hd_net.source_unknown").with("number", number),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language;
+
+    fn settings(source: AddressSource, address: &str) -> NetworkSettings {
+        let own = |text: &str| text.parse().unwrap();
+        let interface = InterfaceConfiguration {
+            address: own(address),
+            mask: own("255.255.255.0"),
+            gateway: Ipv4Addr::UNSPECIFIED,
+            name_servers: [Ipv4Addr::UNSPECIFIED; 2],
+            domain: String::new(),
+        };
+        NetworkSettings { source, interface }
+    }
+
+    /// Manual 5: the five ways in which the address is given.
+    #[test]
+    fn the_switches_decide_where_the_address_comes_from() {
+        let stored = Ipv4Addr::new(10, 0, 0, 7);
+        let sources = [AddressSource::Stored, AddressSource::Bootp, AddressSource::Dhcp, AddressSource::Unknown(7)];
+        let with =
+            |digits: u8| sources.map(|own| PowerUp::of(AddressSwitch::parse(digits), &settings(own, "10.0.0.7")));
+        let object = [PowerUp::Stored(stored), PowerUp::Bootp, PowerUp::Dhcp, PowerUp::Unknown(7)];
+        assert_eq!(with(0), object);
+        assert_eq!(with(12), [PowerUp::Fixed(Ipv4Addr::new(192, 168, 1, 12)); 4]);
+        assert_eq!(with(97), [PowerUp::Stored(stored); 4]);
+        assert_eq!(with(98), [PowerUp::Bootp; 4]);
+        assert_eq!(with(99), [PowerUp::Dhcp; 4]);
+        // A device without switches.
+        assert_eq!(sources.map(|own| PowerUp::of(None, &settings(own, "10.0.0.7"))), object);
+        let empty = settings(AddressSource::Stored, "0.0.0.0");
+        assert_eq!(PowerUp::of(AddressSwitch::parse(0), &empty), PowerUp::NothingStored);
+    }
+
+    #[test]
+    fn what_is_typed_is_looked_at_before_it_is_planned() {
+        let now = settings(AddressSource::Dhcp, "10.0.0.7");
+        let form = |address: &str, mask: &str, gateway: &str| {
+            let form = Form { source: AddressSource::Stored, ..Form::of(&now) };
+            let [address, mask, gateway] = [address, mask, gateway].map(ToOwned::to_owned);
+            Form { address, mask, gateway, ..form }.settings(&now).map_err(|text| text.id())
+        };
+        assert_eq!(form("10.0.0.7", "255.255.255.0", ""), Ok(settings(AddressSource::Stored, "10.0.0.7")));
+        let typed = form(" 192.168.1.50 ", "255.255.255.0", "192.168.1.1").unwrap();
+        assert_eq!(typed.interface.gateway, Ipv4Addr::new(192, 168, 1, 1));
+        for (address, mask, gateway, id) in [
+            ("", "255.255.255.0", "", "entry.missing"),
+            ("10.0.0.7", "", "", "entry.missing"),
+            ("10.0.0", "255.255.255.0", "", "hd_net.no_address"),
+            ("10.0.0.256", "255.255.255.0", "", "hd_net.no_address"),
+            ("10.0.0.7", "/24", "", "hd_net.no_address"),
+            ("0.0.0.0", "255.255.255.0", "", "hd_net.none"),
+            ("127.0.0.1", "255.255.255.0", "", "hd_net.reserved"),
+            ("10.0.0.7", "255.0.255.0", "", "hd_net.bad_mask"),
+            ("10.0.0.0", "255.255.255.0", "", "hd_net.is_network"),
+            ("10.0.0.255", "255.255.255.0", "", "hd_net.is_broadcast"),
+            ("10.0.0.7", "255.255.255.0", "10.0.1.1", "hd_net.gateway_outside"),
+            ("10.0.0.7", "255.255.255.0", "10.0.0.7", "hd_net.bad_gateway"),
+        ] {
+            assert_eq!(form(address, mask, gateway), Err(id), "{address} {mask} {gateway}");
+        }
+        // A server says them: nonsense that stands there does not count.
+        let dhcp = Form { address: "nonsense".to_owned(), ..Form::of(&now) };
+        assert_eq!(dhcp.settings(&now), Ok(now.clone()));
+        let named = Form { source: AddressSource::Stored, domain: "two words".to_owned(), ..Form::of(&now) };
+        assert_eq!(named.settings(&now).unwrap_err().id(), "hd_net.bad_domain");
+    }
+
+    #[test]
+    fn what_will_be_is_said_before_it_is_written() {
+        let now = settings(AddressSource::Dhcp, "10.0.0.7");
+        let host = Some(Ipv4Addr::new(10, 0, 0, 7));
+        let ids = |digits: u8, wanted: &NetworkSettings| {
+            let texts = consequences(AddressSwitch::parse(digits), &now, wanted, host);
+            for (_, text) in &texts {
+                for language in [Language::English, Language::German] {
+                    let words = text.words(language);
+                    assert!(words != text.id() && !words.contains('{'), "{words}");
+                }
+            }
+            texts.iter().map(|(_, text)| text.id()).collect::<Vec<_>>()
+        };
+        let same = settings(AddressSource::Stored, "10.0.0.7");
+        let other = settings(AddressSource::Stored, "10.0.0.8");
+        assert_eq!(ids(0, &same), ["hd_net.up_stored"]);
+        assert_eq!(ids(0, &other), ["hd_net.up_stored", "hd_net.then_at", "hd_net.maybe_now"]);
+        assert_eq!(ids(0, &settings(AddressSource::Bootp, "10.0.0.7")), ["hd_net.up_bootp", "hd_net.then_find"]);
+        let fixed = ["hd_net.switch_decides", "hd_net.up_fixed", "hd_net.then_at", "hd_net.maybe_now"];
+        assert_eq!(ids(12, &other), fixed);
+        assert_eq!(
+            ids(97, &other),
+            ["hd_net.switch_decides", "hd_net.up_stored", "hd_net.then_at", "hd_net.maybe_now"]
+        );
+        assert_eq!(ids(99, &same), ["hd_net.switch_decides", "hd_net.up_dhcp", "hd_net.then_find"]);
+    }
+
+    #[test]
+    fn the_table_of_positions_marks_the_present_one() {
+        let now = |digits: u8| {
+            let rows = positions(AddressSwitch::parse(digits));
+            rows.into_iter().filter(|row| row.is_now).map(|row| row.digits).collect::<Vec<_>>()
+        };
+        assert_eq!([0, 1, 96, 97, 98, 99].map(now), [["0"], ["1…96"], ["1…96"], ["97"], ["98"], ["99"]].map(Vec::from));
+        assert!(positions(None).iter().all(|row| !row.is_now));
+    }
+}

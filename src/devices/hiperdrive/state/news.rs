@@ -1,0 +1,321 @@
+//! What the line to a device tells: results of jobs, where drives are, and its loss.
+
+use std::time::Duration;
+
+use super::drafts::Edits;
+use super::job;
+use super::review::ReviewState;
+use super::unit::Unit;
+use crate::app::action::{Attempt, Done, Opened};
+use crate::app::review::told;
+use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::session::{Cut, Kind, OnLine, WithMemory};
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::jobs::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark};
+use crate::devices::hiperdrive::procedures::Reading;
+use crate::devices::hiperdrive::procedures::dead_man::Ended;
+use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
+use crate::devices::hiperdrive::sim::Target;
+use crate::devices::hiperdrive::state::explain as words;
+use crate::link::TraceEntry;
+use crate::worker::Session;
+
+/// How often a drive is asked where it is, to begin with.
+const PACE: Duration = Duration::from_millis(200);
+/// What is told where the rules of a drive in hand cannot be read: true no more once they were, or are not needed.
+const RULES: &str = "hd_end.rules";
+
+/// A drive in this state does not move until somebody has acknowledged.
+const fn has_failed(state: State) -> bool {
+    matches!(state, State::Fault | State::Locked)
+}
+
+/// What is kept of a session beside its thread.
+pub struct Aside {
+    /// Moves its drives.
+    motion: Motion,
+    /// The virtual device.
+    target: Option<Target>,
+}
+
+impl Kind for Hiperdrive {
+    const KIND: &'static str = KIND;
+    type Edits = Edits;
+    type Aside = Aside;
+
+    fn aside(session: &Session<Self>) -> Aside {
+        Aside { motion: session.motion(), target: session.target() }
+    }
+
+    fn opener(world: &World) -> &Opener<Self> {
+        &world.open_hiperdrive
+    }
+
+    fn opened(attempt: Attempt<Self>) -> Done {
+        Done::OpenedHiperdrive(attempt)
+    }
+
+    fn job(job: &HiperdriveJob) -> Text {
+        job::words(job)
+    }
+
+    fn writes(job: &HiperdriveJob) -> bool {
+        matches!(job, HiperdriveJob::Commit(_))
+    }
+
+    fn survey() -> HiperdriveJob {
+        HiperdriveJob::Survey
+    }
+
+    fn doing(what: &Doing) -> Text {
+        words::doing(what)
+    }
+
+    fn told(output: &HiperdriveOutput) -> Option<(Severity, Vec<Text>)> {
+        match output {
+            HiperdriveOutput::Committed(committed) => Some(told::<Hiperdrive>(committed)),
+            _ => None,
+        }
+    }
+
+    fn why(error: &JobError) -> Vec<Text> {
+        words::job(error)
+    }
+
+    fn loss(error: &JobError) -> Option<Text> {
+        words::loss(error)
+    }
+
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
+    }
+}
+
+impl Unit {
+    /// The link is open: the device is asked who it is, then for all it has. Nothing is set, and nothing moves.
+    pub(crate) fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.records.values_mut().for_each(|record| record.begin(&opened.began));
+        self.began = Some(opened.began.clone());
+        self.moves.begin(opened.aside.motion.clone());
+        self.target = opened.aside.target.clone();
+        // What was read over a link before says nothing any more.
+        (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
+        let motion = opened.aside.motion.clone();
+        self.session.take_line(opened, services);
+        if let Some(line) = self.session.line() {
+            services.brakes.add(motion, line.stopper());
+        }
+        self.submit(HiperdriveJob::Hello, services);
+    }
+
+    /// What is to be asked as soon as the line is free: why a drive has failed, and where the one is that is shown.
+    fn ask_on(&mut self, services: &mut Services) {
+        if self.survey.is_none() || !self.session.is_ready() {
+            return;
+        }
+        if std::mem::take(&mut self.looks_at_all) {
+            self.submit(HiperdriveJob::Survey, services);
+        } else if std::mem::take(&mut self.looks_at_errors) {
+            self.submit(HiperdriveJob::Status, services);
+        } else {
+            self.watch(services);
+        }
+    }
+
+    /// Polls the drive that is shown.
+    pub(super) fn watch(&mut self, services: &mut Services) {
+        if self.watched != self.drive()
+            && self.session.is_ready()
+            && self.submit(HiperdriveJob::Watch(self.drive()), services)
+        {
+            self.watched = self.drive();
+        }
+    }
+
+    fn control_lost(&mut self, services: &mut Services) {
+        self.moves.stop();
+        // What drives said last was said before, and nobody knows what has become of it; also what waits to be taken.
+        self.take_samples_and_frames();
+        self.forget_readings();
+        (self.is_stale, self.looks_at_all) = (true, true);
+        services.log.settle(RULES, Some(&self.session.name()));
+        let text = words::lost(self.moves.view().lost.as_ref());
+        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+    }
+
+    /// A fault that was told is over once no drive has one: they are told alike, whichever has it.
+    fn settle_fault(&self, failed: bool, services: &mut Services) {
+        let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
+        if !failed && !self.drives().iter().any(fails) {
+            services.log.settle("hd_end.fault", Some(&self.session.name()));
+        }
+    }
+
+    fn tell_end(&self, drive: DriveNumber, ended: Ended, services: &mut Services) {
+        let weight = words::weight(ended);
+        if weight == Severity::Note {
+            return;
+        }
+        let words = words::ended(ended, |steps| self.place(drive, steps));
+        self.tell_of(drive, weight, vec![words], services);
+    }
+
+    /// Where a drive is: recorded where it is the one that is shown.
+    fn see(&mut self, reading: Reading) {
+        self.take_reading(reading);
+        let drive = reading.drive;
+        if drive == self.drive() {
+            let target = self.moves.sent(drive).map(|sent| sent.target);
+            self.record.add(reading, self.ruler(drive), self.speed_scale(drive), target);
+        }
+    }
+
+    /// The drive that is shown is asked where it is, unless somebody has chosen another pace.
+    fn poll(&mut self) {
+        let Some(line) = self.session.line.as_mut().filter(|line| line.polling().is_none()) else { return };
+        line.poll(Some(PACE));
+        self.record.poll(Some(PACE), true);
+    }
+}
+
+impl OnLine for Unit {
+    fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
+        if dropped > 0 {
+            self.record.lose(dropped);
+        }
+        for reading in samples {
+            self.see(reading);
+        }
+    }
+
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        self.session.trace.add(frames, missed, super::trace::meaning);
+    }
+
+    /// Takes what has come over the line since the last time, and keeps alive what pictures keep alive.
+    fn pump(&mut self, services: &mut Services) {
+        let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
+        self.moves.beat();
+        self.notice_limits();
+        for (drive, before) in before {
+            self.notice_fault(drive, before);
+            if before.is_some_and(has_failed) && self.state(drive).is_some_and(|state| !has_failed(state)) {
+                let failed = self.drives().into_iter().any(|drive| self.state(drive).is_some_and(has_failed));
+                self.settle_fault(failed, services);
+            }
+        }
+        if let Some((drive, ended)) = self.moves.take_end() {
+            self.tell_end(drive, ended, services);
+        }
+        self.hear(services);
+        self.follow_axes();
+        self.ask_on(services);
+    }
+
+    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+        match remark {
+            Remark::ControlLost => self.control_lost(services),
+            Remark::RulesUnread(why) => {
+                self.moves.stop();
+                let texts = vec![Text::new(RULES), words::device(&why)];
+                services.tell(Severity::Error, texts, Some(&self.session.name()));
+            }
+            Remark::RulesRead => services.log.settle(RULES, Some(&self.session.name())),
+        }
+    }
+
+    fn finished(&mut self, output: HiperdriveOutput, services: &mut Services) {
+        match output {
+            HiperdriveOutput::Hello(identity) => {
+                self.session.just_connected = false;
+                // What is plugged in may be another since it was read.
+                if self.is_another(&identity) || self.survey.is_none() || !self.has_polled {
+                    self.submit(HiperdriveJob::Survey, services);
+                }
+            }
+            HiperdriveOutput::Surveyed(survey) => {
+                self.take_survey(*survey, services);
+                self.submit(HiperdriveJob::Status, services);
+            }
+            HiperdriveOutput::Status(status) => {
+                let failed = status.drives.iter().any(|own| has_failed(own.status.state()));
+                self.settle_fault(failed, services);
+                self.status = Some(*status);
+                if !std::mem::replace(&mut self.has_polled, true) {
+                    self.poll();
+                }
+            }
+            HiperdriveOutput::Check(lines) => self.check = Some(words::check(&lines)),
+            HiperdriveOutput::Position(reading) => self.see(reading),
+            HiperdriveOutput::Value(number, value) => {
+                if let Some(survey) = &mut self.survey {
+                    survey.values.insert(number, value);
+                }
+            }
+            HiperdriveOutput::Network(network) => {
+                if let Some(survey) = &mut self.survey {
+                    survey.network = *network;
+                }
+            }
+            HiperdriveOutput::Saved(profile) => self.saved(*profile, services),
+            HiperdriveOutput::Prepared(prepared) => self.planned(prepared, services),
+            HiperdriveOutput::Committed(committed) => self.committed(*committed, services),
+            HiperdriveOutput::Taken => {
+                self.moves.beat();
+                self.notice_limits();
+                for lost in words::LOST.into_iter().chain([RULES]) {
+                    services.log.settle(lost, Some(&self.session.name()));
+                }
+                self.poll();
+                // Somebody else may have set limits and scaling since they were read: nothing moves by the old ones. As
+                // soon as the line is free.
+                (self.is_stale, self.looks_at_all) = (true, true);
+            }
+            HiperdriveOutput::Given => {
+                self.moves.beat();
+                // Nobody looks at them any more.
+                services.log.settle(RULES, Some(&self.session.name()));
+                // What was not read while somebody had it is read now.
+                self.looks_at_all |= self.is_stale;
+            }
+            HiperdriveOutput::Watched(drive) => self.watched = drive,
+            // The command line asks for it.
+            HiperdriveOutput::Identity(_) => {}
+        }
+    }
+
+    fn is_silence(&self, error: &JobError) -> bool {
+        words::is_silence(error)
+    }
+
+    fn forget_asked(&mut self) {
+        self.forget_readings();
+        self.target = None;
+        self.forget_plan();
+    }
+
+    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
+        match how {
+            Cut::Failed(_) => self.moves.stop(),
+            // What has to be read before a drive in hand moves is read all the same, behind whatever ended it.
+            Cut::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
+            Cut::Lost => {}
+        }
+        let is_told = self.cut_write(how, texts);
+        let begun =
+            matches!(self.review.as_ref().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
+        self.unsaved.ended(begun);
+        is_told
+    }
+
+    fn polling_ends(&mut self) {
+        self.moves.stop();
+    }
+
+    /// Every motion ends first.
+    fn line_ends(&mut self) {
+        self.moves.end();
+    }
+}

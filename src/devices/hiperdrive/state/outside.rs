@@ -1,0 +1,91 @@
+//! A drive outside its limits: how far out, which way leads back in, and the way further out that a person can free for one
+//! press, because a wrong reference can make that the only way.
+
+use super::unit::Unit;
+use crate::app::services::Services;
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::jobs::Change;
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Outside, Permit, Wish};
+use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_reference};
+
+/// A drive outside its limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OutsideSeen {
+    /// Where it is.
+    pub outside: Outside,
+    /// In steps as scaled.
+    pub position: i32,
+    /// Parameters 158 and 160.
+    pub limits: (i32, i32),
+    /// Farther than a drive repeats a position: no mere end of the range.
+    pub is_far: bool,
+}
+
+impl Unit {
+    /// Where a drive is outside its limits, by its position or by status bit 15; `None` inside, and where one of both is not
+    /// known.
+    pub fn outside(&self, drive: DriveNumber) -> Option<OutsideSeen> {
+        let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
+        let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
+        let permit = Permit { limits: Some(limits), degree, ..Permit::default() };
+        let outside = permit.outside(actual)?;
+        let is_far = match outside {
+            Outside::At(side) => side.beyond(actual.position, limits).unsigned_abs() > u64::from(degree),
+            Outside::Unclear => true,
+        };
+        Some(OutsideSeen { outside, position: actual.position, limits, is_far })
+    }
+
+    /// A drive outside its limits, in words; `None` inside, and at the end of its range.
+    pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
+        let own = self.outside(drive).filter(|own| own.is_far)?;
+        let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
+        let text = Text::new(id).with_text("position", self.place(drive, own.position));
+        Some(text.with_text("range", self.places(drive, own.limits)))
+    }
+
+    /// Whether a drive may be jogged this way now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
+        let outward = self.moves.is_freed(drive, direction);
+        self.may(drive, Wish::Jog { direction, effort: Effort::JOG, outward })
+    }
+
+    /// This way may lead further out from outside the limits, and is not freed.
+    pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
+        let is_outward = self.outside(drive).is_some_and(|own| own.outside.is_outward(direction));
+        is_outward && !self.moves.is_freed(drive, direction)
+    }
+
+    /// This way is blocked, and can be freed for one press.
+    pub fn can_free(&self, drive: DriveNumber, direction: Direction) -> bool {
+        self.may_move(drive).is_ok() && self.is_blocked(drive, direction)
+    }
+
+    /// A person frees a way that is blocked, for one press.
+    pub(super) fn free_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
+        if self.can_free(drive, direction) {
+            return self.moves.free(drive, direction);
+        }
+        let why = self.may_move(drive).err().unwrap_or_else(|| Text::new("hd_outside.inside"));
+        self.tell_of(drive, Severity::Warning, vec![why], services);
+    }
+
+    /// The change that gives the place where a drive stands this position, in steps as scaled, and saves it.
+    ///
+    /// # Errors
+    /// In words, where the drive would not take it: outside the limits.
+    pub fn reference_here(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
+        let (low, high) = self.limits(drive).ok_or_else(|| Text::new("hd_axis.unread"))?;
+        let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));
+        let position = becomes.ok_or_else(|| {
+            Text::new("hd_refused.outside")
+                .with_text("target", self.place(drive, position))
+                .with_text("low", self.place(drive, low))
+                .with_text("high", self.place(drive, high))
+        })?;
+        Ok(Change::SetPosition { drive, position, save: true })
+    }
+}

@@ -1,0 +1,142 @@
+//! What is recorded of the drive that is shown: its position, its own speed, its target.
+
+use std::time::Duration;
+
+use jiff::Zoned;
+
+use super::ruler::{Measure, Ruler};
+use crate::analysis::history::Value;
+use crate::app::Text;
+use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::devices::hiperdrive::procedures::Reading;
+use crate::devices::hiperdrive::protocol::SpeedScale;
+
+/// What stands beside the position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Beside {
+    /// The drive's own speed, in rpm.
+    Speed,
+    /// Where it is sent, in steps of this ruler.
+    Target(Ruler),
+}
+
+/// The recorder of a drive, and what came last.
+#[derive(Debug, Default)]
+pub struct Record {
+    track: Track<Beside>,
+    last: Option<Reading>,
+}
+
+impl Record {
+    /// Position, speed and target as lines.
+    pub fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    /// A session has begun; what was recorded before stays.
+    pub(super) fn begin(&mut self, began: &Zoned) {
+        self.last = None;
+        self.track.begin(began);
+    }
+
+    /// Readings are wished at this interval from now on.
+    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+    }
+
+    /// So many readings were dropped before those that come next.
+    pub(super) fn lose(&mut self, dropped: u64) {
+        self.track.lose(dropped);
+    }
+
+    /// Takes a reading, with where the drive is sent at that time.
+    pub(super) fn add(&mut self, reading: Reading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
+        let (at, actual) = (reading.at, reading.actual);
+        let status = actual.status;
+        let sighting = Sighting {
+            at,
+            position: status.is_present().then_some(i64::from(actual.position)),
+            is_bad: !status.is_present(),
+            is_warned: status.has(crate::devices::hiperdrive::protocol::StatusBit::Warning),
+        };
+        self.track.add(&[sighting], &meaning(ruler));
+        // A target that was recorded stays among what is watched while nobody has control.
+        let has_target = target.is_some() || self.track.watched().iter().any(|own| matches!(own, Beside::Target(_)));
+        let mut beside = vec![Beside::Speed];
+        beside.extend(has_target.then_some(Beside::Target(ruler)));
+        self.track.watch(&beside);
+        let watching = |value| Watching { at, value: Some(value), is_warned: false, never: None };
+        self.track.add_watched(&Beside::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
+        if let Some(target) = target {
+            self.track.add_watched(&Beside::Target(ruler), &watching(Value::Whole(i64::from(target))));
+        }
+        self.last = Some(reading);
+    }
+
+    /// What came last.
+    pub fn last(&self) -> Option<&Reading> {
+        self.last.as_ref()
+    }
+
+    /// Readings that came too fast to be recorded.
+    pub fn dropped(&self) -> u64 {
+        self.track.dropped()
+    }
+
+    /// Samples are missing before those that come next: another drive was shown.
+    pub(super) fn gap(&mut self) {
+        self.last = None;
+        self.track.gap();
+    }
+
+    /// Another device: nothing of what was recorded is about it.
+    pub(super) fn forget(&mut self) {
+        self.track.forget();
+        self.last = None;
+    }
+}
+
+/// What positions mean: in millimetres first, where the drive turns a spindle.
+fn meaning(ruler: Ruler) -> Meaning {
+    let mut meaning = Meaning::of_turns(None, ruler.scale.steps_per_turn());
+    if let Some(millimetres) = ruler.of(1, Measure::Millimetres) {
+        let linear = Meaning::of_millimetres(millimetres).scales;
+        for (own, linear) in meaning.scales.iter_mut().zip(linear) {
+            let in_millimetres = linear.into_iter().filter(|scale| !scale.unit.id().starts_with("unit.steps"));
+            own.splice(0..0, in_millimetres);
+        }
+    }
+    meaning
+}
+
+impl Watchable for Beside {
+    fn is_whole(&self) -> bool {
+        matches!(self, Beside::Target(_))
+    }
+
+    /// The pitch of a spindle is only how steps are seen; with another scale a step is another distance.
+    fn continues(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Beside::Target(own), Beside::Target(other)) => own.scale == other.scale,
+            _ => self == other,
+        }
+    }
+
+    fn line(&self, group: GroupId) -> Line {
+        match self {
+            Beside::Speed => {
+                let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 1)];
+                Line::of(group, 0, Text::new("hd_live.speed"), "drive speed".to_owned(), scales)
+            }
+            Beside::Target(ruler) => {
+                let [scales, ..] = meaning(*ruler).scales;
+                Line::of(group, 0, Text::new("hd_live.target"), "target".to_owned(), scales)
+            }
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The review of a write into a HIPERDRIVE: what its plan needs, warns of and costs.
+
+use super::axis::words::millimetres;
+use super::network::PowerUp;
+use super::ruler::{Measure, Ruler};
+use super::words;
+use crate::app::number::decimals_of;
+use crate::app::review::{self, OpWords, Permit, Reviewed};
+use crate::app::{Text, explain};
+use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
+use crate::devices::hiperdrive::procedures::write::Written;
+use crate::devices::hiperdrive::profile::{self, Base, Image, Op, Service, warnings};
+use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Length, ParameterNumber};
+use crate::devices::hiperdrive::state::explain as explained;
+use crate::profile::Plan;
+
+/// A write on its way.
+pub type Review = review::Review<Hiperdrive>;
+/// How far it is.
+pub type ReviewState = review::ReviewState<Hiperdrive>;
+
+impl Reviewed for Hiperdrive {
+    type Change = Change;
+    type Base = Base;
+    type Op = Op;
+    type Prepared = Prepared;
+    type Written = Written;
+
+    fn change(change: &Change) -> Text {
+        explained::change(change)
+    }
+
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        let Change::Restore { options, .. } = change else { return None };
+        match permit {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate | Permit::Copy(_) => None,
+        }
+    }
+
+    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
+        &prepared.plan
+    }
+
+    fn op(prepared: &Prepared, op: &Op) -> OpWords {
+        op_words(prepared, op, |_| None)
+    }
+
+    fn leaves_mounting(prepared: &Prepared) -> bool {
+        !prepared.mounting_left.is_empty()
+    }
+
+    fn redo(prepared: &Prepared) -> Vec<Text> {
+        prepared.mounting_written.iter().map(explain::plain).collect()
+    }
+
+    fn warnings(prepared: &Prepared) -> Vec<Text> {
+        let mut texts: Vec<Text> = prepared.other_types.iter().map(explained::other_type).collect();
+        texts.extend(warnings(&prepared.plan).iter().map(explained::warning));
+        texts.extend(prepared.wear().map(|after| Text::new("hd_review.wear").with("after", after)));
+        if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
+            texts.push(Text::new("hd_review.factory_all"));
+        }
+        texts.extend(power_up(&prepared.plan));
+        let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
+        texts.extend(review::left_alone("hd_review.missing", &prepared.missing, mounting));
+        texts
+    }
+
+    fn needs(change: &Change, prepared: &Prepared) -> Vec<Text> {
+        let mut needs = vec![Text::new("hd_review.needs_stop")];
+        let resets = |op: &Op| {
+            matches!(op, Op::Service(Service::Reset | Service::Factory | Service::FactoryAll | Service::Acknowledge(_)))
+        };
+        if prepared.plan.ops.iter().any(resets) {
+            needs.push(Text::new("hd_review.may_move"));
+        }
+        if matches!(change, Change::Restore { .. } | Change::Write(_) | Change::Try(_)) {
+            needs.push(Text::new("hd_review.controller"));
+        }
+        needs
+    }
+
+    fn cost(prepared: &Prepared) -> Text {
+        let saves = prepared.plan.write_cycles();
+        if saves == 0 {
+            let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.base() == 198);
+            let position = prepared.plan.ops.iter().any(sets);
+            return Text::new(if position { "hd_review.cost_position" } else { "hd_review.cost_nothing" });
+        }
+        match prepared.cycles_seen {
+            Some(seen) => Text::new("hd_review.cost").with("saves", saves).with("seen", seen),
+            None => Text::new("hd_review.cost_unknown").with("saves", saves),
+        }
+    }
+
+    fn is_worn(_: &Prepared) -> bool {
+        // No limit is known.
+        false
+    }
+
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.cycles_seen
+    }
+
+    fn written(written: &Written) -> Text {
+        explained::written(written)
+    }
+}
+
+/// An operation in words, places in millimetres where the pitch of the drive's spindle is known.
+pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OpWords {
+    let mut words = explained::op(op);
+    if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
+        let now = prepared.plan.base.image();
+        let then = now.with(&profile::written(&prepared.plan));
+        let pitch = number.drive().and_then(pitch);
+        let meant = |text: &mut Text, value, image| {
+            if let Some(meaning) = meaning(*number, value, image, pitch) {
+                let value = text.clone();
+                *text = Text::new("hd_op.meant").with_text("value", value).with_text("meaning", meaning);
+            }
+        };
+        old.iter().for_each(|old| meant(&mut change.old, *old, &now));
+        meant(&mut change.new, *new, &then);
+    }
+    words
+}
+
+/// What a value means that the number alone does not say: places in millimetres, else in turns, under the scale of then.
+fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
+    match (number.base(), number.drive()) {
+        (158 | 160 | 170 | 176 | 198, Some(drive)) => {
+            let scale = image.scale(drive)?;
+            if pitch.is_some() {
+                return Some(millimetres(Some(Ruler { scale, pitch }), value));
+            }
+            let turns = value as f64 / scale.steps_per_turn();
+            let text = Text::new("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
+            Some(text.with_text("unit", Text::new(Measure::Turns.unit())))
+        }
+        _ => words::meaning(number, value),
+    }
+}
+
+/// Where the device answers after a change of its network settings, once its supply was off.
+fn power_up(plan: &Plan<Base, Op>) -> Option<Text> {
+    let to = plan.ops.iter().find_map(|op| match op {
+        Op::Network { to, .. } => Some(to),
+        Op::Write { .. } | Op::Service(_) => None,
+    })?;
+    let digits = ParameterNumber::new(12).and_then(|number| plan.base.values.get(&number));
+    let switch = digits.and_then(|digits| AddressSwitch::parse(u8::try_from(*digits).ok()?));
+    Some(Text::new("hd_review.power_up").with_text("what", PowerUp::of(switch, to).words()))
+}

@@ -1,0 +1,177 @@
+//! Steps as the drive counts them, and what a person measures in: turns, degrees, millimetres of a spindle.
+
+use serde::{Deserialize, Serialize};
+
+use crate::devices::hiperdrive::protocol::{Length, PositionScale};
+
+/// What positions are shown and typed in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Measure {
+    /// As they are sent.
+    #[default]
+    Steps,
+    /// Turns of the shaft.
+    Turns,
+    /// Its angle, also beyond a turn.
+    Degrees,
+    /// On a spindle whose pitch somebody has typed.
+    Millimetres,
+}
+
+/// How far a step is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ruler {
+    /// Parameters 154 and 156.
+    pub scale: PositionScale,
+    /// Millimetres a turn, where somebody has said so.
+    pub pitch: Option<Length>,
+}
+
+/// A number that no position has.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Beyond {
+    /// Without room in 32 bits: the least and the greatest that have it.
+    #[error("a position is between {least} and {most}")]
+    Bits {
+        /// In the measure.
+        least: f64,
+        /// In the measure.
+        most: f64,
+    },
+    /// Millimetres without a pitch.
+    #[error("the spindle's pitch is not known")]
+    NoPitch,
+}
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Measure; 4] = [Measure::Steps, Measure::Turns, Measure::Degrees, Measure::Millimetres];
+
+    /// The name of its unit in the table of texts.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Measure::Steps => "unit.steps",
+            Measure::Turns => "unit.turns",
+            Measure::Degrees => "unit.degrees",
+            Measure::Millimetres => "unit.millimetres",
+        }
+    }
+}
+
+impl Ruler {
+    /// As it comes from the factory, with no spindle.
+    pub const FACTORY: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: None };
+
+    /// Steps of one of the measure; `None`: millimetres without a pitch.
+    fn steps_in(self, measure: Measure) -> Option<f64> {
+        let turn = self.scale.steps_per_turn();
+        match measure {
+            Measure::Steps => Some(1.0),
+            Measure::Turns => Some(turn),
+            Measure::Degrees => Some(turn / 360.0),
+            Measure::Millimetres => {
+                self.pitch.filter(|own| own.nanometres > 0).map(|own| turn * 1e6 / own.nanometres as f64)
+            }
+        }
+    }
+
+    /// The measures that it has.
+    pub fn measures(self) -> impl Iterator<Item = Measure> {
+        Measure::ALL.into_iter().filter(move |measure| self.steps_in(*measure).is_some())
+    }
+
+    /// Steps in a measure; `None`: millimetres without a pitch.
+    pub fn of(self, steps: i64, measure: Measure) -> Option<f64> {
+        Some(steps as f64 / self.steps_in(measure)?)
+    }
+
+    /// The step that is nearest.
+    ///
+    /// # Errors
+    /// [`Beyond`] where there is none.
+    pub fn steps(self, value: f64, measure: Measure) -> Result<i32, Beyond> {
+        let unit = self.steps_in(measure).ok_or(Beyond::NoPitch)?;
+        let steps = (value * unit).round();
+        let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
+        // A cast of what is within is exact.
+        if (least..=most).contains(&steps) {
+            Ok(steps as i32)
+        } else {
+            Err(Beyond::Bits { least: least / unit, most: most / unit })
+        }
+    }
+
+    /// Decimals with which every step is another number.
+    pub fn decimals(self, measure: Measure) -> usize {
+        let unit = self.steps_in(measure).unwrap_or(1.0);
+        // At most 9: steps a turn have five digits beside those of 256.
+        (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
+    }
+
+    /// The same place under another scale: its steps, which may have no room in 32 bits.
+    pub fn rescaled(self, steps: i64, to: PositionScale) -> i64 {
+        // Two 32-bit products of 16-bit numbers beside a 33-bit one.
+        let above = i128::from(steps) * i128::from(to.numerator()) * i128::from(self.scale.denominator());
+        let below = i128::from(to.denominator()) * i128::from(self.scale.numerator());
+        let half = if above < 0 { -below / 2 } else { below / 2 };
+        i64::try_from((above + half) / below.max(1)).unwrap_or(if above < 0 { i64::MIN } else { i64::MAX })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPINDLE: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: Some(Length { nanometres: 4_000_000 }) };
+
+    fn hundredths() -> Ruler {
+        // 400 steps a turn of 4 mm: reference 5.
+        Ruler { scale: PositionScale::new(400, 256).unwrap(), ..SPINDLE }
+    }
+
+    #[test]
+    fn steps_are_measured() {
+        let of = |ruler: Ruler, steps, measure| ruler.of(steps, measure).unwrap();
+        assert_eq!(of(SPINDLE, 163_840, Measure::Turns), 2.5);
+        assert_eq!(of(SPINDLE, -16_384, Measure::Degrees), -90.0);
+        assert_eq!(of(SPINDLE, 163_840, Measure::Millimetres), 10.0);
+        assert_eq!(of(hundredths(), 1234, Measure::Millimetres), 12.34);
+        assert_eq!(Ruler::FACTORY.of(1, Measure::Millimetres), None);
+        assert_eq!(Ruler::FACTORY.measures().count(), 3);
+        assert_eq!(SPINDLE.measures().count(), 4);
+    }
+
+    #[test]
+    fn what_is_typed_becomes_the_nearest_step() {
+        assert_eq!(hundredths().steps(12.344, Measure::Millimetres), Ok(1234));
+        assert_eq!(hundredths().steps(-0.005, Measure::Millimetres), Ok(-1));
+        assert_eq!(SPINDLE.steps(90.0, Measure::Degrees), Ok(16_384));
+        assert_eq!(Ruler::FACTORY.steps(1.0, Measure::Millimetres), Err(Beyond::NoPitch));
+        // 32768 turns have no room: 2³¹ / 65536.
+        let beyond = SPINDLE.steps(32_768.0, Measure::Turns).unwrap_err();
+        assert!(
+            matches!(beyond, Beyond::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)
+        );
+    }
+
+    #[test]
+    fn decimals_tell_steps_apart() {
+        assert_eq!(hundredths().decimals(Measure::Millimetres), 2);
+        assert_eq!(SPINDLE.decimals(Measure::Steps), 0);
+        // 65536 steps a turn, 182.04 a degree, 16384 a millimetre.
+        assert_eq!(SPINDLE.decimals(Measure::Turns), 5);
+        assert_eq!(SPINDLE.decimals(Measure::Degrees), 3);
+        assert_eq!(SPINDLE.decimals(Measure::Millimetres), 5);
+    }
+
+    #[test]
+    fn a_place_has_other_steps_under_another_scale() {
+        let to = PositionScale::new(400, 256).unwrap();
+        // 511 turns: 33 488 896 of 65536 each are 204 400 of 400 each.
+        assert_eq!(SPINDLE.rescaled(33_488_896, to), 204_400);
+        assert_eq!(SPINDLE.rescaled(-33_488_896, to), -204_400);
+        assert_eq!(hundredths().rescaled(204_400, PositionScale::FACTORY), 33_488_896);
+        // Half a step is the farther one: 82 of 65536 are 0.5005 of 400.
+        assert_eq!((SPINDLE.rescaled(82, to), SPINDLE.rescaled(81, to), SPINDLE.rescaled(-82, to)), (1, 0, -1));
+    }
+}

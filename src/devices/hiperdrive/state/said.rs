@@ -1,0 +1,247 @@
+//! What may be asked of a drive at the moment, why not, and how it stands with what was asked: in words.
+
+use super::ruler::Measure;
+use super::unit::Unit;
+use crate::app::number::decimals_of;
+use crate::app::services::Services;
+use crate::app::session::Phase;
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::procedures::DriveLimits;
+use crate::devices::hiperdrive::procedures::dead_man::{Goal, Lock, Phase as Doing, Wish};
+use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, effective_torque};
+use crate::devices::hiperdrive::state::explain as words;
+
+/// How it stands with what was asked of a drive.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// In words.
+    pub words: Text,
+    /// Nobody has to do anything about it.
+    pub is_well: bool,
+}
+
+impl Unit {
+    /// Whether the cyclic connection can be opened now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn can_take(&self) -> Result<(), Text> {
+        match self.session.why_not_ready() {
+            _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
+            Some(why) => Err(why),
+            None if self.moves.is_open() => Err(Text::new("hd_said.in_control")),
+            None if self.survey.is_none() => Err(words::lock(Lock::Unread)),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the cyclic connection can be closed now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn can_give(&self) -> Result<(), Text> {
+        // Also while the device does not answer.
+        match self.session.line() {
+            _ if !self.moves.is_open() => Err(Text::new("hd_refused.not_taken")),
+            None => Err(Text::new("session.not_connected")),
+            Some(_) if self.session.is_busy() => Err(Text::new("session.busy")),
+            Some(_) => Ok(()),
+        }
+    }
+
+    /// Whether a drive may be moved now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
+        self.may_be_led()?;
+        if let Phase::Silent(why) = &self.session.phase {
+            return Err(why.clone());
+        }
+        if let Some(why) = self.why_unread(drive) {
+            return Err(why);
+        }
+        if let Some(lock) = self.moves.locks(drive).first() {
+            return Err(words::lock(*lock));
+        }
+        match self.state(drive) {
+            Some(State::Fault) => Err(Text::new("hd_refused.fault")),
+            Some(State::Locked) => Err(Text::new("hd_refused.lock")),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a drive may run past its limits.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
+        self.may_move(drive)?;
+        let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
+        if permitted { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
+    }
+
+    /// Whether an endless run can be switched on: limits and scaling of the drive are the factory's.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
+        let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
+        if could { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
+    }
+
+    fn may_be_led(&self) -> Result<(), Text> {
+        if !self.moves.is_open() {
+            return Err(Text::new("hd_refused.not_taken"));
+        }
+        if self.session.is_writing() || self.review.is_some() {
+            return Err(Text::new("hd_refused.busy"));
+        }
+        Ok(())
+    }
+
+    /// Whether this may be asked of a drive now.
+    pub(super) fn may(&self, drive: DriveNumber, wish: Wish) -> Result<(), Text> {
+        let asks_target = match wish {
+            Wish::Move { target, .. } => Some(target),
+            _ => None,
+        };
+        self.may_end_what_moves(drive, wish)?;
+        match wish {
+            Wish::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
+            _ if wish.moves() => self.may_move(drive)?,
+            _ => self.may_be_led()?,
+        }
+        let Some(permit) = self.moves.permit(drive) else { return Err(Text::new("hd_refused.not_taken")) };
+        let place = |steps| self.place(drive, steps);
+        let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_place(wish, actual));
+        permit.check(wish, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
+    }
+
+    /// Whatever is asked of a drive ends what moves just now. A stop is meant so, and a jog of the same drive; no other drive's
+    /// motion ends that way, and no step or move becomes another one before its end.
+    fn may_end_what_moves(&self, drive: DriveNumber, wish: Wish) -> Result<(), Text> {
+        match self.moves.mover() {
+            Some(mover) if mover != drive && wish != Wish::Stop => {
+                Err(Text::new("hd_refused.other_moves").with("drive", mover.get()))
+            }
+            Some(_) if matches!(wish, Wish::Step { .. } | Wish::Move { .. } | Wish::Run { .. }) => {
+                Err(Text::new("hd_refused.still_moves"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Tells something about a drive, which is named where there are others.
+    pub(super) fn tell_of(&self, drive: DriveNumber, severity: Severity, texts: Vec<Text>, services: &mut Services) {
+        services.tell_of_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
+    }
+
+    /// The name of a drive; `None` where there is only one.
+    pub fn name_of(&self, drive: DriveNumber) -> Option<Text> {
+        (self.drives().len() > 1).then(|| Text::new("hd_bar.named").with("drive", drive.get()))
+    }
+
+    /// The drives that move, as far as is known here, or are about to.
+    pub fn moving_drives(&self) -> Vec<DriveNumber> {
+        let moves =
+            |drive: &DriveNumber| self.moves.is_drive_moving(*drive) || self.state_now(*drive) == Some(State::Moving);
+        self.drives().into_iter().filter(moves).collect()
+    }
+
+    /// A place as a person measures it, with its unit.
+    pub fn place(&self, drive: DriveNumber, steps: i32) -> Text {
+        let (value, decimals, unit) = self.measured(drive, steps);
+        Text::new("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
+    }
+
+    /// A place in all that a person may measure in, whatever is chosen: the same number of steps may be another place than it
+    /// was. In degrees only where they are chosen.
+    pub fn in_all_units(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
+        let ruler = self.ruler(drive);
+        let wanted = |own: &Measure| *own != Measure::Degrees || *own == self.measure;
+        let place = |own: Measure| {
+            let value = ruler.of(i64::from(steps), own)?;
+            let decimals = decimals_of(value, ruler.decimals(own).min(4));
+            let text = Text::new("hd_entry.place").with_number("value", value, decimals);
+            Some(text.with_text("unit", Text::new(own.unit())))
+        };
+        ruler.measures().filter(wanted).filter_map(place).collect()
+    }
+
+    /// From one place to another, with their unit.
+    pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
+        let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
+        let text = Text::new("hd_entry.range").with_number("low", low, decimals);
+        text.with_number("high", high, decimals).with_text("unit", unit)
+    }
+
+    /// A place as a person measures it, its decimals and its unit.
+    fn measured(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
+        let ruler = self.ruler(drive);
+        let value = ruler.of(i64::from(steps), self.measure);
+        let (value, measure) = value.map_or((f64::from(steps), Measure::Steps), |value| (value, self.measure));
+        (value, ruler.decimals(measure), Text::new(measure.unit()))
+    }
+
+    /// States to which a drive can be led from the one it is in, by one word; none while nobody has control.
+    pub fn reachable(&self, drive: DriveNumber) -> Vec<State> {
+        let Some(state) = self.state(drive).filter(|_| self.may_be_led().is_ok()) else { return Vec::new() };
+        let mut reachable = Vec::new();
+        for row in state.transitions().filter(|row| row.word.is_some()) {
+            if !reachable.contains(&row.to) {
+                reachable.push(row.to);
+            }
+        }
+        reachable
+    }
+
+    /// What leads a drive to a state: its control word, and whether the manual says so.
+    pub fn hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
+        let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
+        let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
+        Some(Text::new(id).with("word", format!("0x{:04X}", row.word?.word())))
+    }
+
+    /// The goal that leads to a state; `None` for those that nothing leads to by itself. A fault is left by acknowledging.
+    pub fn goal(to: State) -> Option<Goal> {
+        match to {
+            State::NotReady => Some(Goal::Off),
+            State::Ready => Some(Goal::Ready),
+            State::Operational => Some(Goal::Operational),
+            State::Enabled => Some(Goal::Enabled),
+            State::Moving | State::Fault | State::Locked => None,
+        }
+    }
+
+    /// What is done with a drive, or how the last act ended; `None` without a cyclic connection, and before the first.
+    pub fn said(&self, drive: DriveNumber) -> Option<Said> {
+        let view = self.moves.drive(drive)?;
+        if view.phase != Doing::Idle {
+            return Some(Said { words: words::phase(view.phase), is_well: true });
+        }
+        let (_, ended) = view.ended?;
+        let words = words::ended(ended, |steps| self.place(drive, steps));
+        Some(Said { words, is_well: words::weight(ended) == Severity::Note })
+    }
+
+    /// Why the control was lost, until somebody takes it again; `None` where nobody had it, and where it was given back.
+    pub fn why_lost(&self) -> Option<Text> {
+        let view = self.moves.view();
+        view.lost.as_ref().filter(|_| !view.open).map(|lost| words::lost(Some(lost)))
+    }
+
+    /// What so many percent of the speed are, by parameter 166.
+    pub fn speed_of(&self, percent: Percent) -> Option<Text> {
+        let most = self.number(self.drive(), 166)?;
+        // Tenths of rpm, of a hundred.
+        let rpm = most as f64 * f64::from(percent.get()) / 1000.0;
+        Some(Text::new("hd_entry.rpm").with_number("rpm", rpm, 1))
+    }
+
+    /// What so many percent of the torque are as the drive takes them: the next 25 % above.
+    pub fn torque_of(&self, percent: Percent) -> Option<Text> {
+        let effective = effective_torque(percent.get());
+        (effective != percent.get()).then(|| Text::new("hd_entry.torque").with("percent", effective))
+    }
+}

@@ -1,0 +1,266 @@
+//! The set-up of axes and the network at a device: what is known for them, and what they ask for.
+
+use core::net::Ipv4Addr;
+use std::path::PathBuf;
+
+use super::axis::{Action, Ask, Axis, Button, Device, Seen, Step, report};
+use super::review::ReviewState;
+use super::unit::Unit;
+use crate::app::action::{Action as StudioAction, Done, FileQuestion};
+use crate::app::services::Services;
+use crate::app::session::{Phase, Source, WithMemory};
+use crate::app::{Language, Severity, Text};
+use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Wish};
+use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
+use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
+use crate::devices::hiperdrive::state::explain as words;
+use crate::store::write_atomically;
+
+/// The parameters of a drive that a set-up looks at, by the numbers of drive 1.
+const AXIS: std::ops::RangeInclusive<u16> = 152..=198;
+
+impl Unit {
+    /// The set-up of the drive that is shown; `None` where nobody has begun one.
+    pub fn axis(&self) -> Option<&Axis> {
+        self.axes.get(&self.drive())
+    }
+
+    /// Whether the drive that is shown can be set up.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_set_up(&self) -> Result<(), Text> {
+        match self.session.why_not_ready() {
+            _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
+            Some(why) => Err(why),
+            None if self.survey.is_none() || self.number(self.drive(), 154).is_none() => {
+                Err(Text::new("hd_axis.unread"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a change can be planned now.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_plan(&self) -> Result<(), Text> {
+        self.session.why_not_ready().map_or(Ok(()), Err)
+    }
+
+    /// What is known of a drive, for its set-up.
+    pub fn seen(&self, drive: DriveNumber) -> Seen {
+        let view = self.moves.drive(drive);
+        let actual = self.actual(drive);
+        let is_heard = !self.moves.is_open() || self.moves.is_heard();
+        let position = actual.filter(|own| own.status.is_present() && is_heard).map(|own| own.position);
+        let errors = self.drive_status(drive).filter(|own| own.faults > 0);
+        let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
+        Seen {
+            connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
+            busy: self.session.is_busy() || self.review.is_some(),
+            stale: self.is_stale,
+            is_virtual: self.target.is_some(),
+            controlled: self.moves.is_open(),
+            moves: self.is_moving() || self.moves.is_under_way(),
+            held: self.moves.held(drive),
+            actual,
+            actual_at: self.actual_at(drive),
+            position,
+            values: AXIS.filter_map(|number| Some((number, self.number(drive, number)?))).collect(),
+            unsaved: self.unsaved_of(drive),
+            times_set: self.times_set(drive),
+            requested: self.number(drive, 152).map(|value| value == 1),
+            scale: self.scale(drive),
+            pitch: self.pitch(drive),
+            limits: self.limits(drive),
+            family,
+            locks: self.moves.locks(drive),
+            ended: view.and_then(|own| own.ended),
+            error: errors.and_then(|own| own.buffer.first().copied()),
+        }
+    }
+
+    /// What its TCP/IP object says; `None` where it was not read, or does not say it.
+    pub fn network_settings(&self) -> Option<NetworkSettings> {
+        let own = self.network()?;
+        Some(NetworkSettings { source: own.control?.source(), interface: own.interface.clone()? })
+    }
+
+    /// Where its address switches stood at power-up.
+    pub fn address_switch(&self) -> Option<AddressSwitch> {
+        self.network()?.address_switch()
+    }
+
+    /// The address at which it answers, where its link has a number.
+    pub fn host(&self) -> Option<Ipv4Addr> {
+        let Source::Link(url) = &self.session.source else { return None };
+        let host = url.target.rsplit_once(':').map_or(url.target.as_str(), |(host, _)| host);
+        host.parse().ok()
+    }
+
+    /// Does what is asked in the set-up of the drive that is shown.
+    pub(super) fn act_axis(&mut self, action: Action, services: &mut Services) {
+        let drive = self.drive();
+        let seen = self.seen(drive);
+        if action == Action::Begin {
+            return self.begin_axis(drive, services);
+        }
+        let when = services.now().strftime("%Y-%m-%d %H:%M").to_string();
+        let Some(axis) = self.axes.get_mut(&drive) else { return };
+        match action {
+            Action::Begin => {}
+            Action::Edit(entries) => axis.edit(*entries),
+            Action::Press(button) => match axis.ask(button, &seen) {
+                Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
+                Err(why) => self.tell_of(drive, Severity::Warning, vec![why], services),
+            },
+            Action::TakePlace => axis.take_limit(&seen),
+            Action::Next => {
+                // What is typed was only looked at until now. Positions are measured on this spindle everywhere.
+                let confirms = axis.step() == Step::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
+                let pitch = axis.entries().pitch().ok().filter(|_| confirms);
+                axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen }, &when);
+                if let Some(pitch) = pitch {
+                    self.pitches.insert(drive, pitch);
+                }
+            }
+            Action::Skip => axis.skip(&seen, &when),
+            Action::Back => axis.back(&seen),
+            Action::Cancel => {
+                axis.cancel(&seen, &when);
+                self.moves.stop();
+            }
+            Action::AskReport => {
+                let file = self.session.suggested_file();
+                let stem = file.file_stem().map_or_else(String::new, |own| own.to_string_lossy().into_owned());
+                let suggested = PathBuf::from(format!("{stem}-axis-{}.txt", drive.get()));
+                services.file_question = Some(FileQuestion::AxisReport { session: self.session.id, suggested });
+            }
+            Action::SaveReport(path, language) => {
+                let Some(text) = self.axis_report(language) else { return };
+                services.tasks.run("report", move || {
+                    let result = write_atomically(&path, text.as_bytes());
+                    StudioAction::Done(Done::ReportSaved(path, result))
+                });
+            }
+        }
+    }
+
+    fn begin_axis(&mut self, drive: DriveNumber, services: &mut Services) {
+        if let Err(why) = self.may_set_up() {
+            return self.tell_of(drive, Severity::Warning, vec![why], services);
+        }
+        self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
+    }
+
+    /// The report of the set-up of the drive that is shown, once it is over.
+    pub fn axis_report(&self, language: Language) -> Option<String> {
+        let axis = self.axis()?;
+        let own = self.drive_identity(axis.drive());
+        let device = Device {
+            name: self.session.name(),
+            variant: own.map(|own| words::variant(own.variant)),
+            serial_number: own.map_or_else(String::new, |own| own.serial_number.clone()),
+        };
+        report(axis, &self.seen(axis.drive()), &device, language)
+    }
+
+    /// Everything that lasts goes through a plan and its review.
+    fn carry_out(&mut self, drive: DriveNumber, button: Button, ask: Ask, seen: &Seen, services: &mut Services) {
+        match &ask {
+            Ask::Try(values) | Ask::Restore(values) => {
+                let numbered =
+                    |(number, value): &(u16, i64)| Some((ParameterNumber::of_drive(*number, drive)?, *value));
+                let image = Image { values: values.iter().filter_map(numbered).collect() };
+                self.plan(Change::Try(Box::new(image)), services);
+            }
+            Ask::SetPosition(position) => {
+                self.plan(Change::SetPosition { drive, position: *position, save: false }, services);
+            }
+            Ask::Save => self.plan(Change::Do(Service::Save), services),
+            Ask::BelieveRestart => {}
+            Ask::Acknowledge => {
+                if let Err(why) = self.may(drive, Wish::Acknowledge) {
+                    return self.tell_of(drive, Severity::Warning, vec![why], services);
+                }
+                self.moves.want(drive, Wish::Acknowledge);
+            }
+            Ask::ConfirmLimits => {
+                if !self.confirm_limits(drive, services) {
+                    return;
+                }
+            }
+            Ask::Take => self.act(super::Action::Take, services),
+            Ask::Give => self.act(super::Action::Give, services),
+            Ask::Move(target) => {
+                let wish = Wish::Move { target: *target, effort: Effort::JOG };
+                if let Err(why) = self.may(drive, wish) {
+                    return self.tell_of(drive, Severity::Warning, vec![why], services);
+                }
+                let act = self.moves.want(drive, wish);
+                if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
+                    axis.went(place, *target, act);
+                }
+                return;
+            }
+            Ask::PowerCycle => {
+                if let Some(target) = &self.target {
+                    target.power_cycle();
+                    self.switched = true;
+                }
+                self.axes.values_mut().for_each(Axis::lose);
+                self.submit(HiperdriveJob::Survey, services);
+                return;
+            }
+        }
+        let begins = match ask {
+            Ask::Try(_) | Ask::Restore(_) | Ask::SetPosition(_) | Ask::Save => self.review.is_some(),
+            _ => true,
+        };
+        if let Some(axis) = self.axes.get_mut(&drive).filter(|_| begins) {
+            axis.begin(ask, seen);
+        }
+    }
+
+    /// How it stands with all set-ups: called with every look at what has come.
+    pub(super) fn follow_axes(&mut self) {
+        if self.axes.is_empty() {
+            return;
+        }
+        // `None` where there is no review any more; whether it was carried out, once it is over.
+        let write = self.review.as_ref().map(|review| match &review.state {
+            ReviewState::Done(..) => Some(Ok(())),
+            ReviewState::Failed { begun, .. } => Some(Err(*begun)),
+            _ => None,
+        });
+        let seen: Vec<(DriveNumber, Seen)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        for (drive, seen) in seen {
+            let Some(axis) = self.axes.get_mut(&drive) else { continue };
+            if !seen.connected {
+                axis.lose();
+            }
+            if axis.is_writing() {
+                match write {
+                    Some(Some(Ok(()))) => axis.written(),
+                    Some(Some(Err(begun))) => axis.not_written(begun),
+                    Some(None) => {}
+                    None => axis.not_written(false),
+                }
+            }
+            axis.look(&seen);
+        }
+    }
+
+    /// All parameters were read: what was saved has survived, or not.
+    pub(super) fn axes_surveyed(&mut self) {
+        let switched = std::mem::take(&mut self.switched);
+        let seen: Vec<(DriveNumber, Seen)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        for (drive, seen) in seen {
+            if let Some(axis) = self.axes.get_mut(&drive) {
+                axis.surveyed(&seen, switched);
+            }
+        }
+    }
+}

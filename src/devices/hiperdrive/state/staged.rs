@@ -1,0 +1,278 @@
+//! What an adapter or a hub (or a profile of one) says, and beside it what the user wants. Nothing here is written to a
+//! device; a plan is made of the difference.
+//!
+//! Every edit makes another whole, which is what an undone step brings back. Edits survive a fresh reading: what the user
+//! changed stays as he wants it, and all else follows the device, in the steps before too. What was not read cannot be
+//! edited; edits of an earlier time wait until it is read. In a profile, what is not said can be said.
+
+mod edit;
+mod mark;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use edit::{Edit, EditError, LimitsStay};
+pub use mark::Mark;
+
+use crate::app::history::History;
+use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
+
+/// What the edits stand beside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Ground {
+    /// A device: what was not read is not known.
+    #[default]
+    Device,
+    /// A profile: what is not in it is not said.
+    Profile,
+}
+
+/// What is, what is wanted, and the way there and back.
+#[derive(Clone, Debug, Default)]
+pub struct Staged {
+    ground: Ground,
+    /// What the device or the profile says; both or none.
+    base: Option<Image>,
+    wanted: Option<Image>,
+    /// What the device said before it was read the last time.
+    earlier: Option<Image>,
+    history: History<Image>,
+    /// Edits of an earlier time whose parameter was not read yet.
+    waiting: Vec<Kept>,
+    /// What the drives are, as far as their variants are known.
+    families: Families,
+}
+
+/// What drives are, and so how many turns they have.
+pub(super) type Families = BTreeMap<DriveNumber, Family>;
+
+/// An edit that is kept: the parameter's own number, and what is wanted of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Kept(pub u16, pub Option<i64>);
+
+/// Something that is wanted otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Differs {
+    /// Which parameter.
+    pub number: ParameterNumber,
+    /// Now; `None`: a profile does not say it.
+    pub from: Option<i64>,
+    /// As it is wanted; `None`: a profile is not to say it any more.
+    pub to: Option<i64>,
+}
+
+/// What can be edited as a value: what is kept, and the steps of the drive's own keys, which are not. Setting the position
+/// (198) is a change of its own.
+pub fn is_editable(row: &ParameterRow) -> bool {
+    let is_of_keys = matches!(row.number, 170..=182);
+    row.access == Access::ReadWrite && row.number != 198 && (Image::holds(row) || is_of_keys)
+}
+
+impl Staged {
+    /// Of a profile, which can be made to say what it does not say yet.
+    pub fn of_profile(image: Image) -> Self {
+        Staged { ground: Ground::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
+    }
+
+    /// The drives are these: what they turn bounds their limits from now on.
+    pub(super) fn know(&mut self, families: Families) {
+        self.families = families;
+    }
+
+    /// The profile says this now. Where that is what is wanted, it was saved, and the steps that led to it stay; else others
+    /// wrote it, and only what was edited here stays as it is wanted.
+    pub fn saved(&mut self, image: Image) {
+        if self.wanted.as_ref() == Some(&image) {
+            self.base = Some(image);
+            return;
+        }
+        let edits = self.kept();
+        self.waiting.clear();
+        self.history.forget();
+        (self.base, self.wanted) = (Some(image.clone()), Some(image));
+        self.take_draft(edits);
+    }
+
+    /// Takes what was read from the device: all of it. Edits stay, and so does the way back through them.
+    pub fn refresh(&mut self, now: Image) {
+        match (&self.base, &mut self.wanted) {
+            (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| rebase(own, before, &now)),
+            _ => self.wanted = Some(now.clone()),
+        }
+        self.earlier = self.base.replace(now);
+        let waiting = std::mem::take(&mut self.waiting);
+        self.take_draft(waiting);
+    }
+
+    /// Some parameters were read, and all else is as it was. Nothing happens before everything was read.
+    pub fn refresh_some(&mut self, read: &Image) {
+        if let Some(base) = &self.base {
+            self.refresh(base.with(read));
+        }
+    }
+
+    const fn is_device(&self) -> bool {
+        matches!(self.ground, Ground::Device)
+    }
+
+    /// The edits were written: what led to them cannot be undone any more.
+    pub fn forget_steps(&mut self) {
+        self.history.forget();
+    }
+
+    /// Forgets everything: another device.
+    pub fn clear(&mut self) {
+        *self = Staged { ground: self.ground, ..Staged::default() };
+    }
+
+    /// As the device or the profile says; `None`: nothing was read.
+    pub fn base(&self) -> Option<&Image> {
+        self.base.as_ref()
+    }
+
+    /// What is wanted; `None`: nothing was read.
+    pub fn wanted(&self) -> Option<&Image> {
+        self.wanted.as_ref()
+    }
+
+    /// What a parameter is to be; `None`: nothing is known of it, or nothing said.
+    pub fn value(&self, number: ParameterNumber) -> Option<i64> {
+        self.wanted.as_ref()?.get(number)
+    }
+
+    /// What a parameter was before it was read the last time, where that was something else.
+    pub fn changed_from(&self, number: ParameterNumber) -> Option<i64> {
+        let was = self.earlier.as_ref()?.get(number)?;
+        (self.base.as_ref()?.get(number)? != was).then_some(was)
+    }
+
+    /// How a parameter is wanted otherwise than it is; `None` where it is not.
+    pub fn differs(&self, number: ParameterNumber) -> Option<Differs> {
+        let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
+        let (from, to) = (base.get(number), wanted.get(number));
+        (from != to).then_some(Differs { number, from, to })
+    }
+
+    /// All that is wanted otherwise, by number.
+    pub fn differences(&self) -> Vec<Differs> {
+        let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
+        let numbers: std::collections::BTreeSet<_> = base.values.keys().chain(wanted.values.keys()).copied().collect();
+        numbers.into_iter().filter_map(|number| self.differs(number)).collect()
+    }
+
+    /// What is wanted otherwise than the device has it, for a plan.
+    pub fn edited(&self) -> Image {
+        let wanted = |differs: Differs| Some((differs.number, differs.to?));
+        Image { values: self.differences().into_iter().filter_map(wanted).collect() }
+    }
+
+    /// There is something to write, into the device or into the profile.
+    pub fn is_dirty(&self) -> bool {
+        self.base != self.wanted
+    }
+
+    /// Changes something, as one step that can be undone. Whether anything is other than before.
+    ///
+    /// # Errors
+    /// Why it cannot be; then nothing is changed.
+    pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
+        let after = self.tried(edit)?;
+        Ok(self.step(after))
+    }
+
+    /// What would be wanted after a change, which is not made: for a preview.
+    ///
+    /// # Errors
+    /// Why it cannot be.
+    pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
+        let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
+        edit::edited((base, wanted), edit, self.ground, &self.families)
+    }
+
+    /// Takes all edits back, as one step that can be undone.
+    pub fn revert(&mut self) {
+        if let Some(base) = self.base.clone() {
+            self.step(base);
+        }
+    }
+
+    /// There is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    /// There is a step to do again.
+    pub fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+
+    /// Undoes the last step. False when there is none.
+    pub fn undo(&mut self) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
+    }
+
+    /// Does the last undone step again. False when there is none.
+    pub fn redo(&mut self) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
+    }
+
+    fn step(&mut self, after: Image) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
+    }
+
+    /// The edits, for a draft on disk; also those that wait for their parameter to be read.
+    pub fn kept(&self) -> Vec<Kept> {
+        let edited = self.differences().into_iter().map(|own| Kept(own.number.get(), own.to));
+        edited.chain(self.waiting.iter().copied()).collect()
+    }
+
+    /// Takes edits from a draft, as one step. Those whose parameter was not read wait for it; those that are none fall
+    /// away.
+    pub fn take_draft(&mut self, draft: impl IntoIterator<Item = Kept>) {
+        let Some(mut wanted) = self.wanted.clone() else {
+            self.waiting.extend(draft);
+            return;
+        };
+        for Kept(number, value) in draft {
+            let Some((number, row)) = ParameterNumber::new(number).and_then(|own| Some((own, own.row()?))) else {
+                continue;
+            };
+            let is_read = wanted.get(number).is_some() || !self.is_device();
+            match value {
+                _ if !is_editable(row) => {}
+                Some(value) if is_read => {
+                    // What it may not be stands there as it was left, and is marked.
+                    wanted.values.insert(number, value);
+                }
+                Some(_) => self.waiting.push(Kept(number.get(), value)),
+                None if !self.is_device() => {
+                    wanted.values.remove(&number);
+                }
+                None => {}
+            }
+        }
+        self.step(wanted);
+    }
+}
+
+/// How far the drive of a parameter turns, in the steps of an image.
+fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel {
+    let Some(drive) = number.drive() else { return Travel::UNKNOWN };
+    Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }
+}
+
+/// Keeps what was changed against what was said before; all else is as it is said now.
+fn rebase(own: &mut Image, before: &Image, now: &Image) {
+    let mut rebased = now.clone();
+    for (number, value) in &own.values {
+        // Of what is not there any more nothing is wanted.
+        if before.get(*number) != Some(*value) && now.get(*number).is_some() {
+            rebased.values.insert(*number, *value);
+        }
+    }
+    *own = rebased;
+}

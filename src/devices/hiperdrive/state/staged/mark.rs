@@ -1,0 +1,104 @@
+//! What is not right in what is wanted, where it stands.
+
+use super::{Staged, travel};
+use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
+use crate::devices::hiperdrive::state::ruler::Ruler;
+
+/// Something that a person should look at. An edit may lead here: another scale moves limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mark {
+    /// A number that a parameter may not be; from a profile or of an earlier time.
+    OutOfRange(OutOfRange),
+    /// The upper limit is not above the lower one.
+    Crossed {
+        /// Whose.
+        drive: DriveNumber,
+        /// As wanted.
+        lower: i64,
+        /// As wanted.
+        upper: i64,
+    },
+    /// The drive stands outside of its limits as they are wanted: it refuses them.
+    Outside {
+        /// Whose.
+        drive: DriveNumber,
+        /// Where it stands, as it would be scaled.
+        position: i64,
+        /// As wanted.
+        lower: i64,
+        /// As wanted.
+        upper: i64,
+    },
+    /// The scale is another one, and the limits have the same numbers: they lie elsewhere.
+    LimitsMove {
+        /// Whose.
+        drive: DriveNumber,
+        /// Turns, from and to.
+        lower: (f64, f64),
+        /// Likewise.
+        upper: (f64, f64),
+    },
+    /// Parameter 186 is 255: the drive would go on where nobody is heard any more, so that nothing moves it from here.
+    NoTimeout {
+        /// Whose.
+        drive: DriveNumber,
+    },
+}
+
+impl Mark {
+    /// The parameters that it is about, by the numbers of their drive.
+    pub fn numbers(&self) -> Vec<ParameterNumber> {
+        let of = |drive, numbers: &[u16]| {
+            numbers.iter().filter_map(|own| ParameterNumber::of_drive(*own, drive)).collect::<Vec<_>>()
+        };
+        match self {
+            Mark::OutOfRange(error) => vec![error.number],
+            Mark::Crossed { drive, .. } | Mark::Outside { drive, .. } => of(*drive, &[158, 160]),
+            Mark::LimitsMove { drive, .. } => of(*drive, &[154, 156, 158, 160]),
+            Mark::NoTimeout { drive } => of(*drive, &[186]),
+        }
+    }
+}
+
+impl Staged {
+    /// All that is not right; `position` tells where a drive stands, in steps as it is scaled now.
+    pub fn marks(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<Mark> {
+        let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
+        let mut of_drives = Vec::new();
+        for drive in wanted.drives() {
+            mark_drive(base, wanted, drive, position(drive), &mut of_drives);
+        }
+        let moved: Vec<ParameterNumber> =
+            of_drives.iter().filter(|mark| matches!(mark, Mark::LimitsMove { .. })).flat_map(Mark::numbers).collect();
+        let check = |(number, value): (&ParameterNumber, &i64)| {
+            // Where limits have moved with the scale, that is told, in turns.
+            let moves = moved.contains(number);
+            let travel = if moves { Travel::UNKNOWN } else { travel(*number, wanted, &self.families) };
+            number.row()?.check(*number, *value, travel).err()
+        };
+        let mut marks: Vec<Mark> = wanted.values.iter().filter_map(check).map(Mark::OutOfRange).collect();
+        marks.extend(of_drives);
+        marks
+    }
+}
+
+fn mark_drive(base: &Image, wanted: &Image, drive: DriveNumber, position: Option<i64>, marks: &mut Vec<Mark>) {
+    let now = base.scale(drive).unwrap_or(PositionScale::FACTORY);
+    let scale = wanted.scale(drive).unwrap_or(now);
+    if let Some((lower, upper)) = wanted.limits(drive) {
+        let position = position.map(|own| Ruler { scale: now, pitch: None }.rescaled(own, scale));
+        if lower >= upper {
+            marks.push(Mark::Crossed { drive, lower, upper });
+        } else if let Some(position) = position.filter(|own| !(lower..=upper).contains(own)) {
+            marks.push(Mark::Outside { drive, position, lower, upper });
+        }
+        if scale != now && base.limits(drive) == Some((lower, upper)) {
+            let turns = |steps: i64| (steps as f64 / now.steps_per_turn(), steps as f64 / scale.steps_per_turn());
+            marks.push(Mark::LimitsMove { drive, lower: turns(lower), upper: turns(upper) });
+        }
+    }
+    if wanted.of_drive(drive, 186) == Some(255) {
+        marks.push(Mark::NoTimeout { drive });
+    }
+}

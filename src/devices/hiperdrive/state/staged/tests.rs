@@ -1,0 +1,161 @@
+//! Edits, steps and drafts of a HIPERDRIVE.
+
+use super::{Differs, Edit, EditError, Kept, LimitsStay, Mark, Staged};
+use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::{DriveNumber, Family, ParameterNumber, PositionScale, Range};
+
+const ONE: DriveNumber = DriveNumber::FIRST;
+
+fn number(number: u16) -> ParameterNumber {
+    ParameterNumber::new(number).unwrap()
+}
+
+fn image(values: &[(u16, i64)]) -> Image {
+    Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
+}
+
+/// A drive with factory scaling and limits of 511 turns, a speed, and a step of its own keys.
+fn read() -> Image {
+    image(&[(24, 0), (154, 256), (156, 1), (158, -33_488_896), (160, 33_488_896), (166, 350), (170, 4096), (186, 20)])
+}
+
+fn staged() -> Staged {
+    let mut staged = Staged::default();
+    staged.refresh(read());
+    staged
+}
+
+#[test]
+fn an_edit_stands_beside_the_device_and_can_be_undone() {
+    let mut staged = staged();
+    assert!(!staged.is_dirty() && !staged.can_undo());
+    assert_eq!(staged.edit(&Edit::Set(number(166), 200)), Ok(true));
+    assert_eq!(staged.edit(&Edit::Set(number(166), 200)), Ok(false), "nothing is other than before");
+    assert_eq!(staged.edit(&Edit::Set(number(170), -64)), Ok(true));
+    assert_eq!(staged.differences()[0], Differs { number: number(166), from: Some(350), to: Some(200) });
+    assert_eq!(staged.edited(), image(&[(166, 200), (170, -64)]));
+    assert!(staged.undo() && staged.undo() && !staged.undo());
+    assert!(!staged.is_dirty());
+    assert!(staged.redo());
+    assert_eq!(staged.value(number(166)), Some(200));
+    assert_eq!(staged.edit(&Edit::Revert(number(166))), Ok(true));
+    assert!(!staged.is_dirty() && !staged.can_redo());
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_reason() {
+    let mut staged = staged();
+    let out = |staged: &mut Staged, own, value| match staged.edit(&Edit::Set(number(own), value)) {
+        Err(EditError::OutOfRange(error)) => (error.value, error.range),
+        other => panic!("{other:?}"),
+    };
+    // Reference 4: 5 to 350, and 1 to 100 or 255.
+    assert_eq!(out(&mut staged, 166, 351), (351, Range::Within(5, 350)));
+    assert_eq!(out(&mut staged, 186, 101), (101, Range::WithinOr(1, 100, 255)));
+    assert_eq!(staged.edit(&Edit::Set(number(107), 0)), Err(EditError::NotAValue(number(107))), "it is read");
+    assert_eq!(staged.edit(&Edit::Set(number(198), 0)), Err(EditError::NotAValue(number(198))), "a change of its own");
+    assert_eq!(staged.edit(&Edit::Set(number(104), 0)), Err(EditError::NotAValue(number(104))), "it moves");
+    assert_eq!(staged.edit(&Edit::Set(number(266), 100)), Err(EditError::NotRead(number(266))), "no second drive");
+    assert_eq!(staged.edit(&Edit::Set(number(44), 100)), Err(EditError::Unknown(number(44))));
+    let crossed = Edit::Limits { drive: ONE, lower: 5, upper: 5 };
+    assert_eq!(staged.edit(&crossed), Err(EditError::Crossed { lower: 5, upper: 5 }));
+    assert_eq!(Staged::default().edit(&crossed), Err(EditError::NothingRead));
+    assert!(!staged.is_dirty());
+}
+
+/// Issue 21.10: what a drive's turns bound is refused as it is typed, and marked where a scale or a profile leads beyond:
+/// ±512 turns of an HDA30 are 33554432 steps of 65536 a turn, and 204800 of 400.
+#[test]
+fn limits_beyond_the_turns_of_the_drive_are_refused() {
+    let mut staged = staged();
+    staged.know([(ONE, Family::Short)].into());
+    let out = |staged: &mut Staged, edit: Edit| match staged.edit(&edit) {
+        Err(EditError::OutOfRange(error)) => (error.number.get(), error.value, error.range),
+        other => panic!("{other:?}"),
+    };
+    let within = |most: i64| Range::Within(-most, most);
+    assert_eq!(out(&mut staged, Edit::Set(number(158), -33_554_433)), (158, -33_554_433, within(33_554_432)));
+    let limits = Edit::Limits { drive: ONE, lower: 0, upper: 40_000_000 };
+    assert_eq!(out(&mut staged, limits), (160, 40_000_000, within(33_554_432)));
+    assert_eq!(out(&mut staged, Edit::Set(number(170), 1 << 30)), (170, 1 << 30, within(67_108_864)));
+    assert_eq!(staged.edit(&Edit::Set(number(158), -33_554_432)), Ok(true));
+    let hundredths = PositionScale::new(400, 256).unwrap();
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace }).unwrap();
+    assert_eq!((staged.value(number(158)), staged.marks(|_| None)), (Some(-204_800), vec![]));
+    assert_eq!(out(&mut staged, Edit::Set(number(160), 204_801)), (160, 204_801, within(204_800)));
+    assert!(staged.undo() && staged.undo() && !staged.is_dirty());
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::AsNumbers }).unwrap();
+    assert!(matches!(staged.marks(|_| None)[..], [Mark::LimitsMove { .. }]), "that they move is told, once");
+    let mut profile = Staged::of_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
+    profile.know([(ONE, Family::Short)].into());
+    let [Mark::OutOfRange(error)] = profile.marks(|_| None)[..] else { panic!() };
+    assert_eq!((error.number.get(), error.range), (158, within(204_800)));
+}
+
+#[test]
+fn edits_survive_a_reading_and_the_rest_follows() {
+    let mut staged = staged();
+    staged.edit(&Edit::Set(number(166), 200)).unwrap();
+    staged.edit(&Edit::Set(number(24), 7)).unwrap();
+    let mut now = read();
+    now.values.extend(image(&[(24, 7), (186, 30)]).values);
+    staged.refresh(now);
+    assert_eq!(staged.edited(), image(&[(166, 200)]), "24 is as it was wanted");
+    assert_eq!((staged.value(number(186)), staged.changed_from(number(186))), (Some(30), Some(20)));
+    assert_eq!(staged.changed_from(number(166)), None);
+    staged.undo();
+    assert_eq!(staged.value(number(186)), Some(30), "in the steps before too");
+    let mut without = read();
+    without.values.remove(&number(166));
+    staged.edit(&Edit::Set(number(166), 100)).unwrap();
+    staged.refresh(without);
+    assert_eq!(staged.value(number(166)), None, "of what is not there nothing is wanted");
+}
+
+#[test]
+fn a_draft_waits_for_what_it_is_about() {
+    let mut first = staged();
+    first.edit(&Edit::Set(number(166), 200)).unwrap();
+    let kept = first.kept();
+    assert_eq!(kept, [Kept(166, Some(200))]);
+    let mut later = Staged::default();
+    later.take_draft(kept.into_iter().chain([Kept(266, Some(7)), Kept(198, Some(0)), Kept(9999, Some(1))]));
+    assert!(!later.is_dirty());
+    later.refresh(read());
+    assert_eq!(later.edited(), image(&[(166, 200)]));
+    assert_eq!(later.kept(), [Kept(166, Some(200)), Kept(266, Some(7))], "the second drive may be plugged in again");
+}
+
+#[test]
+fn a_scale_takes_the_limits_along_or_moves_them() {
+    let hundredths = PositionScale::new(400, 256).unwrap();
+    let mut along = staged();
+    along.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace }).unwrap();
+    // 511 turns of 400 steps.
+    assert_eq!(along.edited(), image(&[(154, 400), (156, 256), (158, -204_400), (160, 204_400)]));
+    // 600 turns of 65536 steps, scaled to 400 are 240 000: inside no more.
+    assert!(along.marks(|_| Some(0)).is_empty());
+    let outside = along.marks(|_| Some(600 * 65536));
+    let expected = Mark::Outside { drive: ONE, position: 240_000, lower: -204_400, upper: 204_400 };
+    assert_eq!(outside, [expected]);
+
+    let mut moved = staged();
+    moved.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::AsNumbers }).unwrap();
+    let [Mark::LimitsMove { lower, upper, .. }] = moved.marks(|_| Some(0))[..] else { panic!() };
+    // 33 488 896 steps of 400 a turn.
+    assert_eq!((lower, upper), ((-511.0, -83_722.24), (511.0, 83_722.24)));
+    assert!(moved.undo() && !moved.is_dirty(), "one step");
+}
+
+#[test]
+fn what_somebody_should_look_at_is_marked() {
+    let mut profile = Staged::of_profile(image(&[(158, 10), (160, 10), (166, 999), (186, 255)]));
+    let marks = profile.marks(|_| None);
+    assert!(matches!(marks[0], Mark::OutOfRange(error) if error.number == number(166)));
+    assert_eq!(marks[1..], [Mark::Crossed { drive: ONE, lower: 10, upper: 10 }, Mark::NoTimeout { drive: ONE }]);
+    assert_eq!(marks[1].numbers(), [number(158), number(160)]);
+    assert_eq!(profile.edit(&Edit::Leave(number(166))), Ok(true));
+    assert_eq!(profile.edit(&Edit::Set(number(266), 100)), Ok(true), "a profile can be made to say it");
+    assert_eq!(profile.edit(&Edit::Set(number(170), 1)), Err(EditError::NotAValue(number(170))), "it is not kept");
+    assert_eq!(profile.kept(), [Kept(166, None), Kept(266, Some(100))]);
+}

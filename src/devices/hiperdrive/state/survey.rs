@@ -1,0 +1,207 @@
+//! What was read of a device: it is taken over with a survey, as drives say it, and where somebody else has changed it since.
+
+use super::record::Record;
+use super::remembered::Marks;
+use super::ruler::Measure;
+use super::staged::is_editable;
+use super::unit::Unit;
+use super::unsaved::Unsaved;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, Saved};
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::procedures::dead_man::Lock;
+use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, LimitsSeen, Reading, Survey};
+use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, State, Value};
+use crate::devices::hiperdrive::state::explain as words;
+
+impl Unit {
+    /// Takes over what was read from the device; edits stay, unless they are another device's.
+    pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
+        if self.is_another(&survey.identity) {
+            if self.staged.is_dirty() {
+                self.session.tell_of_another(&survey.identity.serial_number, services);
+            }
+            self.forget_device(services);
+        }
+        let first = self.survey.is_none();
+        let image = image(&survey);
+        self.notice_scales(&image);
+        self.session.title = Some(title(&survey.identity));
+        self.unsaved.read(&survey.values);
+        let known = self.survey.as_ref().map(|own| own.wrong_lengths.as_slice()).unwrap_or_default();
+        for error in survey.wrong_lengths.iter().filter(|error| !known.contains(error)) {
+            let text = words::wrong_length(error);
+            services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+        }
+        let drives = survey.identity.drives.iter();
+        self.staged.know(drives.filter_map(|own| Some((own.number, own.variant.row()?.family))).collect());
+        self.staged.refresh(image);
+        self.survey = Some(survey);
+        self.readings.clear();
+        // What the control has read may be newer than what the survey did.
+        let differs = self.drives().into_iter().any(|drive| self.is_limited_otherwise(drive));
+        (self.is_stale, self.looks_at_all) = (differs, differs);
+        if !self.drives().contains(&self.drive)
+            && let Some(drive) = self.drives().first().copied()
+        {
+            self.show_drive(drive);
+        }
+        if first {
+            self.load_draft(services);
+            self.log_answer(services);
+        }
+        self.list_backups(services);
+        self.axes_surveyed();
+    }
+
+    /// Where a scale is another one than it was, nobody has looked at the limits since.
+    pub(super) fn notice_scales(&mut self, now: &Image) {
+        let Some(before) = self.staged.base() else { return };
+        let is_other = |drive: &DriveNumber| {
+            let scales = before.scale(*drive).zip(now.scale(*drive));
+            scales.is_some_and(|(before, now)| before != now)
+        };
+        for drive in now.drives().into_iter().filter(is_other).collect::<Vec<_>>() {
+            self.moves.unconfirm(drive);
+        }
+    }
+
+    /// While there is control, the worker reads again and again what a drive may do. Where that is no longer what the table of
+    /// parameters shows, everything is read anew. So it is from the moment at which control was taken.
+    pub(super) fn notice_limits(&mut self) {
+        if self.moves.take_taken() {
+            (self.is_stale, self.marks) = (true, Marks::Unread);
+        }
+        for drive in self.moves.take_limits_changed() {
+            if self.is_limited_otherwise(drive) {
+                (self.is_stale, self.looks_at_all) = (true, true);
+            }
+        }
+    }
+
+    /// The drive has other limits, another scale or another reference than the table of parameters shows.
+    fn is_limited_otherwise(&self, drive: DriveNumber) -> bool {
+        let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
+        held.and_then(DriveLimits::seen).is_some_and(|own| {
+            let shown = self.staged.base();
+            let scale = shown.and_then(|image| image.of_drive(drive, 154).zip(image.of_drive(drive, 156)));
+            Some(own.limits) != shown.and_then(|image| image.limits(drive)) || Some(own.scale) != scale
+        }) || held
+            .and_then(|own| own.rules().reference)
+            .zip(self.number(drive, 198))
+            .is_some_and(|(own, shown)| own != shown)
+    }
+
+    /// Why what is known of a drive's parameters is no ground to move it on; `None` where it is.
+    pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
+        if self.is_stale {
+            Some(words::lock(Lock::Unread))
+        } else if self.moves.is_open() && self.marks != Marks::Read {
+            Some(Text::new("hd_lock.settings"))
+        } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
+            Some(words::lock(Lock::Outdated))
+        } else {
+            None
+        }
+    }
+
+    /// Whether the limits of a drive that are shown can be confirmed: they have to be those that it has, by all that is known.
+    ///
+    /// # Errors
+    /// Why not, in words.
+    pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
+        self.confirms(drive).map(|_| ())
+    }
+
+    /// The limits that are shown, and would be confirmed.
+    fn confirms(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
+        self.why_unread(drive).map_or(Ok(()), Err)?;
+        let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
+        seen.ok_or_else(|| words::lock(Lock::Unread))
+    }
+
+    /// A person has looked at the limits that are shown, and is told where those do not count at this moment. Whether they do.
+    pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
+        // As shown, before another look: what has changed since then was not seen.
+        let shown = self.confirms(drive);
+        self.moves.look();
+        self.notice_limits();
+        let counts = self.confirms(drive).and(shown).and_then(|seen| {
+            let counts = self.moves.confirm_limits(drive, seen);
+            counts.then_some(()).ok_or_else(|| words::lock(Lock::Unread))
+        });
+        if let Err(why) = &counts {
+            self.tell_of(drive, Severity::Warning, vec![why.clone()], services);
+        }
+        counts.is_ok()
+    }
+
+    /// A drive was asked where it is.
+    pub(super) fn take_reading(&mut self, reading: Reading) {
+        let before = self.actual(reading.drive).map(|own| own.status.state());
+        self.readings.insert(reading.drive, reading);
+        self.notice_fault(reading.drive, before);
+    }
+
+    /// A drive that has failed since is asked why.
+    pub(super) fn notice_fault(&mut self, drive: DriveNumber, before: Option<State>) {
+        if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
+            self.looks_at_errors = true;
+        }
+    }
+
+    /// Another device than the one that was read before.
+    pub(super) fn is_another(&self, identity: &Identity) -> bool {
+        self.identity().is_some_and(|known| {
+            (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)
+        })
+    }
+
+    fn log_answer(&self, services: &mut Services) {
+        let Some(identity) = self.identity() else { return };
+        let fact = Text::new("log.hiperdrive")
+            .with("category", &identity.category)
+            .with("serial", &identity.serial_number)
+            .with("version", &identity.version)
+            .with("drives", identity.drives.len());
+        self.session.log_answer(vec![fact], services);
+    }
+
+    fn forget_device(&mut self, services: &mut Services) {
+        self.leave_draft(services);
+        (self.survey, self.status, self.check, self.review, self.refusal) = (None, None, None, None, None);
+        self.session.title = None;
+        self.staged.clear();
+        self.moves.forget();
+        self.record.forget();
+        self.records.values_mut().for_each(Record::forget);
+        self.records.retain(|_, record| !record.recorder().is_empty());
+        self.readings.clear();
+        self.pitches.clear();
+        self.axes.clear();
+        self.unsaved = Unsaved::default();
+        (self.exchanged, self.measure) = (None, Measure::default());
+        (self.session.backups, self.session.writes) = (None, None);
+    }
+
+    /// The connection is gone: where drives are nobody knows any more.
+    pub(super) fn forget_readings(&mut self) {
+        self.readings.clear();
+        (self.looks_at_errors, self.looks_at_all) = (false, false);
+    }
+}
+
+/// What can be edited of what was read.
+fn image(survey: &Survey) -> Image {
+    let editable = |(number, value): (&ParameterNumber, &Value)| match value {
+        Value::Number(value) if number.row().is_some_and(is_editable) => Some((*number, *value)),
+        _ => None,
+    };
+    Image { values: survey.values.iter().filter_map(editable).collect() }
+}
+
+/// The name by which the log and the jobs call a device.
+fn title(identity: &Identity) -> String {
+    format!("{} · {}", identity.category, identity.serial_number)
+}

@@ -1,0 +1,370 @@
+//! An adapter or a hub with its drives on the desk, or a profile of one: what is known of it, the user's edits beside it,
+//! what runs on its line, and the drives as they are moved.
+
+use std::collections::BTreeMap;
+
+use jiff::Zoned;
+
+use super::axis::Axis;
+use super::moves::Moves;
+use super::record::Record;
+use super::remembered::{Exchanged, Marks};
+use super::review::Review;
+use super::ruler::{Measure, Ruler};
+use super::staged::{Mark, Staged};
+use super::unsaved::Unsaved;
+use crate::app::Text;
+use crate::app::check::CheckLine;
+use crate::app::line::Line;
+use crate::app::recorder::Recorder;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
+use crate::app::studio::SessionId;
+use crate::devices::hiperdrive::jobs::Hiperdrive;
+use crate::devices::hiperdrive::procedures::{
+    DriveIdentity, DriveLimits, DriveStatus, Identity, Network, Reading, Status, Survey,
+};
+use crate::devices::hiperdrive::profile::{HiperdriveProfile, Image, ProfileIdentity};
+use crate::devices::hiperdrive::protocol::{
+    Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
+};
+use crate::devices::hiperdrive::sim::Target;
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::units::Moment;
+
+/// An adapter or a hub with its drives, or a profile of one.
+pub struct Unit {
+    /// What every session has.
+    pub session: Session<Hiperdrive>,
+    /// Everything that was read.
+    pub survey: Option<Survey>,
+    /// States and errors, as they were read last.
+    pub status: Option<Status>,
+    /// The last device check.
+    pub check: Option<Vec<CheckLine>>,
+    /// Parameters beside the edits of them.
+    pub staged: Staged,
+    /// What was recorded of the drive that is shown.
+    pub record: Record,
+    /// What was recorded of the others while they were shown.
+    pub(super) records: BTreeMap<DriveNumber, Record>,
+    /// When the session began, by which the times of recordings count.
+    pub(super) began: Option<Zoned>,
+    /// A write on its way.
+    pub review: Option<Review>,
+    /// The drives as they are moved.
+    pub moves: Moves,
+    /// What positions are shown in.
+    pub measure: Measure,
+    /// Why the last edit was not taken.
+    pub refusal: Option<Text>,
+    /// The virtual device behind the session.
+    pub target: Option<Target>,
+    /// Which drive is shown.
+    pub(super) drive: DriveNumber,
+    pub(super) pitches: BTreeMap<DriveNumber, Length>,
+    /// Set-ups of axes that somebody has begun.
+    pub(super) axes: BTreeMap<DriveNumber, Axis>,
+    /// The virtual device was switched off and on since it was read.
+    pub(super) switched: bool,
+    /// What was written and not saved, as far as that is known.
+    pub(super) unsaved: Unsaved,
+    /// What the settings remember of it, and what of that was told them; `None` before they were asked.
+    pub(super) exchanged: Option<Exchanged>,
+    /// Whether another window has marked limits since control was taken is known.
+    pub(super) marks: Marks,
+    /// What was read last of each drive while nobody had control.
+    pub(super) readings: BTreeMap<DriveNumber, Reading>,
+    /// Limits and scaling may be others than those that were read: control was taken since.
+    pub(super) is_stale: bool,
+    /// Which drive is polled.
+    pub(super) watched: DriveNumber,
+    /// Polling has begun by itself since the link was opened.
+    pub(super) has_polled: bool,
+    /// Errors are to be read again as soon as the line is free.
+    pub(super) looks_at_errors: bool,
+    /// Everything is: somebody else has changed what rules a drive.
+    pub(super) looks_at_all: bool,
+}
+
+impl Unit {
+    /// A device at a link that is being opened.
+    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+        Unit::with(Session::at_link(id, url), Staged::default())
+    }
+
+    fn with(session: Session<Hiperdrive>, staged: Staged) -> Self {
+        Unit {
+            session,
+            survey: None,
+            status: None,
+            check: None,
+            staged,
+            record: Record::default(),
+            records: BTreeMap::new(),
+            began: None,
+            review: None,
+            moves: Moves::default(),
+            measure: Measure::default(),
+            refusal: None,
+            target: None,
+            drive: DriveNumber::FIRST,
+            pitches: BTreeMap::new(),
+            axes: BTreeMap::new(),
+            switched: false,
+            unsaved: Unsaved::default(),
+            exchanged: None,
+            marks: Marks::Unread,
+            readings: BTreeMap::new(),
+            is_stale: false,
+            watched: DriveNumber::FIRST,
+            has_polled: false,
+            looks_at_errors: false,
+            looks_at_all: false,
+        }
+    }
+
+    /// A profile of a device.
+    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
+        let staged = match document.body.get::<HiperdriveProfile>() {
+            Some(profile) => {
+                let mut staged = Staged::of_profile(profile.image.clone());
+                let drives = profile.identity.drives.iter();
+                staged.know(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
+                staged
+            }
+            None => Staged::default(),
+        };
+        let mut unit = Unit::with(Session::in_file(id, file, document), staged);
+        unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
+        unit.load_draft(services);
+        unit
+    }
+
+    /// The profile, where this is one.
+    pub fn profile(&self) -> Option<&HiperdriveProfile> {
+        let Source::File { document, .. } = &self.session.source else { return None };
+        document.body.get::<HiperdriveProfile>()
+    }
+
+    /// The profile as the user wants it, where this is one.
+    pub(crate) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
+        let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
+        Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
+    }
+
+    /// Who it is, as far as that is known.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.survey.as_ref().map(|survey| &survey.identity)
+    }
+
+    /// Who it was, where this is a profile.
+    pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
+        self.profile().map(|profile| &profile.identity)
+    }
+
+    /// Its serial number; `None` where nothing has been read.
+    pub fn serial_number(&self) -> Option<&str> {
+        let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
+        self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
+    }
+
+    /// Its address and where it has it from.
+    pub fn network(&self) -> Option<&Network> {
+        self.survey.as_ref().map(|survey| &survey.network)
+    }
+
+    /// The drives that are plugged in, or that a profile speaks of.
+    pub fn drives(&self) -> Vec<DriveNumber> {
+        match self.identity() {
+            Some(own) => own.drives.iter().map(|drive| drive.number).collect(),
+            None => self.staged.wanted().map(Image::drives).unwrap_or_default(),
+        }
+    }
+
+    /// The drive that is shown.
+    pub fn drive(&self) -> DriveNumber {
+        self.drive
+    }
+
+    pub(super) fn show_drive(&mut self, drive: DriveNumber) {
+        if self.drive != drive {
+            self.moves.let_go();
+            // Only the drive that is shown, and the one moved last, are looked at again and again.
+            self.moves.doubt_limits(drive);
+            let before = std::mem::replace(&mut self.drive, drive);
+            let next = self.records.remove(&drive).unwrap_or_else(|| self.new_record());
+            self.records.insert(before, std::mem::replace(&mut self.record, next));
+            self.record.gap();
+            self.record.poll(self.session.line.as_ref().and_then(Line::polling), false);
+        }
+    }
+
+    fn new_record(&self) -> Record {
+        let mut record = Record::default();
+        self.began.iter().for_each(|began| record.begin(began));
+        record
+    }
+
+    /// The recorders of all drives, that of the one that is shown first.
+    pub(crate) fn recorders(&self) -> impl Iterator<Item = &Recorder> {
+        std::iter::once(&self.record).chain(self.records.values()).map(Record::recorder)
+    }
+
+    pub(crate) fn recorders_mut(&mut self) -> impl Iterator<Item = &mut Recorder> {
+        std::iter::once(&mut self.record).chain(self.records.values_mut()).map(Record::recorder_mut)
+    }
+
+    /// Who a drive is; `None` before it was read.
+    pub fn drive_identity(&self, drive: DriveNumber) -> Option<&DriveIdentity> {
+        self.identity()?.drive(drive)
+    }
+
+    /// A parameter as it was read.
+    pub fn value(&self, number: ParameterNumber) -> Option<&Value> {
+        self.survey.as_ref()?.values.get(&number)
+    }
+
+    /// A number of a drive as it was read, by the number of drive 1.
+    pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
+        match self.value(ParameterNumber::of_drive(number, drive)?)? {
+            Value::Number(value) => Some(*value),
+            Value::Text(_) => None,
+        }
+    }
+
+    /// State and errors of a drive, as they were read last.
+    pub fn drive_status(&self, drive: DriveNumber) -> Option<&DriveStatus> {
+        self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
+    }
+
+    /// What a drive said last: over the cyclic connection, or where it was asked.
+    pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
+        let read = || self.readings.get(&drive).map(|reading| reading.actual);
+        // What was read at the beginning says nothing any more once the device is gone.
+        let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
+        self.moves.actual(drive).or_else(read).or_else(surveyed)
+    }
+
+    /// When a drive said that, on the clock of its session; `None` where only everything was read at once.
+    pub(super) fn actual_at(&self, drive: DriveNumber) -> Option<Moment> {
+        match self.moves.drive(drive) {
+            Some(own) => own.heard_at,
+            None => self.readings.get(&drive).map(|reading| reading.at),
+        }
+    }
+
+    fn surveyed(&self, drive: DriveNumber) -> Option<Actual> {
+        Some(Actual {
+            status: StatusWord::new(u16::try_from(self.number(drive, 105)?).ok()?),
+            speed: i16::try_from(self.number(drive, 106)?).ok()?,
+            position: i32::try_from(self.number(drive, 107)?).ok()?,
+        })
+    }
+
+    /// In which state a drive is.
+    pub fn state(&self, drive: DriveNumber) -> Option<State> {
+        self.actual(drive).map(|own| own.status.state())
+    }
+
+    /// Some drive moves, as far as is known here, or is about to.
+    pub fn is_moving(&self) -> bool {
+        self.moves.is_moving() || self.drives().into_iter().any(|drive| self.state_now(drive) == Some(State::Moving))
+    }
+
+    /// In which state a drive is, as it says again and again; `None` for one that is not asked just now.
+    pub fn state_now(&self, drive: DriveNumber) -> Option<State> {
+        let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
+        // What was said before it was asked no more is old by now.
+        let read = self.readings.get(&drive).filter(|_| is_polled).map(|reading| reading.actual);
+        self.moves.actual(drive).or(read).map(|own| own.status.state())
+    }
+
+    /// Steps and what a person measures in, of a drive as it is.
+    pub fn ruler(&self, drive: DriveNumber) -> Ruler {
+        Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
+    }
+
+    /// The same as its scale is wanted.
+    pub fn wanted_ruler(&self, drive: DriveNumber) -> Ruler {
+        let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
+        Ruler { scale, pitch: self.pitch(drive) }
+    }
+
+    /// The pitch of the spindle behind a drive, where somebody has said so.
+    pub fn pitch(&self, drive: DriveNumber) -> Option<Length> {
+        self.pitches.get(&drive).copied()
+    }
+
+    /// How a drive's speed is scaled.
+    pub fn speed_scale(&self, drive: DriveNumber) -> SpeedScale {
+        let part = |number| self.number(drive, number).and_then(|value| u16::try_from(value).ok());
+        let scale = part(162).zip(part(164)).and_then(|(above, below)| SpeedScale::new(above, below).ok());
+        scale.unwrap_or(SpeedScale::FACTORY)
+    }
+
+    /// What a drive may do, as the worker read it last; `None` for a profile, and before anything was read.
+    pub fn drive_limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
+        self.moves.limits(drive)
+    }
+
+    /// How a drive's position is scaled; `None` where that was not read.
+    pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
+        let as_read = || self.staged.base()?.scale(drive);
+        self.drive_limits(drive).and_then(DriveLimits::scale).or_else(as_read)
+    }
+
+    /// A drive's limits as it has them, in steps as scaled; `None` where they were not read.
+    pub fn limits(&self, drive: DriveNumber) -> Option<(i32, i32)> {
+        let as_read = || {
+            let (lower, upper) = self.staged.base()?.limits(drive)?;
+            Some((i32::try_from(lower).ok()?, i32::try_from(upper).ok()?))
+        };
+        self.drive_limits(drive).and_then(DriveLimits::limits).or_else(as_read)
+    }
+
+    /// The limits that a person has to look at before the drive moves; `None` where there is nothing to look at.
+    pub fn limits_to_confirm(&self, drive: DriveNumber) -> Option<(i32, i32)> {
+        self.limits(drive).filter(|_| self.moves.unconfirmed().contains(&drive))
+    }
+
+    /// What is not right in what is wanted.
+    pub fn marks(&self) -> Vec<Mark> {
+        self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
+    }
+
+    /// Things that are edited.
+    pub(crate) fn edits(&self) -> usize {
+        self.staged.differences().len()
+    }
+
+    pub(crate) fn can_undo(&self) -> bool {
+        self.staged.can_undo()
+    }
+
+    pub(crate) fn can_redo(&self) -> bool {
+        self.staged.can_redo()
+    }
+
+    /// There are edits that are not written.
+    pub fn is_dirty(&self) -> bool {
+        self.staged.is_dirty()
+    }
+
+    /// There is something to stop.
+    pub fn is_active(&self) -> bool {
+        self.session.is_active() || self.is_moving()
+    }
+
+    /// Ends what runs, and every motion first.
+    pub(crate) fn stop(&mut self, services: &mut Services) {
+        self.moves.stop();
+        let pace = self.session.line.as_ref().and_then(Line::polling).filter(|_| self.moves.is_open());
+        self.session.stop(services);
+        // Whoever has the control goes on seeing the drives.
+        if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
+            line.poll(Some(pace));
+        }
+    }
+}

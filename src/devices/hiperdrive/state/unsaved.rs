@@ -1,0 +1,145 @@
+//! What was written into a device and not saved since: what each parameter was before. A device cannot be asked for what it has
+//! saved, and a run that was broken off may be of yesterday.
+
+use std::collections::BTreeMap;
+
+use super::unit::Unit;
+use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, written};
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
+
+/// Of one adapter or hub with its drives.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Unsaved {
+    /// What was saved, by the parameters' own numbers, of those that were written since.
+    before: BTreeMap<u16, i64>,
+    /// How often the position of a drive was set from here.
+    set: BTreeMap<DriveNumber, u32>,
+    /// Drives whose position is being set.
+    sets: Vec<DriveNumber>,
+}
+
+/// The position that is set, by the number of drive 1.
+const REFERENCE: u16 = 198;
+
+impl Unsaved {
+    /// A plan is about to be carried out: from then on its parameters may be others than saved.
+    pub(super) fn begin(&mut self, plan: &HiperdrivePlan) {
+        let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
+        let base = plan.base.image();
+        let writes = written(plan);
+        let touched: Vec<ParameterNumber> = match plan.ops.iter().any(changes_all) {
+            true => base.values.keys().copied().collect(),
+            false => writes.values.keys().copied().collect(),
+        };
+        for number in touched {
+            if let Some(before) = base.get(number) {
+                self.before.entry(number.get()).or_insert(before);
+            }
+        }
+        let reference = |number: &ParameterNumber| number.drive().filter(|_| number.base() == REFERENCE);
+        self.sets = writes.values.keys().filter_map(reference).collect();
+    }
+
+    /// It was carried out.
+    pub(super) fn done(&mut self, plan: &HiperdrivePlan) {
+        self.ended(true);
+        let saves = |op: &Op| matches!(op, Op::Service(Service::Save | Service::FactoryAll));
+        if plan.ops.iter().any(saves) {
+            self.before.clear();
+        }
+    }
+
+    /// It ended; `begun`: some of it was written, or may have been.
+    pub(super) fn ended(&mut self, begun: bool) {
+        for drive in std::mem::take(&mut self.sets) {
+            *self.set.entry(drive).or_default() += u32::from(begun);
+        }
+    }
+
+    /// Everything was read: what is as it was saved is no difference any more.
+    pub(super) fn read(&mut self, now: &BTreeMap<ParameterNumber, Value>) {
+        let is_as_saved = |number: u16, before: i64| {
+            ParameterNumber::new(number).is_some_and(|number| now.get(&number) == Some(&Value::Number(before)))
+        };
+        self.before.retain(|number, before| !is_as_saved(*number, *before));
+    }
+
+    /// What was saved, by the parameters' own numbers: to be kept.
+    pub(super) const fn saved(&self) -> &BTreeMap<u16, i64> {
+        &self.before
+    }
+
+    /// What was kept from an earlier start.
+    pub(super) fn extend(&mut self, earlier: &BTreeMap<u16, i64>) {
+        for (number, before) in earlier {
+            self.before.entry(*number).or_insert(*before);
+        }
+    }
+
+    /// What the parameters of a drive were when they were saved, by the numbers of drive 1.
+    fn of_drive(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
+        let own = |(number, before): (&u16, &i64)| {
+            let number = ParameterNumber::new(*number).filter(|number| number.drive() == Some(drive))?;
+            Some((number.base(), *before))
+        };
+        self.before.iter().filter_map(own).collect()
+    }
+}
+
+impl Unit {
+    /// What was saved of a drive where something else was written since, by the numbers of drive 1.
+    pub(super) fn unsaved_of(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
+        self.unsaved.of_drive(drive)
+    }
+
+    /// How often the position of a drive was set from here.
+    pub(super) fn times_set(&self, drive: DriveNumber) -> u32 {
+        self.unsaved.set.get(&drive).copied().unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperdrive::profile::{
+        DeviceState, Image, Positions, ProfileIdentity, plan_edits, plan_service,
+    };
+
+    fn image(values: &[(u16, i64)]) -> Image {
+        let number = |(number, value): &(u16, i64)| (ParameterNumber::new(*number).unwrap(), *value);
+        Image { values: values.iter().map(number).collect() }
+    }
+
+    fn values(image: &Image) -> BTreeMap<ParameterNumber, Value> {
+        image.values.iter().map(|(number, value)| (*number, Value::Number(*value))).collect()
+    }
+
+    /// Issue 21.6 (h): what was saved is known from what was written since, also of an earlier start, until it is saved.
+    #[test]
+    fn what_was_saved_is_known_until_it_is_saved_anew() {
+        let three = DriveNumber::new(3).unwrap();
+        let (factory, mut now) = (image(&[(24, 0), (366, 350)]), image(&[(24, 0), (366, 350)]));
+        let mut own = Unsaved::default();
+        for speed in [300, 200] {
+            let (identity, positions) = (ProfileIdentity::default(), Positions::new());
+            let state = DeviceState { identity, image: now.clone(), positions };
+            let plan = plan_edits(&state, &image(&[(366, speed)])).unwrap().without_save();
+            own.begin(&plan);
+            own.done(&plan);
+            now = now.with(&image(&[(366, speed)]));
+            own.read(&values(&now));
+        }
+        assert_eq!(own.of_drive(three), BTreeMap::from([(166, 350)]));
+        assert!(own.of_drive(DriveNumber::FIRST).is_empty());
+        let mut later = Unsaved::default();
+        later.extend(own.saved());
+        assert_eq!(later.of_drive(three), BTreeMap::from([(166, 350)]));
+        // It has lost its supply, or was written back.
+        later.read(&values(&factory));
+        assert!(later.of_drive(three).is_empty());
+        let plan = plan_service(&now, Service::Save);
+        own.begin(&plan);
+        own.done(&plan);
+        assert!(own.of_drive(three).is_empty());
+    }
+}

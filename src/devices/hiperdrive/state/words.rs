@@ -1,0 +1,101 @@
+//! Parameters as they are written in a table: values, units, what a number means; and why an edit was refused.
+
+use super::staged::{EditError, Mark};
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::app::number::decimals_of;
+use crate::devices::hiperdrive::protocol::{
+    self, AddressSwitch, ErrorCode, Kind, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
+};
+use crate::devices::hiperdrive::state::explain as hiperdrive;
+use crate::devices::hiperdrive::state::explain as words;
+
+/// A value as it is written: words of bits and codes in hexadecimal.
+pub fn shown(number: ParameterNumber, value: &Value) -> String {
+    match value {
+        Value::Text(text) => text.clone(),
+        Value::Number(value) if matches!(number.base(), 101 | 105 | 108..=118) => format!("0x{value:04X}"),
+        Value::Number(value) => value.to_string(),
+    }
+}
+
+/// The unit of a parameter's number; `None` where it has none. A text is no number, whatever it tells.
+pub fn unit(row: &ParameterRow) -> Option<Text> {
+    match row.unit {
+        _ if row.kind == Kind::Text => None,
+        "" => None,
+        "steps" => Some(Text::new("unit.steps")),
+        "0.1 rpm" => Some(Text::new("hd_unit.tenth_rpm")),
+        "0.1 V" => Some(Text::new("hd_unit.tenth_volt")),
+        "0.1 s" => Some(Text::new("hd_unit.tenth_second")),
+        own => Some(plain(own)),
+    }
+}
+
+/// What a text tells as a number with its unit; `None` of other texts.
+pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
+    let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
+    let value = protocol::nominal(text)?;
+    Some(Text::new("hd_entry.place").with_number("value", value, decimals_of(value, 1)).with_text("unit", plain(unit)))
+}
+
+/// What a number means by itself; `None` where it says it.
+pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
+    let tenths = |id: &'static str, name: &'static str| Text::new(id).with_number(name, value as f64 / 10.0, 1);
+    let word = || u16::try_from(value).ok();
+    Some(match number.base() {
+        9 => tenths("hd_check.supply", "volts"),
+        12 => match u8::try_from(value).ok().and_then(AddressSwitch::parse) {
+            Some(switch) => hiperdrive::switch(switch),
+            None => Text::new("hd_check.unknown_switch").with("number", value),
+        },
+        47 => Text::new(if value == 0 { "hd_meaning.saved" } else { "hd_meaning.not_saved" }),
+        105 => hiperdrive::state(StatusWord::new(word()?).state()),
+        108..=115 if value == 0 => Text::new("hd_meaning.no_error"),
+        108..=115 => hiperdrive::error(ErrorCode::new(word()?)).name,
+        116..=118 => Text::new(match value {
+            0 => "hd_meaning.word_well",
+            0xFFFF => "hd_meaning.word_none",
+            _ => "hd_meaning.word_error",
+        }),
+        120 => hiperdrive::variant(Variant::new(word()?)),
+        152 => Text::new(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
+        166 => tenths("hd_entry.rpm", "rpm"),
+        186 if value == 255 => Text::new("hd_meaning.no_timeout"),
+        186 => tenths("hd_check.timeout", "seconds"),
+        _ => return None,
+    })
+}
+
+/// Why an edit was refused.
+pub fn refused(error: &EditError) -> Text {
+    match error {
+        EditError::NothingRead => Text::new("hd_entry.nothing_read"),
+        EditError::Unknown(number) => Text::new("hd_said.unknown").with("number", number),
+        EditError::NotRead(number) => about("hd_entry.not_read", *number),
+        EditError::NotAValue(number) => about("hd_entry.not_a_value", *number),
+        EditError::OutOfRange(error) => words::out_of_range(error),
+        EditError::Crossed { lower, upper } => Text::new("hd_entry.crossed").with("lower", lower).with("upper", upper),
+    }
+}
+
+/// What somebody should look at.
+pub fn mark(mark: &Mark) -> Text {
+    match mark {
+        Mark::OutOfRange(error) => words::out_of_range(error),
+        Mark::Crossed { lower, upper, .. } => Text::new("hd_entry.crossed").with("lower", lower).with("upper", upper),
+        Mark::Outside { position, lower, upper, .. } => {
+            Text::new("hd_mark.outside").with("position", position).with("lower", lower).with("upper", upper)
+        }
+        Mark::LimitsMove { lower, upper, .. } => Text::new("hd_mark.limits_move")
+            .with_number("lower_now", lower.0, 2)
+            .with_number("lower_then", lower.1, 2)
+            .with_number("upper_now", upper.0, 2)
+            .with_number("upper_then", upper.1, 2),
+        Mark::NoTimeout { .. } => Text::new("hd_mark.no_timeout"),
+    }
+}
+
+fn about(id: &'static str, number: ParameterNumber) -> Text {
+    Text::new(id).with("number", number).with_text("name", words::parameter(number))
+}

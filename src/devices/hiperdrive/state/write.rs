@@ -1,0 +1,129 @@
+//! What is written into a device: the edits or a profile as a wish, and its jobs.
+
+use super::review::{Review, op_words};
+use super::unit::Unit;
+use super::words;
+use crate::app::review::OpWords;
+use crate::app::services::Services;
+use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
+use crate::app::{Severity, Text};
+use crate::devices::hiperdrive::jobs::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
+use crate::devices::hiperdrive::profile::{
+    HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types,
+};
+use crate::devices::hiperdrive::state::explain as explained;
+use crate::profile::{Body, ProfileError};
+use crate::store::DeviceKey;
+
+impl Unit {
+    pub(super) fn review_edits(&mut self, services: &mut Services) {
+        let edited = self.staged.edited();
+        if edited.values.is_empty() {
+            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
+            return;
+        }
+        self.plan(Change::Write(Box::new(edited)), services);
+    }
+
+    pub(crate) fn plan_restore(&mut self, profile: HiperdriveProfile, services: &mut Services) {
+        let options = RestoreOptions::default();
+        self.plan(Change::Restore { profile: Box::new(profile), options }, services);
+    }
+}
+
+impl WithMemory for Unit {
+    fn review(&self) -> Option<&Review> {
+        self.review.as_ref()
+    }
+
+    fn review_mut(&mut self) -> &mut Option<Review> {
+        &mut self.review
+    }
+
+    fn op(&self, prepared: &Prepared, op: &Op) -> OpWords {
+        op_words(prepared, op, |drive| self.pitch(drive))
+    }
+
+    fn is_for_another(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        check_device(profile, &own.profile()).is_err()
+    }
+
+    fn is_for_another_type(&self, change: &Change) -> bool {
+        let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
+        !other_types(&profile.identity, &own.profile()).is_empty()
+    }
+
+    fn is_of_another(&self, prepared: &Prepared) -> bool {
+        self.is_another(&prepared.identity)
+    }
+
+    fn prepare(change: Change) -> HiperdriveJob {
+        HiperdriveJob::Prepare(change)
+    }
+
+    /// Nothing moves meanwhile. No limit is known from which a device would count as worn.
+    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Hiperdrive>) -> HiperdriveJob {
+        self.moves.stop();
+        self.unsaved.begin(&prepared.plan);
+        HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
+    }
+
+    fn carried_out(&mut self, _: &Committed, _: &mut Services) {
+        if let Some(prepared) = self.review.as_ref().and_then(Review::writing) {
+            self.unsaved.done(&prepared.plan);
+        }
+    }
+
+    fn forget_steps(&mut self) {
+        self.staged.forget_steps();
+    }
+
+    /// What is held is let go.
+    fn hands_off(&mut self) {
+        self.moves.let_go();
+    }
+
+    fn tell_of_another(&self, prepared: &Prepared, services: &mut Services) {
+        if !self.is_dirty() {
+            self.session.tell_of_another(&prepared.identity.serial_number, services);
+        }
+    }
+}
+
+impl Saved for Unit {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
+    fn read_all() -> HiperdriveJob {
+        HiperdriveJob::Save
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Some(Body::new(self.wanted_profile()?))
+    }
+
+    fn remarks(&self) -> Vec<Text> {
+        some(&self.marks(), words::mark)
+    }
+
+    fn known_body(&self) -> Option<Known> {
+        let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
+        // What the device refuses is in no profile; what came broken was to be in this one.
+        let missing: Vec<Text> = survey.wrong_lengths.iter().map(|own| explained::item(Item(own.number))).collect();
+        if !missing.is_empty() {
+            return Some(Err(missing));
+        }
+        let kept = survey.identity.kept().filter_map(|number| Some((number, base.get(number)?)));
+        let image = Image { values: kept.collect() };
+        let profile = HiperdriveProfile::of(survey.identity.profile(), image);
+        let remarks = without_edits(self.edits()).into_iter().collect();
+        Some(Ok((Body::new(profile), remarks)))
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.plan_restore(body.into_profile()?, services);
+        Ok(())
+    }
+}

@@ -1,0 +1,368 @@
+//! The set-up of an axis as one run: its steps on the left, the one that is shown on the right, with what is to be done, where
+//! the axis is, and what was found.
+//!
+//! Nothing that can be clicked moves while a step is shown, whatever the drive says: what comes and goes stands below all of
+//! that. The step is exchanged by a press of the person alone.
+
+mod content;
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Severity, Text};
+use crate::devices::hiperdrive::protocol::ErrorCode;
+use crate::devices::hiperdrive::state::axis::{
+    Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, end_lines, words,
+};
+use crate::devices::hiperdrive::state::explain;
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::ui::controls::{
+    allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split,
+};
+use crate::ui::widgets::{Step as Line, StepState, Steps, steps};
+use crate::ui::{Skin, icons};
+
+/// What the page remembers from one picture to the next.
+#[derive(Default)]
+pub(super) struct View {
+    /// Which step is drawn, and since when on the window's clock.
+    since: Option<(Step, f64)>,
+}
+
+impl View {
+    /// Seconds for which a step has been drawn; 0: it is new.
+    fn age(&mut self, step: Step, now: f64) -> f64 {
+        let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
+        self.since = Some((step, since));
+        now - since
+    }
+}
+
+/// So long a step is looked at before it is left: what a second click was meant for is the step before.
+const SETTLES: f64 = 0.6;
+
+/// The run, as it is drawn.
+pub(crate) struct Shown<'a> {
+    unit: &'a Unit,
+    axis: &'a Axis,
+    seen: &'a Seen,
+    /// The step has been looked at for long enough to be left.
+    settled: bool,
+}
+
+impl Shown<'_> {
+    fn push(&self, actions: &mut Vec<Action>, action: Run) {
+        actions.push(Action::Hiperdrive(self.unit.session.id, Hiperdrive::Axis(action)));
+    }
+
+    /// A button of the run, with why it cannot be pressed.
+    fn button(&self, ui: &mut Ui, skin: &Skin, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
+        let allowed = self.axis.ask(own, self.seen).map(|_| ());
+        if allowed_button(ui, skin, &allowed, icon, word).clicked() {
+            self.push(actions, Run::Press(own));
+        }
+    }
+}
+
+/// Room for the number of a step, two digits at most.
+const NUMBERS: f32 = 15.0;
+/// Room for the button that leads on.
+const PRIMARY: f32 = 112.0;
+/// Below this width the list of steps does not stand beside the step.
+const BESIDE: f32 = 640.0;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    let Some(axis) = unit.axis() else {
+        intro(ui, skin, unit, actions);
+        ui.add_space(skin.space.groups);
+        notes(ui, skin);
+        return;
+    };
+    let seen = unit.seen(unit.drive());
+    let age = view.age(axis.step(), ui.input(|input| input.time));
+    let shown = Shown { unit, axis, seen: &seen, settled: age >= SETTLES };
+    if let Some(end) = axis.end() {
+        end_ui(ui, skin, &shown, end, actions);
+        ui.add_space(skin.space.groups);
+    }
+    let goes_on = axis.end().is_none();
+    if ui.available_width() < BESIDE {
+        // Nothing stands beside the step; at the end the list is the result.
+        if goes_on {
+            step_ui(ui, skin, &shown, age, actions);
+        } else {
+            card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown));
+        }
+        ui.add_space(skin.space.groups);
+        notes(ui, skin);
+        return;
+    }
+    split(
+        ui,
+        skin,
+        (0.36, BESIDE),
+        actions,
+        |ui, _| card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown)),
+        |ui, actions| {
+            if goes_on {
+                step_ui(ui, skin, &shown, age, actions);
+                ui.add_space(skin.space.groups);
+            }
+            notes(ui, skin);
+        },
+    );
+}
+
+fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    card(ui, skin, "hd_axis.title", |ui| {
+        paragraph(ui, skin.say("hd_axis.words"));
+        ui.add_space(skin.space.between);
+        // Before the list: in a low window it is seen without scrolling.
+        let allowed = unit.may_set_up();
+        ui.horizontal(|ui| {
+            if primary(ui, skin, allowed.is_ok(), icons::PLAY, &skin.say("hd_axis.begin")).clicked() {
+                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Axis(Run::Begin)));
+            }
+            if let Err(why) = &allowed {
+                warning(ui, skin, why);
+            }
+        });
+        ui.add_space(skin.space.between);
+        // Lines of text, not of buttons.
+        ui.spacing_mut().interact_size.y = ui.text_style_height(&egui::TextStyle::Body);
+        for (number, step) in (1..).zip(Step::ALL) {
+            ui.horizontal(|ui| {
+                let size = egui::vec2(NUMBERS, ui.spacing().interact_size.y);
+                let layout = egui::Layout::right_to_left(egui::Align::Center);
+                ui.allocate_ui_with_layout(size, layout, |ui| ui.label(skin.label(number.to_string())));
+                ui.label(skin.label(skin.words(&words::title(step))));
+            });
+        }
+    });
+}
+
+/// All steps, with what was found in those that are done.
+fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
+    let line = |step: Step| {
+        let reached = shown.axis.reached(step);
+        let state = match reached {
+            Reached::Done => StepState::Done,
+            Reached::Now => StepState::Waiting,
+            Reached::Skipped => StepState::Skipped,
+            Reached::Failed => StepState::Failed,
+            Reached::Ahead => StepState::ToCome,
+        };
+        let told = matches!(reached, Reached::Done | Reached::Failed);
+        let found = match (step, reached) {
+            (Step::Reference, Reached::Skipped) => Some(Text::new("hd_axis.no_reference")),
+            _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| told),
+        };
+        Line {
+            title: skin.words(&words::title(step)),
+            state,
+            word: skin.words(&words::reached(reached)),
+            note: found.map(|text| unbroken(skin.words(&text))).unwrap_or_default(),
+            ..Line::default()
+        }
+    };
+    let lines: Vec<Line> = Step::ALL.into_iter().map(line).collect();
+    steps(ui, skin, &Steps { steps: &lines, ..Steps::default() });
+}
+
+/// The step that counts.
+fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, age: f64, actions: &mut Vec<Action>) {
+    let (axis, seen) = (shown.axis, shown.seen);
+    let step = axis.step();
+    if age == 0.0 {
+        ui.scroll_to_cursor(Some(egui::Align::TOP));
+    }
+    if age < SETTLES {
+        ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(SETTLES - age));
+    }
+    let place = Step::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
+    let aside = |ui: &mut Ui| {
+        ui.label(skin.caption(format!("{place}/{}", Step::ALL.len())));
+        if shown.unit.drives().len() > 1 {
+            let drive = Text::new("hd_axis.of_drive").with("drive", axis.drive().get());
+            ui.label(skin.caption(skin.words(&drive)));
+        }
+    };
+    card_with(ui, skin, content::heading(step), aside, |ui| {
+        paragraph(ui, unbroken(skin.words(&words::todo(step, seen))));
+        ui.add_space(skin.space.between);
+        live(ui, skin, shown);
+        ui.add_space(skin.space.between);
+        let mut entries = axis.entries().shown(skin.language);
+        content::content_ui(ui, skin, shown, &mut entries, actions);
+        if entries != axis.entries().shown(skin.language) {
+            shown.push(actions, Run::Edit(Box::new(entries.clone())));
+        }
+        ui.add_space(skin.space.groups);
+        foot(ui, skin, shown, actions);
+        ui.add_space(skin.space.between);
+        messages(ui, skin, shown, &entries);
+    });
+}
+
+/// What comes and goes: a fault, what does not hold any more, what is missing, what was found.
+fn messages(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+    let (axis, seen) = (shown.axis, shown.seen);
+    let fallen = axis.fallen().map(words::fallen);
+    if let Some(why) = words::fault(seen) {
+        line(ui, skin, Severity::Error, &why);
+    }
+    if let Some(why) = &fallen {
+        line(ui, skin, Severity::Error, why);
+    }
+    if let Some(why) = words::unexplained(axis, seen) {
+        warning(ui, skin, &why);
+    }
+    if let (Err(why), None) = (axis.may_go_on(seen), &fallen) {
+        warning(ui, skin, &why);
+    }
+    content::messages_ui(ui, skin, shown, entries);
+    // The limits to be looked at stand large above.
+    if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != Step::Confirm) {
+        ui.add_space(skin.space.inside);
+        row(ui, skin, &skin.say("hd_axis.now"), unbroken(skin.words(&found)));
+    }
+    if let (Step::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
+        warning(ui, skin, &differences);
+    }
+}
+
+/// Where the axis is, and in which state its drive: always as high.
+fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
+    skin.sunken().show(ui, |ui| {
+        crate::ui::controls::fill(ui);
+        let position = shown.seen.position.map_or_else(
+            || skin.say("hd_axis.none"),
+            |position| skin.words(&words::millimetres(shown.seen.ruler(), position.into())),
+        );
+        row(ui, skin, &skin.say("hd_axis.position"), skin.value(position));
+        let state = shown
+            .seen
+            .actual
+            .map_or_else(|| skin.say("hd_axis.none"), |actual| skin.words(&explain::state(actual.status.state())));
+        let code = shown.seen.error.filter(|code| *code != ErrorCode::NONE);
+        let state = match (shown.seen.has_failed(), code) {
+            (false, _) => RichText::new(state),
+            (true, None) => RichText::new(state).color(skin.palette.bad),
+            (true, Some(code)) => RichText::new(format!("{state} {:04X}", code.code())).color(skin.palette.bad),
+        };
+        row(ui, skin, &skin.say("hd_axis.state"), state);
+    });
+}
+
+/// Back and cancel, and on. Before it is settled the step can only be cancelled, which stops what moves.
+fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let (axis, seen, settled) = (shown.axis, shown.seen, shown.settled);
+    let step = axis.step();
+    let allowed = axis.may_go_on(seen);
+    ui.horizontal_wrapped(|ui| {
+        let may_back = settled && step != Step::Request && !axis.is_writing() && !seen.moves;
+        if enabled_button(ui, may_back, icons::ARROW_U_UP_LEFT, &skin.say("hd_axis.back")).clicked() {
+            shown.push(actions, Run::Back);
+        }
+        if button(ui, icons::X, &skin.say("hd_axis.cancel")).clicked() {
+            shown.push(actions, Run::Cancel);
+        }
+        let word = skin.say(if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
+        at_the_right(ui, |ui| {
+            if primary(ui, skin, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
+                shown.push(actions, Run::Next);
+            }
+        });
+    });
+}
+
+/// To the next step without this one, beside what the step does itself.
+fn skip(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let step = shown.axis.step();
+    if step.may_be_skipped() {
+        let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
+        if enabled_button(ui, shown.settled && shown.axis.may_skip(shown.seen), "", &skin.say(id)).clicked() {
+            shown.push(actions, Run::Skip);
+        }
+    }
+}
+
+/// A number and its unit stay on one line.
+fn unbroken(words: String) -> String {
+    words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
+}
+
+/// Where the eye ends, in a line as high as a button: centred in all the room that is left, it would float in it. Behind
+/// other buttons where there is room, or else below them.
+fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    let rest = ui.available_size_before_wrap().x;
+    let width = if rest >= PRIMARY { rest } else { ui.available_width() };
+    let size = egui::vec2(width.max(0.0), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
+}
+
+/// How it ended: what can be done now, what was written, and whether that lasts.
+fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut Vec<Action>) {
+    let axis = shown.axis;
+    let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
+    card(ui, skin, title, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &skin.say("hd_axis.again")).clicked() {
+                shown.push(actions, Run::Begin);
+            }
+            if button(ui, icons::FLOPPY_DISK, &skin.say("hd_axis.save_report")).clicked() {
+                shown.push(actions, Run::AskReport);
+            }
+            if button(ui, icons::COPY, &skin.say("hd_axis.copy_report")).clicked()
+                && let Some(report) = shown.unit.axis_report(skin.language)
+            {
+                ui.ctx().copy_text(report);
+            }
+            recall(ui, skin, shown, actions);
+        });
+        ui.add_space(skin.space.inside);
+        if end == End::Cancelled {
+            line(ui, skin, Severity::Note, &Text::new("hd_axis.stands"));
+        }
+        let weight = if axis.is_saved() || axis.changes().is_empty() { Severity::Note } else { Severity::Warning };
+        for text in end_lines(axis, shown.seen) {
+            line(ui, skin, weight, &text);
+        }
+    });
+}
+
+/// What was known before is written back.
+fn recall(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+    let word = skin.say("hd_axis.recall");
+    shown.button(ui, skin, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
+}
+
+/// What else one should know.
+fn notes(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "hd_axis.notes", |ui| {
+        for id in [
+            "hd_axis.note_stop",
+            "hd_axis.note_controller",
+            "hd_axis.note_reference",
+            "hd_axis.note_jog",
+            "hd_axis.note_factory",
+            "hd_axis.note_words",
+        ] {
+            line(ui, skin, Severity::Note, &Text::new(id));
+        }
+    });
+}
+
+fn line(ui: &mut Ui, skin: &Skin, own: Severity, text: &Text) {
+    let (icon, ink) = severity(skin, own);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(ink));
+        paragraph(ui, skin.words(text));
+    });
+}
+
+fn warning(ui: &mut Ui, skin: &Skin, why: &Text) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
+        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+    });
+}

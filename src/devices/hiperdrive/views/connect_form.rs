@@ -1,0 +1,116 @@
+//! The connection form of HIPERDRIVE drives: virtual, or over the network, where one can ask who is there.
+
+use egui::Ui;
+
+use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::{Action, Text};
+use crate::devices::hiperdrive::state::{Discovery, HiperdriveForm, HiperdriveWay, VirtualHub};
+use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner, text_entry};
+use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
+use crate::ui::{Skin, icons};
+
+/// Draws the form.
+pub(crate) fn form_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    dialog: &Dialog,
+    form: &mut HiperdriveForm,
+    more: &mut bool,
+    actions: &mut Vec<Action>,
+) {
+    let ways = [
+        (HiperdriveWay::Virtual, "connect.virtual"),
+        (HiperdriveWay::Network, "connect.hd_network"),
+        (HiperdriveWay::Replay, "connect.replay"),
+    ];
+    segments(ui, skin, &mut form.way, ways);
+    ui.add_space(skin.space.between);
+    match form.way {
+        HiperdriveWay::Virtual => simulated(ui, skin, form),
+        HiperdriveWay::Network => {
+            place(ui, skin, "connect.device_address", (&mut form.host, "192.168.1.10"), (&mut form.tcp_port, "44818"));
+            interval(ui, skin, form);
+            ui.add_space(skin.space.inside);
+            discovery(ui, skin, dialog.discovery.as_ref(), actions);
+        }
+        HiperdriveWay::Replay => recording(ui, skin, &mut form.file, actions),
+    }
+    if form.way != HiperdriveWay::Replay && unfolded(ui, skin, more) {
+        if form.way == HiperdriveWay::Virtual {
+            interval(ui, skin, form);
+        }
+        let word = skin.say("connect.byte_order");
+        entry(ui, skin, &word, |ui| {
+            let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
+            choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, skin.say(id))));
+        });
+        let word = skin.say("connect.udp_port");
+        entry(ui, skin, &word, |ui| text_entry(ui, &mut form.udp, 96.0, &word, "2222"));
+        let word = skin.say("connect.reply_time");
+        entry(ui, skin, &word, |ui| {
+            text_entry(ui, &mut form.timeout, 96.0, &word, "1000");
+            ui.label(skin.label("ms"));
+        });
+    }
+}
+
+fn simulated(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
+    let word = skin.say("connect.hub");
+    entry(ui, skin, &word, |ui| {
+        let hubs = [
+            (VirtualHub::Adapter, "connect.hub_adapter"),
+            (VirtualHub::Four, "connect.hub_four"),
+            (VirtualHub::Eight, "connect.hub_eight"),
+        ];
+        choice(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, skin.say(id))));
+    });
+    if form.hub != VirtualHub::Adapter {
+        let word = skin.say("connect.plugged");
+        entry(ui, skin, &word, |ui| text_entry(ui, &mut form.drives, 200.0, &word, "1,0,1"));
+    }
+    let word = skin.say("connect.fault");
+    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.fault, 200.0, &word, "drop:0.01"));
+}
+
+/// How often set-points go to the drives while they are moved from here.
+fn interval(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
+    let word = skin.say("connect.interval");
+    entry(ui, skin, &word, |ui| {
+        text_entry(ui, &mut form.interval, 96.0, &word, "10");
+        ui.label(skin.label("ms"));
+    });
+}
+
+/// Who is there.
+fn discovery(ui: &mut Ui, skin: &Skin, discovery: Option<&Discovery>, actions: &mut Vec<Action>) {
+    let is_running = discovery.is_some_and(Discovery::is_running);
+    ui.horizontal(|ui| {
+        let word = skin.say("connect.discover");
+        if enabled_button(ui, !is_running, icons::MAGNIFYING_GLASS, &word).clicked() {
+            actions.push(Action::Connect(Connect::Discover));
+        }
+        if is_running {
+            spinner(ui, skin);
+        }
+        ui.label(skin.caption(skin.say("connect.discover_words")));
+    });
+    match discovery.and_then(|own| own.found.as_ref()) {
+        Some(Err(why)) => problem(ui, skin, Some(why)),
+        Some(Ok(found)) if found.is_empty() => paragraph(ui, skin.caption(skin.say("connect.nobody"))),
+        _ => {}
+    }
+    for (at, device) in discovery.map(Discovery::devices).unwrap_or_default().iter().enumerate() {
+        ui.horizontal(|ui| {
+            let words = Text::new("connect.use_device").with("address", device.address);
+            if button(ui, icons::PLUGS_CONNECTED, &skin.words(&words)).clicked() {
+                actions.push(Action::Connect(Connect::ChooseDevice(at)));
+            }
+            ui.label(&device.name);
+            let serial = Text::new("check.serial").with("number", device.serial_number);
+            ui.label(skin.label(skin.words(&serial)));
+            if !device.is_hiperdrive {
+                ui.label(skin.caption(skin.say("connect.other_maker")));
+            }
+        });
+    }
+}

@@ -1,0 +1,157 @@
+//! Who the device and its drives are, what a check of them says, how it is wired.
+
+use egui::Ui;
+
+use crate::app::Action;
+use crate::devices::hiperdrive::jobs::Change;
+use crate::devices::hiperdrive::profile::Service;
+use crate::devices::hiperdrive::state::explain;
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::ui::check::lines_ui;
+use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::{Skin, icons};
+
+/// What parameter 47 is written for, with what is to be known of it.
+const SERVICES: [(Service, &str); 5] = [
+    (Service::Save, "hd_services.save"),
+    (Service::Recall, "hd_services.recall"),
+    (Service::Factory, "hd_services.factory"),
+    (Service::FactoryAll, "hd_services.factory_all"),
+    (Service::Reset, "hd_services.reset"),
+];
+
+pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    let is_profile = unit.profile().is_some();
+    two_columns(
+        ui,
+        skin,
+        &mut *actions,
+        |ui, actions| {
+            identity(ui, skin, unit, actions);
+            if !is_profile {
+                ui.add_space(skin.space.groups);
+                check(ui, skin, unit, actions);
+            }
+        },
+        |ui, _| {
+            drives(ui, skin, unit);
+            ui.add_space(skin.space.groups);
+            wiring(ui, skin);
+        },
+    );
+    if !is_profile {
+        ui.add_space(skin.space.groups);
+        services(ui, skin, unit, actions);
+    }
+}
+
+fn identity(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    let read = |ui: &mut Ui| {
+        if unit.profile().is_none()
+            && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &skin.say("hd_device.read"))
+                .clicked()
+        {
+            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Read));
+        }
+    };
+    card_with(ui, skin, "hd_device.title", read, |ui| {
+        let Some(identity) = unit.identity() else {
+            empty(ui, skin, &skin.say("hd_device.nothing"), None);
+            return;
+        };
+        ui.label(skin.value(&identity.category));
+        ui.add_space(skin.space.inside);
+        for (label, value) in [
+            ("hd_device.name", &identity.name),
+            ("hd_device.article", &identity.article_number),
+            ("hd_device.serial", &identity.serial_number),
+            ("hd_device.date", &identity.production_date),
+            ("hd_device.version", &identity.version),
+        ] {
+            row(ui, skin, &skin.say(label), skin.mono(value));
+        }
+    });
+}
+
+/// What is plugged in, place by place.
+fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit) {
+    card(ui, skin, "hd_drives.title", |ui| {
+        let Some(identity) = unit.identity() else {
+            empty(ui, skin, &skin.say("hd_device.nothing"), None);
+            return;
+        };
+        if identity.drives.is_empty() {
+            empty(ui, skin, &skin.say("hd_drives.none"), None);
+        }
+        for drive in &identity.drives {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(skin.heading(drive.number.get().to_string()));
+                ui.label(skin.mono(&drive.name));
+                let id = if drive.requested { "hd_drives.requested" } else { "hd_drives.not_requested" };
+                ui.label(skin.caption(skin.say(id)));
+            });
+            row(ui, skin, &skin.say("hd_device.serial"), skin.mono(&drive.serial_number));
+            row(ui, skin, &skin.say("hd_device.version"), skin.mono(&drive.version));
+            row(ui, skin, &skin.say("hd_device.article"), skin.mono(&drive.article_number));
+        }
+        let places = identity.topology.drives();
+        let taken = identity.drives.len();
+        if taken < usize::from(places) {
+            let text = crate::app::Text::new("hd_drives.empty").with("count", usize::from(places) - taken);
+            paragraph(ui, skin.caption(skin.words(&text)));
+        }
+    });
+}
+
+fn check(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    let run = |ui: &mut Ui| {
+        if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Check));
+        }
+    };
+    card_with(ui, skin, "check_card.title", run, |ui| {
+        lines_ui(ui, skin, unit.check.as_deref(), "hd_check.nothing");
+    });
+}
+
+/// What can be done with all that the device keeps.
+fn services(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+    card(ui, skin, "hd_services.title", |ui| {
+        for (service, note) in SERVICES {
+            if enabled_button(ui, unit.session.is_ready(), "", &skin.words(&explain::service(service))).clicked() {
+                let change = Change::Do(service);
+                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Plan(Box::new(change))));
+            }
+            paragraph(ui, skin.caption(skin.say(note)));
+            ui.add_space(skin.space.inside);
+        }
+        paragraph(ui, skin.caption(skin.say("hd_services.controller")));
+    });
+}
+
+const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drives", "hd_wiring.manual"];
+
+fn wiring(ui: &mut Ui, skin: &Skin) {
+    card(ui, skin, "wiring.title", |ui| {
+        for note in WIRING {
+            paragraph(ui, skin.label(skin.say(note)));
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::WIRING;
+    use crate::ui::wires::check_notes;
+
+    /// Issue 22.23: HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter).
+    #[test]
+    fn the_card_says_what_the_manual_says() {
+        check_notes(&WIRING, &["4 poles, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
+        check_notes(&WIRING, &["3 TD− green", "4 RD− orange", "four wires only"]);
+        check_notes(&WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
+        check_notes(&WIRING, &["control 1 +24 V, 3 GND (5 poles, A-coded)", "M6"]);
+        check_notes(&WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
+        check_notes(&WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub has to be at 0"]);
+    }
+}

@@ -1,0 +1,120 @@
+//! The words that go to and fro bit by bit, and how well the cyclic connection keeps its time.
+
+use egui::accesskit::Role;
+use egui::{Align2, FontId, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use crate::app::Text;
+use crate::devices::hiperdrive::procedures::cyclic::{Bucket, Histogram};
+use crate::devices::hiperdrive::protocol::{ControlBit, DriveNumber, StatusBit};
+use crate::devices::hiperdrive::state::Unit;
+use crate::devices::hiperdrive::state::explain;
+use crate::ui::Skin;
+use crate::ui::controls::{card, empty, paragraph, row};
+use crate::ui::widgets::series;
+
+/// Status and control word with the names of their bits.
+pub(super) fn words_card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, drive: DriveNumber) {
+    card(ui, skin, "hd_words.title", |ui| {
+        let Some(actual) = unit.actual(drive) else {
+            empty(ui, skin, &skin.say("hd_words.nothing"), None);
+            return;
+        };
+        let bits = |names: Vec<String>, word: u16| RichText::new(format!("0x{word:04X}  {}", names.join(" · ")));
+        let set = actual.status.set().map(|bit: StatusBit| skin.words(&explain::status_bit(bit))).collect();
+        row(ui, skin, &skin.say("hd_words.status"), bits(set, actual.status.word()));
+        if let Some(sent) = unit.moves.sent(drive) {
+            let speed_mode = sent.control.has(ControlBit::SpeedMode);
+            let set = ControlBit::ALL.into_iter().filter(|bit| sent.control.has(*bit));
+            let set = set.map(|bit| skin.words(&explain::control_bit(bit, speed_mode))).collect();
+            row(ui, skin, &skin.say("hd_words.control"), bits(set, sent.control.word()));
+        }
+    });
+}
+
+/// Height of the histogram, and of the words below it.
+const BARS: f32 = 96.0;
+const WORDS: f32 = 16.0;
+
+/// The cyclic connection: how many packets, what was wrong with them, and how far their intervals were off.
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit) {
+    card(ui, skin, "hd_link.title", |ui| {
+        let view = unit.moves.view();
+        let link = &view.link;
+        if link.sent == 0 {
+            empty(ui, skin, &skin.say("hd_link.nothing"), None);
+            return;
+        }
+        let milliseconds = skin.number(link.interval.as_secs_f64() * 1e3, 1);
+        row(ui, skin, &skin.say("hd_link.interval"), skin.mono(format!("{milliseconds} ms")));
+        let priority = if view.punctual { "hd_link.real_time" } else { "hd_link.ordinary" };
+        row(ui, skin, &skin.say("hd_link.priority"), skin.say(priority));
+        row(ui, skin, &skin.say("hd_link.packets"), skin.mono(format!("{} → · ← {}", link.sent, link.received)));
+        let bad =
+            [("hd_link.missed", link.missed), ("hd_link.stale", link.stale), ("hd_link.malformed", link.malformed)];
+        for (id, count) in bad {
+            let ink = if count == 0 { skin.palette.text } else { skin.palette.warn };
+            row(ui, skin, &skin.say(id), skin.mono(count.to_string()).color(ink));
+        }
+        if let Some((least, greatest)) = link.intervals.range_us() {
+            let off =
+                Text::new("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));
+            row(ui, skin, &skin.say("hd_link.jitter"), skin.mono(skin.words(&off)));
+        }
+        histogram(ui, skin, &view.link.intervals);
+        paragraph(ui, skin.caption(skin.say("hd_link.words")));
+    });
+}
+
+/// A bar a bucket; as many are high as there were, on a scale of decades, so that one late packet in a million is seen.
+fn histogram(ui: &mut Ui, skin: &Skin, histogram: &Histogram) {
+    let buckets: Vec<Bucket> = histogram.buckets().collect();
+    let size = vec2(ui.available_width().max(0.0), BARS + WORDS);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let told: Vec<String> = buckets.iter().map(|bucket| format!("{} {}", span(bucket), bucket.count)).collect();
+    let label = skin.say("hd_link.jitter");
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Image, true, &label);
+        info.current_text_value = Some(told.join(", "));
+        info
+    });
+    if !ui.is_rect_visible(rect) || buckets.is_empty() {
+        return;
+    }
+    let most = buckets.iter().map(|bucket| bucket.count).max().unwrap_or(0);
+    let height =
+        |count: u64| if count == 0 { 0.0 } else { (1.0 + (count as f32).log10()) / (1.0 + (most as f32).log10()) };
+    let width = rect.width() / buckets.len() as f32;
+    let painter = ui.painter();
+    let ground = rect.top() + BARS;
+    for (at, bucket) in buckets.iter().enumerate() {
+        let left = rect.left() + width * at as f32;
+        let bar = Rect::from_min_max(
+            pos2(left + 1.0, ground - BARS * height(bucket.count)),
+            pos2(left + width - 1.0, ground),
+        );
+        painter.rect_filled(bar, 1.0, series(skin, 1));
+        let place = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width, rect.bottom()));
+        if response.hover_pos().is_some_and(|at| place.contains(at)) {
+            response.clone().on_hover_text(format!("{}: {}", span(bucket), bucket.count));
+        }
+    }
+    painter.hline(rect.x_range(), ground, Stroke::new(1.0, skin.palette.line));
+    let font = FontId::monospace(skin.sizes.caption);
+    let ink = skin.palette.muted.into();
+    // Where the middle is and how far the ends are.
+    let first = buckets.first().map(span).unwrap_or_default();
+    let last = buckets.last().map(span).unwrap_or_default();
+    painter.text(pos2(rect.left(), rect.bottom()), Align2::LEFT_BOTTOM, first, font.clone(), ink);
+    painter.text(pos2(rect.center().x, rect.bottom()), Align2::CENTER_BOTTOM, "0", font.clone(), ink);
+    painter.text(pos2(rect.right(), rect.bottom()), Align2::RIGHT_BOTTOM, last, font, ink);
+}
+
+/// Microseconds off.
+fn span(bucket: &Bucket) -> String {
+    match (bucket.from_us, bucket.below_us) {
+        (None, Some(below)) => format!("< {below} µs"),
+        (Some(from), None) => format!("≥ {from:+} µs"),
+        (Some(from), Some(below)) => format!("{from:+}…{below:+} µs"),
+        (None, None) => String::new(),
+    }
+}

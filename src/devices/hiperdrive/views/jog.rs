@@ -1,0 +1,116 @@
+//! Motion by hand: hold to run, and steps that run to their end.
+
+use egui::{FontId, Ui, Vec2, vec2};
+
+use super::motion::{View, effort_ui, length_ui, why_not};
+use super::outside;
+use crate::app::{Action, HoldEvent, SessionId};
+use crate::devices::hiperdrive::procedures::dead_man::Outside;
+use crate::devices::hiperdrive::protocol::{Direction, DriveNumber};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit, forms};
+use crate::ui::Skin;
+use crate::ui::controls::{allowed_button, card, paragraph, problem};
+use crate::ui::widgets::{HoldButton, hold_button};
+
+/// Height of the buttons that are held.
+const PAD: f32 = 72.0;
+
+/// The card.
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    card(ui, skin, "hd_jog.title", |ui| {
+        let drafts = &mut view.jog_effort;
+        let drive = unit.drive();
+        let own = (unit.moves.jog_effort(drive), unit.moves.jogs_with(drive), drafts);
+        let effort = effort_ui(ui, skin, unit, own, Motor::JogEffort, actions);
+        let allowed = effort.and(unit.may_move(drive));
+        pads_ui(ui, skin, unit, allowed.is_ok(), actions);
+        pads_note(ui, skin, unit);
+        why_not(ui, skin, &allowed);
+        ui.add_space(skin.space.between);
+        ui.separator();
+        ui.label(skin.heading(skin.say("hd_step.title")));
+        length_ui(ui, skin, unit, "hd_step.by", &mut view.step, actions);
+        ui.horizontal_wrapped(|ui| {
+            for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
+                if allowed_button(ui, skin, &allowed, "", &skin.say(id)).clicked() {
+                    match forms::step(unit, &view.step, unit.measure, sign) {
+                        Ok(by) => {
+                            view.step_problem = None;
+                            let step = Hiperdrive::Drive(Motor::Step { by });
+                            actions.push(Action::Hiperdrive(unit.session.id, step));
+                        }
+                        Err(why) => view.step_problem = Some(why),
+                    }
+                }
+            }
+        });
+        problem(ui, skin, view.step_problem.as_ref());
+        paragraph(ui, skin.caption(skin.say("hd_step.words")));
+        // At the end: nothing that can be clicked moves away when it comes.
+        outside::block_ui(ui, skin, unit, &mut view.outside, actions);
+    });
+}
+
+/// What the pads do, or why both or one of them are blocked, in the same room: nothing below moves when that changes.
+fn pads_note(ui: &mut Ui, skin: &Skin, unit: &Unit) {
+    let drive = unit.drive();
+    let outside = unit.outside(drive).filter(|own| {
+        let ways = [Direction::Counterclockwise, Direction::Clockwise];
+        own.is_far && ways.into_iter().any(|way| unit.is_blocked(drive, way))
+    });
+    let (id, colour) = match outside.map(|own| own.outside) {
+        None => ("hd_jog.words", skin.palette.muted),
+        Some(Outside::At(_)) => ("hd_jog.outside", skin.palette.bad),
+        Some(Outside::Unclear) => ("hd_jog.unclear", skin.palette.bad),
+    };
+    let width = ui.available_width();
+    let font = FontId::proportional(skin.sizes.caption);
+    let height = |id| ui.painter().layout(skin.say(id), font.clone(), colour.into(), width).size().y;
+    let room = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear"].into_iter().map(height).fold(0.0, f32::max);
+    ui.allocate_ui(vec2(width, room), |ui| {
+        ui.set_min_height(room);
+        paragraph(ui, skin.caption(skin.say(id)).color(colour));
+    });
+}
+
+/// The two buttons that are held.
+pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
+    let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
+    ui.horizontal(|ui| {
+        for (direction, word, label) in
+            [(Direction::Counterclockwise, "−", "hd_jog.down"), (Direction::Clockwise, "+", "hd_jog.up")]
+        {
+            let blocked = unit.is_blocked(unit.drive(), direction);
+            let caption = skin.say(match unit.outside(unit.drive()).map(|own| own.outside) {
+                Some(Outside::Unclear) if blocked => "hd_outside.pad_unclear",
+                _ if blocked => "hd_outside.pad",
+                _ => "hd_jog.hold",
+            });
+            let (enabled, label) = (enabled && !blocked, skin.say(label));
+            let button = HoldButton { word, caption: &caption, label: &label, enabled };
+            let press = Motor::JogPress { direction, repeated: false };
+            pad_ui(ui, skin, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);
+        }
+    });
+}
+
+/// A button that moves a drive while it is held; `press` begins that.
+pub(super) fn pad_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (session, drive): (SessionId, DriveNumber),
+    press: Motor,
+    (button, size): (&HoldButton<'_>, Vec2),
+    actions: &mut Vec<Action>,
+) {
+    // For another drive it is another button: what is held for the one, or has the keyboard, does not count for the other.
+    let event = ui.push_id((session, drive), |ui| hold_button(ui, skin, button, size)).inner;
+    let motor = match event {
+        Some(HoldEvent::Press) => press,
+        Some(HoldEvent::Hold) => Motor::JogHold,
+        Some(HoldEvent::Release) => Motor::JogRelease,
+        Some(HoldEvent::Stop) => return actions.push(Action::StopMotion),
+        None => return,
+    };
+    actions.push(Action::Hiperdrive(session, Hiperdrive::Drive(motor)));
+}

@@ -1,0 +1,179 @@
+//! The HIPERDRIVE tab: its pages, each about one thing that a person wants of a drive, and above them what is never out of
+//! reach.
+
+mod axis;
+mod bar;
+pub(crate) mod connect_form;
+mod device;
+mod errors;
+mod figures;
+mod jog;
+mod leds;
+pub(crate) mod live;
+mod motion;
+mod network;
+pub(crate) mod outside;
+mod parameters;
+mod scale;
+mod state_machine;
+
+use std::collections::BTreeMap;
+
+use egui::{ScrollArea, Ui};
+
+use crate::app::{Action, AnyDevice, Studio};
+use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::devices::hiperdrive::state::Unit;
+use crate::ui::{Skin, backups, foot, icons};
+
+/// A page of the tab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Page {
+    /// The drive's states, and what moves it.
+    #[default]
+    Motion,
+    /// Every parameter.
+    Parameters,
+    /// From a new drive to an axis that is saved.
+    Axis,
+    /// Errors, lamps, the cyclic connection.
+    Diagnosis,
+    /// Who it is, where it is in the network.
+    Device,
+    /// Profiles, backups and what was written.
+    Backups,
+}
+
+impl Page {
+    pub(crate) const ALL: [Page; 6] =
+        [Page::Motion, Page::Parameters, Page::Axis, Page::Diagnosis, Page::Device, Page::Backups];
+
+    pub(crate) fn icon(self) -> &'static str {
+        match self {
+            Page::Motion => icons::GAUGE,
+            Page::Parameters => icons::SLIDERS,
+            Page::Axis => icons::RULER,
+            Page::Diagnosis => icons::MAGNIFYING_GLASS,
+            Page::Device => icons::CPU,
+            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
+        }
+    }
+
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Page::Motion => "page.motion",
+            Page::Parameters => "page.parameters",
+            Page::Axis => "page.axis",
+            Page::Diagnosis => "page.diagnosis",
+            Page::Device => "page.device",
+            Page::Backups => "page.backups",
+        }
+    }
+
+    pub(crate) fn help(self) -> &'static str {
+        match self {
+            Page::Motion => "help.hd_motion",
+            Page::Parameters => "help.hd_parameters",
+            Page::Axis => "help.hd_axis",
+            Page::Diagnosis => "help.hd_diagnosis",
+            Page::Device => "help.hd_device",
+            Page::Backups => "help.backups",
+        }
+    }
+
+    /// What is edited here is written from here.
+    fn has_foot(self) -> bool {
+        self == Page::Parameters
+    }
+}
+
+/// What the tab remembers of one session while the window is open: text buffers and selections.
+#[derive(Default)]
+pub(crate) struct View {
+    /// The open page.
+    pub page: Page,
+    /// The device that the rest is about.
+    serial_number: Option<String>,
+    drives: BTreeMap<DriveNumber, DriveEntries>,
+    parameters: parameters::View,
+    leds: leds::View,
+    network: network::View,
+}
+
+/// What is typed for one drive.
+#[derive(Default)]
+struct DriveEntries {
+    motion: motion::View,
+    axis: axis::View,
+}
+
+impl View {
+    /// What was typed for another device is not for this one.
+    pub(crate) fn follow(&mut self, unit: &Unit) {
+        let Some(own) = unit.serial_number() else { return };
+        if self.serial_number.as_deref().is_some_and(|before| before != own) {
+            *self = View { page: self.page, ..View::default() };
+        }
+        self.serial_number = Some(own.to_owned());
+    }
+}
+
+/// Draws the open page.
+pub(crate) fn page_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    unit: &Unit,
+    view: &mut View,
+    actions: &mut Vec<Action>,
+) {
+    let narrow = ui.available_width() < 720.0;
+    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+    let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
+    let id = egui::Id::unique(unit.session.id);
+    if unit.profile().is_none() {
+        // Stays where it is while the rest scrolls: STOP, and what it is not.
+        egui::Panel::top(id.with("hiperdrive_bar"))
+            .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
+            .show(ui, |ui| bar::bar_ui(ui, skin, studio, unit, actions));
+    }
+    if view.page.has_foot() {
+        egui::Panel::bottom(id.with("hiperdrive_foot"))
+            .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
+            .show_separator_line(false)
+            .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+    }
+    let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
+    let drive = unit.drive();
+    if view.page == Page::Parameters {
+        // A table scrolls by itself.
+        let frame = frame.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
+        frame.show(ui, |ui| parameters::page_ui(ui, skin, unit, &mut view.parameters, actions));
+        return;
+    }
+    ScrollArea::vertical().id_salt((unit.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
+        frame.show(ui, |ui| match view.page {
+            // No entry, and nothing that undoes what was typed into it, is another drive's.
+            Page::Motion => {
+                let own = &mut view.drives.entry(drive).or_default().motion;
+                ui.push_id(drive, |ui| motion::page_ui(ui, skin, unit, own, actions));
+            }
+            Page::Parameters => {}
+            Page::Axis => {
+                let own = &mut view.drives.entry(drive).or_default().axis;
+                ui.push_id(drive, |ui| axis::page_ui(ui, skin, unit, own, actions));
+            }
+            Page::Diagnosis => {
+                errors::cards_ui(ui, skin, unit, actions);
+                ui.add_space(skin.space.groups);
+                leds::cards_ui(ui, skin, &mut view.leds);
+            }
+            Page::Device => {
+                device::cards_ui(ui, skin, unit, actions);
+                ui.add_space(skin.space.groups);
+                network::card_ui(ui, skin, unit, &mut view.network, actions);
+            }
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
+        });
+    });
+}

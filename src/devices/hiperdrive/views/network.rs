@@ -1,0 +1,182 @@
+//! Where the device has its address from: what its TCP/IP object says beside what is wanted, what that comes to at the next
+//! power-up, and what the address switches mean.
+
+use egui::{RichText, Ui};
+
+use crate::app::{Action, Severity, Text};
+use crate::buses::ethernet_ip::protocol::AddressSource;
+use crate::devices::hiperdrive::jobs::Change;
+use crate::devices::hiperdrive::profile::NetworkSettings;
+use crate::devices::hiperdrive::state::network::{self, Form};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::ui::controls::{
+    allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row,
+    severity, split,
+};
+use crate::ui::{Skin, icons};
+
+/// What is typed and is not written.
+#[derive(Default)]
+pub(super) struct View {
+    /// As the device had it when typing began.
+    of: Option<NetworkSettings>,
+    form: Option<Form>,
+}
+
+/// Width of an address.
+const ADDRESS: f32 = 148.0;
+
+pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    if unit.profile().is_some() {
+        switches(ui, skin, unit);
+        return;
+    }
+    split(
+        ui,
+        skin,
+        (0.5, 640.0),
+        (view, actions),
+        |ui, (view, actions)| settings(ui, skin, unit, view, actions),
+        |ui, _| switches(ui, skin, unit),
+    );
+}
+
+fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    let id = unit.session.id;
+    let mut asked = Vec::new();
+    let read = |ui: &mut Ui| {
+        if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("hd_net.read")).clicked() {
+            asked.push(Action::Hiperdrive(id, Hiperdrive::Read));
+        }
+    };
+    card_with(ui, skin, "hd_net.title", read, |ui| {
+        let Some(now) = unit.network_settings() else {
+            empty(ui, skin, &skin.say("hd_net.nothing"), None);
+            return;
+        };
+        // What was typed beside other settings is not for these.
+        if view.of.as_ref() != Some(&now) {
+            (view.of, view.form) = (Some(now.clone()), None);
+        }
+        let before = Form::of(&now);
+        let mut form = view.form.clone().unwrap_or_else(|| before.clone());
+        form_ui(ui, skin, &before, &mut form);
+        if let Some(mac) = unit.network().and_then(|own| own.mac) {
+            let mac: Vec<String> = mac.iter().map(|byte| format!("{byte:02X}")).collect();
+            row(ui, skin, &skin.say("hd_net.mac"), skin.mono(mac.join(":")));
+        }
+        ui.add_space(skin.space.between);
+        let wanted = form.settings(&now);
+        outlook(ui, skin, unit, &now, &wanted);
+        ui.add_space(skin.space.inside);
+        let allowed = match (&wanted, unit.may_plan()) {
+            (_, Err(why)) => Err(why),
+            (Err(why), _) => Err(why.clone()),
+            (Ok(own), Ok(())) if *own == now => Err(Text::new("hd_net.no_change")),
+            (Ok(own), Ok(())) => Ok(own.clone()),
+        };
+        ui.horizontal_wrapped(|ui| {
+            let may = allowed.as_ref().map(|_| ()).map_err(Clone::clone);
+            if allowed_button(ui, skin, &may, icons::LIST_CHECKS, &skin.say("hd_net.write")).clicked()
+                && let Ok(own) = allowed
+            {
+                let change = Change::Network(own);
+                actions.push(Action::Hiperdrive(id, Hiperdrive::Plan(Box::new(change))));
+            }
+            if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &skin.say("hd_net.revert")).clicked() {
+                form = before.clone();
+            }
+        });
+        view.form = (form != before).then_some(form);
+    });
+    actions.append(&mut asked);
+}
+
+fn form_ui(ui: &mut Ui, skin: &Skin, before: &Form, form: &mut Form) {
+    let word = skin.say("hd_net.source");
+    let mut sources = vec![AddressSource::Dhcp, AddressSource::Bootp, AddressSource::Stored];
+    if !sources.contains(&before.source) {
+        sources.push(before.source);
+    }
+    let named = sources.into_iter().map(|own| (own, skin.words(&network::source(own))));
+    // Below its name: beside it there is no room in a narrow column.
+    ui.label(skin.label(word.as_str()));
+    options(ui, &word, &mut form.source, named);
+    ui.add_space(skin.space.inside);
+    let types = form.has_addresses();
+    let [first, second] = &mut form.name_servers;
+    let [first_before, second_before] = &before.name_servers;
+    for (id, own, was, is_needed) in [
+        ("hd_net.address", &mut form.address, &before.address, true),
+        ("hd_net.mask", &mut form.mask, &before.mask, true),
+        ("hd_net.gateway", &mut form.gateway, &before.gateway, false),
+        ("hd_net.name_server", first, first_before, false),
+        ("hd_net.second_server", second, second_before, false),
+        ("hd_net.domain", &mut form.domain, &before.domain, false),
+    ] {
+        let word = skin.say(id);
+        if !types {
+            let shown = if was.is_empty() { skin.say("hd_axis.none") } else { was.clone() };
+            row(ui, skin, &word, skin.mono(shown));
+            continue;
+        }
+        entry(ui, skin, &word, |ui| {
+            let hint = if is_needed { String::new() } else { skin.say("hd_net.optional") };
+            mono_entry(ui, skin, own, ADDRESS, &word, &hint);
+            if own != was && !was.is_empty() {
+                let was = Text::new("hd_net.was").with("value", was);
+                ui.add(egui::Label::new(RichText::new(skin.words(&was)).color(skin.palette.staged)).truncate());
+            }
+        });
+    }
+}
+
+/// What will be at the next power-up.
+fn outlook(ui: &mut Ui, skin: &Skin, unit: &Unit, now: &NetworkSettings, wanted: &Result<NetworkSettings, Text>) {
+    ui.label(skin.label(skin.say("hd_net.at_power_up")));
+    match wanted {
+        Err(why) => problem(ui, skin, Some(why)),
+        Ok(wanted) => {
+            for (own, text) in network::consequences(unit.address_switch(), now, wanted, unit.host()) {
+                line(ui, skin, own, &text);
+            }
+        }
+    }
+}
+
+fn line(ui: &mut Ui, skin: &Skin, own: Severity, text: &Text) {
+    let (icon, ink) = severity(skin, own);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icon).color(ink));
+        paragraph(ui, skin.words(text));
+    });
+}
+
+/// What each position means; the present one stands out.
+fn switches(ui: &mut Ui, skin: &Skin, unit: &Unit) {
+    card(ui, skin, "hd_net.switches", |ui| {
+        let switch = unit.address_switch();
+        if let Some(own) = switch {
+            row(ui, skin, &skin.say("hd_net.switch_now"), skin.value(own.number().to_string()));
+            ui.add_space(skin.space.inside);
+        }
+        for position in network::positions(switch) {
+            let words = skin.words(&position.meaning);
+            ui.horizontal_top(|ui| {
+                let ink = if position.is_now { skin.palette.accent } else { skin.palette.muted };
+                let mark = if position.is_now { icons::CARET_RIGHT } else { "" };
+                for (width, text) in [(16.0, RichText::new(mark)), (44.0, skin.mono(position.digits))] {
+                    let size = egui::vec2(width, 18.0);
+                    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Min), |ui| {
+                        ui.set_min_width(width);
+                        ui.label(text.color(ink));
+                    });
+                }
+                let text = RichText::new(words);
+                paragraph(ui, if position.is_now { text } else { text.color(skin.palette.muted) });
+            });
+        }
+        ui.add_space(skin.space.inside);
+        paragraph(ui, skin.caption(skin.say("hd_net.switch_words")));
+    });
+}

@@ -1,0 +1,74 @@
+//! A drive outside its limits, said loudly: what is blocked, the way in, and what to do where the reference is wrong.
+
+use egui::{RichText, Ui};
+
+use super::motion::length_ui;
+use crate::app::{Action, Text};
+use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
+use crate::devices::hiperdrive::protocol::Direction;
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit, forms};
+use crate::ui::controls::{allowed_button, paragraph, problem};
+use crate::ui::{Skin, icons};
+
+/// What is typed.
+#[derive(Default)]
+pub(super) struct Draft {
+    /// The position that the place here is to get.
+    place: String,
+    problem: Option<Text>,
+}
+
+/// The word for it in one line, where a drive is outside its limits.
+pub(crate) fn badge(skin: &Skin, unit: &Unit) -> Option<RichText> {
+    unit.outside_words(unit.drive())?;
+    let words = format!("{}  {}", icons::WARNING, skin.say("hd_outside.short"));
+    Some(RichText::new(words).font(skin.strong(skin.sizes.body)).color(skin.palette.bad))
+}
+
+/// What is outside, what is blocked, and what can be done. Nothing where the drive is inside, or at the end of its range.
+pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
+    let (drive, id) = (unit.drive(), unit.session.id);
+    let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {
+        *draft = Draft::default();
+        return;
+    };
+    ui.add_space(skin.space.between);
+    ui.separator();
+    let strong = RichText::new(skin.words(&words)).font(skin.strong(skin.sizes.body)).color(skin.palette.bad);
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(icons::WARNING).color(skin.palette.bad));
+        paragraph(ui, strong);
+    });
+    let ways = [Direction::Counterclockwise, Direction::Clockwise].into_iter();
+    let ways: Vec<Direction> = ways.filter(|way| outside.outside.is_outward(*way)).collect();
+    let freed = ways.iter().copied().find(|way| unit.moves.is_freed(drive, *way));
+    let words = match (freed, outside.outside) {
+        (Some(Direction::Clockwise), _) => "hd_outside.freed_up",
+        (Some(Direction::Counterclockwise), _) => "hd_outside.freed_down",
+        (None, Outside::Unclear) => "hd_outside.blocked_both",
+        (None, Outside::At(Side::Above)) => "hd_outside.blocked_up",
+        (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
+    };
+    paragraph(ui, skin.caption(skin.say(words)));
+    // The buttons stay once one was pressed: what can be clicked below them does not move under the pointer.
+    let allowed = if freed.is_some() { Err(Text::new(words)) } else { unit.may_move(drive) };
+    ui.horizontal_wrapped(|ui| {
+        for way in ways {
+            let free = match way {
+                Direction::Clockwise => "hd_outside.free_up",
+                Direction::Counterclockwise => "hd_outside.free_down",
+            };
+            if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &skin.say(free)).clicked() {
+                actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
+            }
+        }
+    });
+    length_ui(ui, skin, unit, "hd_outside.place", &mut draft.place, actions);
+    if allowed_button(ui, skin, &unit.may_plan(), "", &skin.say("hd_outside.set")).clicked() {
+        let change =
+            forms::steps(unit, &draft.place, unit.measure).and_then(|position| unit.reference_here(drive, position));
+        draft.problem =
+            change.map(|change| actions.push(Action::Hiperdrive(id, Hiperdrive::Plan(Box::new(change))))).err();
+    }
+    problem(ui, skin, draft.problem.as_ref());
+}

@@ -1,0 +1,199 @@
+//! Every parameter: what it is, what is wanted of it, what it may be, what it comes with from the factory, whether it is kept.
+
+use std::collections::BTreeMap;
+use std::iter::once;
+
+use egui::{RichText, ScrollArea, Ui};
+
+use super::scale;
+use crate::app::{Action, Text};
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Row, Unit, forms};
+use crate::ui::controls::{empty, options, paragraph, text_entry};
+use crate::ui::widgets::{
+    Place, RegisterEvent, RegisterGroup, RegisterKind, RegisterRow, RegisterTable, RegisterView, register_table,
+};
+use crate::ui::{Skin, icons};
+
+/// What is looked for and what is typed.
+#[derive(Default)]
+pub(super) struct View {
+    sought: String,
+    shown: Shown,
+    table: RegisterView,
+    /// The lines of the table when it was drawn the last time.
+    lines: Vec<Vec<ParameterNumber>>,
+    scales: BTreeMap<DriveNumber, scale::View>,
+}
+
+/// Which parameters; or not them, but what two of them mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Shown {
+    All,
+    /// Those that can be written; whatever is looked for by name or number.
+    #[default]
+    Written,
+    /// Those that are edited or were another value when they were read before.
+    Changed,
+    Scale,
+}
+
+/// Width of what is looked for.
+const SOUGHT: f32 = 160.0;
+
+pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+    head(ui, skin, view);
+    if let Some(refusal) = &unit.refusal {
+        paragraph(ui, RichText::new(skin.words(refusal)).color(skin.palette.bad));
+    }
+    ui.add_space(skin.space.inside);
+    if view.shows_scale() {
+        ScrollArea::vertical().id_salt("scale").auto_shrink(false).show(ui, |ui| {
+            let drive = unit.drive();
+            let own = view.scales.entry(drive).or_default();
+            ui.push_id(drive, |ui| scale::card_ui(ui, skin, unit, own, actions));
+        });
+        return;
+    }
+    let id = egui::Id::unique(unit.session.id).with("hiperdrive_parameters_foot");
+    egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = skin.space.inside;
+        ui.add_space(skin.space.inside);
+        paragraph(ui, skin.caption(skin.say("hd_params.controller")));
+        paragraph(ui, skin.caption(skin.say("hd_params.not_kept")));
+    });
+    let rows = once(Some(unit.drive())).chain(once(None)).map(|of| {
+        let rows = unit.rows(of).into_iter().filter(|row| view.shows(skin, row));
+        rows.collect::<Vec<Row>>()
+    });
+    let rows: Vec<Vec<Row>> = rows.collect();
+    view.follow(&rows);
+    if rows.iter().all(Vec::is_empty) {
+        empty(ui, skin, &skin.say("hd_params.none"), None);
+    } else {
+        table(ui, skin, unit, &rows, view, actions);
+    }
+}
+
+/// What is shown, and why what was typed is not taken.
+fn head(ui: &mut Ui, skin: &Skin, view: &mut View) {
+    ui.horizontal_wrapped(|ui| {
+        let sought = skin.say("hd_params.seek");
+        if text_entry(ui, &mut view.sought, SOUGHT, &sought, &sought).changed() && view.shown == Shown::Scale {
+            view.shown = Shown::All;
+        }
+        let shown = [
+            (Shown::All, "hd_params.all"),
+            (Shown::Written, "hd_params.written"),
+            (Shown::Changed, "hd_params.changed"),
+            (Shown::Scale, "hd_scale.title"),
+        ];
+        if options(ui, &skin.say("hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, skin.say(id)))) {
+            // What is being typed counts before other lines are shown.
+            ui.memory_mut(|memory| memory.stop_text_input());
+        }
+    });
+    if let Some(problem) = view.table.problem(skin).filter(|_| !view.shows_scale()) {
+        let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
+        paragraph(ui, RichText::new(words).color(skin.palette.bad));
+    }
+}
+
+impl View {
+    /// The table goes once what is typed into it is taken or refused.
+    fn shows_scale(&self) -> bool {
+        self.shown == Shown::Scale && (self.table.typed().is_none() || self.table.is_refused())
+    }
+
+    /// What is being typed, or was refused.
+    fn typed(&self) -> Option<ParameterNumber> {
+        let place = self.table.typed()?;
+        self.lines.get(place.group)?.get(place.row).copied()
+    }
+
+    fn shows(&self, skin: &Skin, row: &Row) -> bool {
+        if self.typed() == Some(row.number) {
+            return true;
+        }
+        let sought = self.sought.trim().to_lowercase();
+        let fits = sought.is_empty()
+            || row.number.get().to_string().contains(&sought)
+            || skin.words(&row.name).to_lowercase().contains(&sought);
+        fits && match self.shown {
+            Shown::All | Shown::Scale => true,
+            Shown::Written => row.is_editable || !sought.is_empty(),
+            Shown::Changed => row.is_edited || row.changed_from.is_some(),
+        }
+    }
+
+    /// Other lines are shown: what is selected and what is typed stay with their parameter.
+    fn follow(&mut self, rows: &[Vec<Row>]) {
+        let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
+        if lines == self.lines {
+            return;
+        }
+        let before = std::mem::replace(&mut self.lines, lines);
+        let now = &self.lines;
+        self.table.follow(|place| {
+            let number = before.get(place.group)?.get(place.row)?;
+            let row = now.get(place.group)?.iter().position(|own| own == number)?;
+            Some(Place { row, ..place })
+        });
+    }
+}
+
+fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Vec<Row>], view: &mut View, actions: &mut Vec<Action>) {
+    let groups: Vec<RegisterGroup> = ["hd_params.drive", "hd_params.device"]
+        .into_iter()
+        .zip(rows)
+        .map(|(title, rows)| RegisterGroup { title: skin.say(title), note: String::new(), rows: rows.len() })
+        .collect();
+    let at = |place: Place| rows.get(place.group)?.get(place.row);
+    let row = |place: Place| at(place).map(|row| row_of(skin, row)).unwrap_or_default();
+    let label = skin.say("page.parameters");
+    let table = RegisterTable { label: &label, groups: &groups, row: &row, kind: RegisterKind::Numbers };
+    let mut edits = Vec::new();
+    let height = ui.available_height();
+    let output = register_table(ui, skin, &table, height, &mut view.table, &mut |place, text| {
+        if let Some(row) = at(place).filter(|row| text != own_text(row)) {
+            edits.push(forms::parameter(row, text)?);
+        }
+        Ok(())
+    });
+    if let Some(RegisterEvent::Revert(place)) = output.event {
+        edits.extend(at(place).map(|row| Edit::Revert(row.number)));
+    }
+    let act = |edit| Action::Hiperdrive(unit.session.id, Hiperdrive::Edit(Box::new(edit)));
+    actions.extend(edits.into_iter().map(act));
+}
+
+/// A value as it is typed.
+fn own_text(row: &Row) -> String {
+    row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
+}
+
+fn row_of(skin: &Skin, row: &Row) -> RegisterRow {
+    let words = |text: Option<&Text>| text.map(|text| skin.words(text)).unwrap_or_default();
+    let value = own_text(row);
+    // A unit that is a part of another one is multiplied.
+    let unit = match words(row.unit.as_ref()) {
+        unit if unit.starts_with('0') => format!("× {unit}"),
+        unit => unit,
+    };
+    let meaning = [unit, words(row.meaning.as_ref())].into_iter().filter(|own| !own.is_empty());
+    RegisterRow {
+        address: row.number.to_string(),
+        name: skin.words(&row.name),
+        meaning: if value.is_empty() { String::new() } else { meaning.collect::<Vec<_>>().join(" · ") },
+        range: words(row.range.as_ref()),
+        differs: row.is_editable && !row.factory.is_empty() && !value.is_empty() && value != row.factory,
+        default: row.factory.clone(),
+        changed: row.changed_from.is_some(),
+        before: row.changed_from.map(|was| was.to_string()).unwrap_or_default(),
+        edited: row.is_edited,
+        kept: row.kind.saved.then(|| skin.say("hd_params.is_kept")),
+        read_only: row.why_not_editable().map(|why| skin.words(&why)),
+        value,
+        ..RegisterRow::default()
+    }
+}

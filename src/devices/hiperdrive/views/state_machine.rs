@@ -1,0 +1,236 @@
+//! A drive's seven states and what leads from one to another (reference of HIPERDRIVE, 3).
+//!
+//! * **Size**: as wide as there is room, five states in a row, fault and lock below them.
+//! * **Keyboard**: Tab goes through the states that can be gone to, Space or Enter goes there.
+//! * **Pointer**: a click on such a state.
+//! * **Accessible**: a button a state, by its name; the present one is selected, those that cannot be gone to are disabled.
+//! * **Painting**: the present state filled: accent, moving in the good colour, fault and lock as error and warning; states
+//!   that can be gone to outlined in the accent; arrows as the manual's figure has them.
+
+use egui::accesskit::Role;
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
+
+use crate::devices::hiperdrive::protocol::State;
+use crate::ui::Skin;
+use crate::ui::widgets::focus_ring;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StateMachine<'a> {
+    /// The state in which the drive is; `None`: it is not known.
+    pub(crate) present: Option<State>,
+    /// Where it can be led to from here.
+    pub(crate) reachable: &'a [State],
+    /// What the states are called, in the order of [`State::ALL`].
+    pub(crate) names: &'a [String; 7],
+    /// What going there does, by state, where something is to be said.
+    pub(crate) hints: &'a [Option<String>; 7],
+}
+
+/// Sizes in points.
+const BOX: f32 = 36.0;
+const GAP: f32 = 28.0;
+const BETWEEN: f32 = 32.0;
+const MOST: f32 = 128.0;
+/// Places of the arrows' heads, and half of how wide one is.
+const HEAD: f32 = 6.0;
+
+/// Columns and row of a state.
+const fn place(state: State) -> (f32, f32) {
+    match state {
+        State::NotReady => (0.0, 0.0),
+        State::Ready => (1.0, 0.0),
+        State::Operational => (2.0, 0.0),
+        State::Enabled => (3.0, 0.0),
+        State::Moving => (4.0, 0.0),
+        State::Fault => (3.0, 1.0),
+        State::Locked => (1.0, 1.0),
+    }
+}
+
+/// The boxes of a picture.
+struct Plan {
+    origin: Pos2,
+    width: f32,
+    gap: f32,
+}
+
+impl Plan {
+    fn new(rect: Rect) -> Self {
+        let gap = GAP.min(rect.width() / 20.0);
+        let width = ((rect.width() - 4.0 * gap) / 5.0).clamp(1.0, MOST);
+        // What is left over goes between the boxes, up to a measure.
+        let gap = ((rect.width() - 5.0 * width) / 4.0).clamp(gap, GAP * 2.0);
+        Plan { origin: rect.min, width, gap }
+    }
+
+    fn rect(&self, state: State) -> Rect {
+        let (column, row) = place(state);
+        let min = self.origin + vec2(column * (self.width + self.gap), row * (BOX + BETWEEN));
+        Rect::from_min_size(min, vec2(self.width, BOX))
+    }
+}
+
+/// Draws it; the state that was asked for.
+pub(crate) fn state_machine(ui: &mut Ui, skin: &Skin, machine: &StateMachine<'_>) -> Option<State> {
+    let size = vec2(ui.available_width().max(240.0), 2.0 * BOX + BETWEEN);
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    let plan = Plan::new(rect);
+    arrows(ui.painter(), skin, &plan, machine.present);
+    let mut wanted = None;
+    for ((state, name), hint) in State::ALL.into_iter().zip(machine.names).zip(machine.hints) {
+        let place = plan.rect(state);
+        let is_reachable = machine.reachable.contains(&state);
+        let is_present = machine.present == Some(state);
+        let sense = if is_reachable { Sense::click() } else { Sense::hover() };
+        let mut response = ui.interact(place, ui.scope_id().with(state), sense);
+        response.widget_info(|| {
+            let mut info = WidgetInfo::selected(Role::Button, is_reachable, is_present, name);
+            info.enabled = is_reachable;
+            info
+        });
+        if let Some(hint) = hint {
+            response = response.on_hover_text(hint);
+        }
+        box_ui(ui.painter(), skin, place, name, look(skin, state, is_present, is_reachable, response.hovered()));
+        if response.has_focus() {
+            focus_ring(ui.painter(), skin, place, skin.radius);
+        }
+        if response.clicked() {
+            wanted = Some(state);
+        }
+    }
+    wanted
+}
+
+/// How a box looks.
+struct Look {
+    fill: Color32,
+    edge: Stroke,
+    ink: Color32,
+    strong: bool,
+}
+
+fn look(skin: &Skin, state: State, is_present: bool, is_reachable: bool, hovered: bool) -> Look {
+    let palette = skin.palette;
+    if is_present {
+        let (fill, ink) = match state {
+            State::Fault => (palette.bad, palette.on_bad),
+            State::Locked => (palette.warn, palette.on_bad),
+            State::Moving => (palette.good, palette.on_bad),
+            _ => (palette.accent, palette.on_accent),
+        };
+        return Look { fill: fill.into(), edge: Stroke::NONE, ink: ink.into(), strong: true };
+    }
+    let (edge, ink) = if is_reachable { (palette.accent, palette.text) } else { (palette.line, palette.muted) };
+    let fill = match (is_reachable, hovered) {
+        (true, true) => Color32::from(palette.accent).gamma_multiply(0.15),
+        _ => palette.raised.into(),
+    };
+    Look { fill, edge: Stroke::new(1.0, edge), ink: ink.into(), strong: false }
+}
+
+fn box_ui(painter: &Painter, skin: &Skin, rect: Rect, name: &str, look: Look) {
+    painter.rect_filled(rect, skin.radius, look.fill);
+    painter.rect_stroke(rect, skin.radius, look.edge, StrokeKind::Inside);
+    let font = |size| if look.strong { skin.strong(size) } else { FontId::proportional(size) };
+    let room = rect.width() - 8.0;
+    let whole = painter.layout_no_wrap(name.to_owned(), font(skin.sizes.body), look.ink);
+    let words = if whole.size().x <= room {
+        whole
+    } else {
+        painter.layout(name.to_owned(), font(skin.sizes.caption), look.ink, room)
+    };
+    painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), rect).min, words, look.ink);
+}
+
+/// The lines between the boxes: there and back in the row, three into the fault, two out of the lock.
+fn arrows(painter: &Painter, skin: &Skin, plan: &Plan, present: Option<State>) {
+    let faint = Color32::from(skin.palette.muted).gamma_multiply(0.7);
+    // What leads away from where the drive is.
+    let ink = |from: &[State]| {
+        let own = present.is_some_and(|present| from.contains(&present));
+        Stroke::new(if own { 1.5 } else { 1.0 }, if own { skin.palette.accent.into() } else { faint })
+    };
+    let row = [State::NotReady, State::Ready, State::Operational, State::Enabled, State::Moving];
+    for (left, right) in row.iter().zip(row.iter().skip(1)) {
+        let (a, b) = (plan.rect(*left), plan.rect(*right));
+        let (up, down) = (a.center().y - 7.0, a.center().y + 7.0);
+        line(painter, &[pos2(a.right() + 2.0, up), pos2(b.left() - 2.0, up)], ink(&[*left]));
+        line(painter, &[pos2(b.left() - 2.0, down), pos2(a.right() + 2.0, down)], ink(&[*right]));
+    }
+    let level = plan.rect(State::Enabled).bottom() + BETWEEN / 2.0;
+    let fault = plan.rect(State::Fault);
+    for from in [State::Operational, State::Enabled, State::Moving] {
+        let from_box = plan.rect(from);
+        let start = pos2(from_box.center().x, from_box.bottom() + 2.0);
+        let bends = [start, pos2(start.x, level), pos2(fault.center().x, level), fault.center_top() - vec2(0.0, 2.0)];
+        line(painter, &bends, ink(&[from]));
+    }
+    let lock = plan.rect(State::Locked);
+    let between = [pos2(fault.left() - 2.0, fault.center().y), pos2(lock.right() + 2.0, lock.center().y)];
+    line(painter, &between, ink(&[State::Fault]));
+    let ready = plan.rect(State::Ready);
+    line(painter, &[lock.center_top() - vec2(0.0, 2.0), ready.center_bottom() + vec2(0.0, 2.0)], ink(&[State::Locked]));
+    let idle = plan.rect(State::NotReady);
+    let side = [
+        pos2(lock.left() - 2.0, lock.center().y),
+        pos2(idle.center().x, lock.center().y),
+        idle.center_bottom() + Vec2::new(0.0, 2.0),
+    ];
+    line(painter, &side, ink(&[State::Locked]));
+}
+
+/// A line with a head at its end.
+fn line(painter: &Painter, points: &[Pos2], stroke: Stroke) {
+    for (from, to) in points.iter().zip(points.iter().skip(1)) {
+        painter.line_segment([*from, *to], stroke);
+    }
+    let mut last = points.iter().rev();
+    let (Some(tip), Some(before)) = (last.next(), last.find(|before| points.last() != Some(before))) else { return };
+    let along = (*tip - *before).normalized() * HEAD;
+    let across = along.rot90() * 0.5;
+    let head = vec![*tip, *tip - along + across, *tip - along - across];
+    painter.add(egui::Shape::convex_polygon(head, stroke.color, Stroke::NONE));
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::Key;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
+
+    use super::*;
+    use crate::ui::widgets::tests::{NONE, focus, press, skin, window};
+
+    fn states(present: Option<State>) -> Harness<'static, Vec<State>> {
+        let names = State::ALL.map(|state| state.name().to_owned());
+        let hints = State::ALL.map(|state| (state == State::Ready).then(|| "Control word 0x0400".to_owned()));
+        let reachable: Vec<State> = match present {
+            Some(State::Operational) => vec![State::NotReady, State::Ready, State::Enabled],
+            _ => Vec::new(),
+        };
+        window(Vec::new(), move |ui, asked: &mut Vec<State>| {
+            let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
+            asked.extend(state_machine(ui, &skin(), &machine));
+        })
+    }
+
+    #[test]
+    fn only_a_state_that_can_be_gone_to_is_asked_for() {
+        let mut harness = states(Some(State::Operational));
+        for state in State::ALL {
+            let node = harness.get_by_label(state.name());
+            let reachable = matches!(state, State::NotReady | State::Ready | State::Enabled);
+            assert_eq!(node.accesskit_node().is_disabled(), !reachable, "{state}");
+            node.click();
+            harness.run();
+            let expected: &[State] = if reachable { &[state] } else { &[] };
+            assert_eq!(std::mem::take(harness.state_mut()), expected, "{state}");
+        }
+        focus(&mut harness, "enabled");
+        press(&mut harness, &[(NONE, Key::Enter)]);
+        assert_eq!(*harness.state(), [State::Enabled]);
+        assert!(states(None).get_by_label("moving").accesskit_node().is_disabled());
+    }
+}
