@@ -18,7 +18,7 @@ use encoder_studio::devices::interbus::profile::InterbusProfile;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
 use encoder_studio::kinds::FORMATS;
-use encoder_studio::profile::{self, Body, Comparison, Document, PlanId, Profile};
+use encoder_studio::profile::{Body, Comparison, Document, PlanId, Profile};
 
 use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, PORT};
 use crate::wire::Wire;
