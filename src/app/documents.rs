@@ -8,7 +8,9 @@ use super::action::{Action, Done, Known, ReadError};
 use super::session::{DraftDone, ProfileFile, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
+use crate::devices::biss::jobs::descriptions;
 use crate::devices::biss::protocol::Descriptions;
+use crate::devices::hiperface::jobs::encoder_types;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::profile::{Body, Document, Formats, ProfileError};
 use crate::store::{Store, read_file};
@@ -103,7 +105,7 @@ pub(super) fn read_document(path: PathBuf, store: &Store, formats: Formats) -> A
     let file = ProfileFile { key: file_key(&path), path, text };
     // Where there is no profile, nobody waits for the tables.
     let known = if result.is_ok() {
-        Known { hiperface: store.encoder_types(), biss: store.biss_descriptions().0 }
+        Known { hiperface: encoder_types(store), biss: descriptions(store).0 }
     } else {
         Known { hiperface: Ok(EncoderTypes::built_in()), biss: Descriptions::built_in() }
     };

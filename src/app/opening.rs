@@ -10,7 +10,7 @@ use super::session::{Kind, Opening, Phase, Source, without_codes};
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
-use super::{AnyDevice, Severity, Text, explain};
+use super::{AnyDevice, Severity, Text};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperface::jobs::{Hiperface, may_have_other_master};
@@ -224,7 +224,7 @@ impl Studio {
                 }
                 take(self, session, *opened);
             }
-            Err(failed) => device.lose(explain::open_failed(&failed), &mut self.services),
+            Err(failed) => device.lose(D::open_failed(&failed), &mut self.services),
         }
     }
 

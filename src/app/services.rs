@@ -5,18 +5,19 @@ use std::sync::Arc;
 
 use jiff::Zoned;
 
+use super::Text;
 use super::action::{Action, Done, FileQuestion};
 use super::brakes::Brakes;
 use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
-use super::{Text, explain};
 use crate::devices::biss::jobs::{self as biss, Biss};
 use crate::devices::hiperdrive::jobs::{self as hiperdrive, Hiperdrive};
 use crate::devices::hiperdrive::procedures::{Error as DriveError, Found};
 use crate::devices::hiperface::jobs::{self as hiperface, Hiperface};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes};
+use crate::devices::hiperface::state::explain as hiperface_words;
 use crate::devices::interbus::jobs::{self as interbus, Interbus};
 use crate::devices::ssi::jobs::{self as ssi, Ssi};
 use crate::devices::ssi::protocol::Families;
@@ -143,7 +144,7 @@ impl Services {
         if !std::mem::replace(&mut self.families_asked, true) {
             let store = self.world.store.clone();
             self.tasks.run("families", move || {
-                let (families, broken) = store.ssi_families();
+                let (families, broken) = ssi::families(&store);
                 Action::Done(Done::Families(Arc::new(families), broken))
             });
         }
@@ -202,7 +203,7 @@ impl Services {
     /// The table of encoder types as it was read; the built-in one where the user's own cannot be, which is told.
     pub(super) fn encoder_types(&mut self, read: Result<EncoderTypes, StoreError>) -> EncoderTypes {
         read.unwrap_or_else(|error| {
-            self.tell(Severity::Warning, vec![explain::store(&error)], None);
+            self.tell(Severity::Warning, vec![hiperface_words::store(&error)], None);
             EncoderTypes::built_in()
         })
     }

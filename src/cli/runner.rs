@@ -43,6 +43,11 @@ pub(crate) trait Runs: Device {
     where
         Self: Sized;
 
+    /// Why a link cannot be opened, and what to do.
+    fn open_error(error: &OpenError) -> Text {
+        explain::open(error)
+    }
+
     /// Makes a session ready, with the access codes of the command line.
     fn begin(session: &mut Session<Self>, codes: Vec<Code>) -> Self::Kept
     where
@@ -131,7 +136,7 @@ impl<D: Runs> Runner<D> {
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal()),
-            error => failed(&explain::open(&error)),
+            error => failed(&D::open_error(&error)),
         })?;
         let kept = D::begin(&mut session, codes);
         if let Some(path) = &common.trace {

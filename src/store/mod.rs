@@ -4,7 +4,7 @@
 
 mod backups;
 mod captures;
-mod descriptions;
+mod device_files;
 mod drafts;
 mod file_error;
 mod file_lock;
@@ -20,6 +20,7 @@ use directories::ProjectDirs;
 
 pub use backups::{Backup, Backups};
 pub use captures::{OnProgress, ReadCaptureError, capture_head, read_capture};
+pub use device_files::read_folder;
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use file_lock::update_text;
@@ -28,9 +29,7 @@ pub use folders::Folders;
 pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome, StatusEntry};
 
-use crate::devices::biss::protocol::{DescriptionError, Descriptions};
-use crate::devices::hiperface::protocol::{EncoderTypes, TypeTableError};
-use crate::devices::ssi::protocol::{Families, FamilyError};
+use crate::profile::Cause;
 
 /// Where the program keeps what outlives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,20 +47,9 @@ pub enum StoreError {
     /// A file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The user's own table of encoder types is broken.
-    #[error("{}, {cause}", path.display())]
-    EncoderTypes {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, with line and column or with the row's type byte.
-        cause: TypeTableError,
-    },
-    /// A description of a BiSS encoder of the user's own is broken.
-    #[error(transparent)]
-    Description(#[from] DescriptionError),
-    /// A family of SSI encoders of the user's own is broken.
-    #[error(transparent)]
-    Family(#[from] FamilyError),
+    /// A file of the user's own about a kind of device is broken: why, in the type of that device.
+    #[error("{0}")]
+    Refused(Cause),
 }
 
 impl Store {
@@ -112,59 +100,15 @@ impl Store {
         self.data.join("logbook.sqlite")
     }
 
-    /// The file in which a user may add encoder types; it need not exist.
-    pub fn encoder_types_path(&self) -> PathBuf {
-        self.config.join("devices").join("hiperface.ron")
+    /// The file in which a user may describe devices of this kind; it need not exist.
+    pub fn device_file(&self, kind: &str) -> PathBuf {
+        self.config.join("devices").join(kind).with_extension("ron")
     }
 
-    /// The built-in table of encoder types; rows in the user's own file go before its rows.
-    ///
-    /// # Errors
-    /// Where the user's file exists but cannot be read or understood. [`EncoderTypes::built_in`] is there to go on with.
-    pub fn encoder_types(&self) -> Result<EncoderTypes, StoreError> {
-        let built_in = EncoderTypes::built_in();
-        let path = self.encoder_types_path();
-        let text = match read_text(&path) {
-            Ok(text) => text,
-            Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(built_in),
-            Err(error) => return Err(error.into()),
-        };
-        match EncoderTypes::parse(&text) {
-            Ok(own) => Ok(built_in.overlaid_with(own)),
-            Err(cause) => Err(StoreError::EncoderTypes { path, cause }),
-        }
+    /// The folder in which a user may describe devices of this kind, a file each (`*.ron`); it need not exist.
+    pub fn device_folder(&self, kind: &str) -> PathBuf {
+        self.config.join("devices").join(kind)
     }
-
-    /// The folder in which a user may add descriptions of BiSS encoders (`*.ron`); it need not exist.
-    pub fn biss_descriptions_path(&self) -> PathBuf {
-        self.config.join("devices").join("biss")
-    }
-
-    /// The built-in descriptions of BiSS encoders, those of the user's own before them, and what is wrong with those that
-    /// cannot be used.
-    pub fn biss_descriptions(&self) -> (Descriptions, Vec<StoreError>) {
-        let (files, unread) = descriptions::read_folder(&self.biss_descriptions_path(), "ron");
-        let (own, broken) = Descriptions::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));
-        (Descriptions::built_in().overlaid_with(own), together(unread, broken))
-    }
-
-    /// The folder in which a user may add families of SSI encoders (`*.ron`); it need not exist.
-    pub fn ssi_families_path(&self) -> PathBuf {
-        self.config.join("devices").join("ssi")
-    }
-
-    /// The built-in families of SSI encoders, those of the user's own in the place of those with the same key, and what
-    /// is wrong with those that cannot be used.
-    pub fn ssi_families(&self) -> (Families, Vec<StoreError>) {
-        let (files, unread) = descriptions::read_folder(&self.ssi_families_path(), "ron");
-        let (own, broken) = Families::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));
-        (Families::built_in().overlaid_with(own), together(unread, broken))
-    }
-}
-
-/// Files that cannot be read, and those that cannot be used.
-fn together<E: Into<StoreError>>(unread: Vec<FileError>, broken: Vec<E>) -> Vec<StoreError> {
-    unread.into_iter().map(StoreError::from).chain(broken.into_iter().map(Into::into)).collect()
 }
 
 #[cfg(test)]
@@ -172,88 +116,28 @@ mod tests {
     use super::*;
     use std::fs;
 
-    fn store_with(own: &[u8]) -> (tempfile::TempDir, Store) {
-        let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
-        fs::create_dir_all(store.encoder_types_path().parent().unwrap()).unwrap();
-        fs::write(store.encoder_types_path(), own).unwrap();
-        (root, store)
-    }
-
     #[test]
     fn looking_makes_no_folder() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
-        assert_eq!(store.encoder_types(), Ok(EncoderTypes::built_in()));
+        assert_eq!(read_folder(&store.device_folder("biss"), "ron"), (Vec::new(), Vec::new()));
         assert_eq!(store.backups().list("hiperface", "1"), Ok(Vec::new()));
         assert_eq!(store.drafts().load("hiperface", "1"), Ok(None));
-        let paths = [store.logbook_path(), store.log_path(), store.settings_path()];
-        let expected = ["data/logbook.sqlite", "data/encoder-studio.log", "config/settings.ron"];
+        let paths = [
+            store.logbook_path(),
+            store.log_path(),
+            store.settings_path(),
+            store.device_file("hiperface"),
+            store.device_folder("biss"),
+        ];
+        let expected = [
+            "data/logbook.sqlite",
+            "data/encoder-studio.log",
+            "config/settings.ron",
+            "config/devices/hiperface.ron",
+            "config/devices/biss",
+        ];
         assert_eq!(paths, expected.map(|path| root.path().join(path)));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
-    }
-
-    #[test]
-    fn a_users_encoder_type_goes_first() {
-        let (_root, store) = store_with("\u{FEFF}(types: [(code: 0x37, name: \"own\")])".as_bytes());
-        let types = store.encoder_types().unwrap();
-        assert_eq!(types.find(0x37).unwrap().name, "own");
-        assert_eq!(types.find(0x22), EncoderTypes::built_in().find(0x22));
-    }
-
-    #[test]
-    fn broken_descriptions_are_named_with_their_place_and_the_rest_counts() {
-        let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
-        assert_eq!(store.biss_descriptions(), (Descriptions::built_in(), Vec::new()));
-        let folder = store.biss_descriptions_path();
-        fs::create_dir_all(folder.join("folder.ron")).unwrap();
-        fs::write(folder.join("broken.ron"), "(\n  name: \"mine\",\n  register: [],\n)").unwrap();
-        fs::write(folder.join("latin.ron"), b"(name: \"\xFC\")").unwrap();
-        fs::write(folder.join("notes.txt"), "no description").unwrap();
-        let (_, unknown) = Descriptions::BUILT_IN[1];
-        fs::write(folder.join("own.RON"), unknown.replace("\"BiSS C encoder\"", "\"own\"")).unwrap();
-        let (descriptions, errors) = store.biss_descriptions();
-        assert!(descriptions.named("own").is_some() && descriptions.named("POSITAL IXARC kit encoder").is_some());
-        let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
-        let [folder, latin, broken] = texts.as_slice() else { panic!("{texts:?}") };
-        assert!(folder.contains("folder.ron: it is a folder"), "{folder}");
-        assert!(latin.contains("latin.ron: it is not UTF-8 text: byte 8 does not fit"), "{latin}");
-        assert!(broken.contains("broken.ron, line 3, column "), "{broken}");
-    }
-
-    #[test]
-    fn families_of_the_users_own_stand_before_those_that_ship() {
-        let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
-        assert_eq!(store.ssi_families(), (Families::built_in(), Vec::new()));
-        let folder = store.ssi_families_path();
-        fs::create_dir_all(&folder).unwrap();
-        let (_, ahs36) = Families::BUILT_IN[0];
-        fs::write(folder.join("same.ron"), ahs36.replace("\"AHS36 SSI\"", "\"my AHS36\"")).unwrap();
-        fs::write(folder.join("other.ron"), ahs36.replace("\"ahs36\"", "\"mine\"")).unwrap();
-        fs::write(folder.join("broken.ron"), "(\n  key: \"x\",\n  nam: \"x\",\n)").unwrap();
-        let (families, errors) = store.ssi_families();
-        assert_eq!(families.named("ahs36").unwrap().name, "my AHS36");
-        assert!(families.named("mine").is_some() && families.named("kh53").is_some());
-        assert_eq!(families.iter().count(), 12);
-        let [error] = errors.as_slice() else { panic!("{errors:?}") };
-        assert!(error.to_string().contains("broken.ron, line 3, column "), "{error}");
-    }
-
-    #[test]
-    fn a_broken_table_is_named_with_its_place() {
-        let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
-        let error = store.encoder_types().unwrap_err();
-        assert!(matches!(&error, StoreError::EncoderTypes { cause: TypeTableError::Syntax { line: 2, .. }, .. }));
-        let text = error.to_string();
-        assert!(text.contains("hiperface.ron, line 2, column "), "{text}");
-
-        let (_root, store) = store_with(b"(types: \xFF)");
-        let error = store.encoder_types().unwrap_err();
-        assert!(
-            matches!(&error, StoreError::File(FileError { problem: FileProblem::NotUtf8 { offset: 8 }, .. })),
-            "{error}"
-        );
     }
 }

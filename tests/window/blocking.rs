@@ -87,7 +87,7 @@ fn a_search_on_a_link_that_hangs_can_be_ended() {
 #[test]
 fn a_disk_that_does_not_answer_holds_nobody_up() {
     let mut desk = Desk::begun("");
-    let (profile, types) = (desk.outside.path("pipe.ron"), desk.outside.store().encoder_types_path());
+    let (profile, types) = (desk.outside.path("pipe.ron"), desk.outside.store().device_file("hiperface"));
     pipe(&profile);
     pipe(&types);
     desk.act(Action::Open(profile.clone()));

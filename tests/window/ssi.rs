@@ -382,7 +382,7 @@ fn a_boundary_is_dragged_as_the_family_is_set() {
 #[test]
 fn families_of_the_users_own_are_known_and_broken_ones_told() {
     let mut desk = Desk::fresh("");
-    let folder = desk.outside.store().ssi_families_path();
+    let folder = desk.outside.store().device_folder("ssi");
     std::fs::create_dir_all(&folder).unwrap();
     let source = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/devices/ssi/ahm36.ron");
     let text = std::fs::read_to_string(source).unwrap();

@@ -6,7 +6,6 @@ mod tests;
 
 use super::{file, plain};
 use crate::app::Text;
-use crate::devices::hiperface::protocol::TypeTableError;
 use crate::devices::ssi::state::explain as ssi;
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
@@ -203,18 +202,6 @@ pub fn document(error: &ProfileError) -> Text {
     }
 }
 
-/// A table of encoder types that cannot be used.
-pub fn type_table(error: &TypeTableError) -> Text {
-    match error {
-        TypeTableError::Syntax { line, column, what } => syntax(*line, *column, what),
-        TypeTableError::Range { code, quantity, range } => Text::new("detail.range")
-            .with("code", format!("{code:02X}h"))
-            .with("quantity", quantity)
-            .with("low", range.start())
-            .with("high", range.end()),
-    }
-}
-
 /// A file that is no recording.
 pub fn recording(error: &TraceFileError) -> Text {
     match error {
@@ -235,6 +222,6 @@ pub fn logbook_problem(error: &LogbookError) -> Text {
 }
 
 /// A place in a text, and what is wrong there.
-pub(super) fn syntax(line: usize, column: usize, what: &str) -> Text {
+pub(crate) fn syntax(line: usize, column: usize, what: &str) -> Text {
     Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", phrase(what))
 }

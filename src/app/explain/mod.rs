@@ -6,8 +6,8 @@ pub mod signal;
 
 use std::path::Path;
 
-use detail::syntax;
-pub use detail::{document, logbook_problem, phrase, recording, setting, type_table, url};
+pub(crate) use detail::syntax;
+pub use detail::{document, logbook_problem, phrase, recording, setting, url};
 
 use super::Text;
 use super::action::OpenFailed;
@@ -84,22 +84,13 @@ pub fn file(error: &FileError) -> Text {
     }
 }
 
-/// The program's folders.
+/// The program's folders. What a device says of its own files is in the words of that device where it is read.
 pub fn store(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
         StoreError::File(error) => file(error),
-        StoreError::EncoderTypes { path, cause } => {
-            Text::new("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
-        }
-        StoreError::Description(error) => {
-            let why = syntax(error.line, error.column, &error.what);
-            Text::new("store.description").with("path", &error.file).with_text("why", why)
-        }
-        StoreError::Family(error) => {
-            let why = syntax(error.line, error.column, &error.what);
-            Text::new("store.ssi_family").with("path", &error.file).with_text("why", why)
-        }
+        // The device's own words say more.
+        StoreError::Refused(cause) => Text::new("store.refused").with_text("why", phrase(&cause.to_string())),
     }
 }
 

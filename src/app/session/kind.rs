@@ -1,9 +1,9 @@
 //! What a kind of device tells the studio of its types, so that opening, leaving and running are the same for all.
 
-use crate::app::action::{Attempt, Done};
+use crate::app::action::{Attempt, Done, OpenFailed};
 use crate::app::services::{JobEnd, Opener, World};
 use crate::app::session::{DraftEdits, first};
-use crate::app::{Severity, Text};
+use crate::app::{Severity, Text, explain};
 use crate::worker::{Device, Event, JobId, Session};
 
 /// A kind of device on the desk.
@@ -25,6 +25,11 @@ pub trait Kind: Device + Sized {
 
     /// What a task that opened a link, or could not, comes back with.
     fn opened(attempt: Attempt<Self>) -> Done;
+
+    /// Why a link could not be opened, and what to do.
+    fn open_failed(failed: &OpenFailed) -> Text {
+        explain::open_failed(failed)
+    }
 
     /// A job in words.
     fn job(job: &Self::Job) -> Text;

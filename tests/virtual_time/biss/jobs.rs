@@ -404,8 +404,8 @@ fn links_lead_to_the_way_that_they_name() {
 fn broken_descriptions_are_told_once_with_the_first_job() {
     let root = tempfile::tempdir().unwrap();
     let store = Store::at(root.path());
-    fs::create_dir_all(store.biss_descriptions_path()).unwrap();
-    fs::write(store.biss_descriptions_path().join("mine.ron"), "(name: 7)").unwrap();
+    fs::create_dir_all(store.device_folder("biss")).unwrap();
+    fs::write(store.device_folder("biss").join("mine.ron"), "(name: 7)").unwrap();
     let mut bench = Bench::in_store(Way::ConfigPin, "", store);
     for expected in [1, 0] {
         let mut remarks = Vec::new();

@@ -1,6 +1,7 @@
 //! A BiSS encoder at the end of a session, and its jobs.
 
 mod commit;
+mod descriptions;
 mod frames;
 mod job;
 mod open;
@@ -10,6 +11,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+pub use descriptions::descriptions;
 pub use frames::BissFrames;
 pub use job::{
     Attendance, BissJob, BissOutput, Change, ChangeKind, Commit, Committed, Doing, JobError, Prepared, ReadRegisters,
@@ -78,7 +80,7 @@ impl Session<Biss> {
         store: Store,
         motor: Option<Motor>,
     ) -> Self {
-        let (types, broken) = store.biss_descriptions();
+        let (types, broken) = descriptions(&store);
         let is_virtual = motor.is_some();
         Session::with(
             Biss { wire, station, types: Arc::new(types), broken, motor, streamed_us: None },

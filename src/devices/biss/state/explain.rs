@@ -13,13 +13,14 @@ pub use plan::{other_type, plan};
 pub use write::{change, failure, op, preset, wear, weight, written};
 
 use crate::app::Text;
-use crate::app::explain::{link, not_begun, store};
+use crate::app::explain::{self as general, link, not_begun, syntax};
 use crate::buses::bridge::state::adapter;
 use crate::devices::biss::jobs::{Doing, JobError, Remark};
 use crate::devices::biss::procedures::{Asked, Error};
 use crate::devices::biss::profile::BissProfile;
-use crate::devices::biss::protocol::{DeviceMode, Mismatch, Name};
+use crate::devices::biss::protocol::{DescriptionError, DeviceMode, Mismatch, Name};
 use crate::link::LinkError;
+use crate::store::StoreError;
 
 /// What a description of an encoder calls something.
 pub fn name(name: &Name) -> Text {
@@ -157,7 +158,18 @@ pub fn remark(remark: &Remark) -> Vec<Text> {
     match remark {
         Remark::CrcErrors(1) => vec![Text::new("biss.crc_error")],
         Remark::CrcErrors(count) => vec![Text::new("biss.crc_errors").with("count", count)],
-        Remark::Descriptions(errors) => errors.iter().map(store).collect(),
+        Remark::Descriptions(errors) => errors.iter().map(description).collect(),
+    }
+}
+
+/// A description of the user's own that cannot be read or used.
+fn description(error: &StoreError) -> Text {
+    let StoreError::Refused(cause) = error else { return general::store(error) };
+    match cause.get::<DescriptionError>() {
+        Some(DescriptionError { file, line, column, what }) => {
+            Text::new("store.description").with("path", file).with_text("why", syntax(*line, *column, what))
+        }
+        None => general::store(error),
     }
 }
 

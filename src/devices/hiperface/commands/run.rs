@@ -29,6 +29,10 @@ impl Runs for Hiperface {
         open(url, store)
     }
 
+    fn open_error(error: &OpenError) -> Text {
+        words::open(error)
+    }
+
     fn begin(session: &mut Session<Self>, codes: Vec<Code>) -> CharacterFormat {
         for Code { number, code } in codes {
             session.codes_mut().set(number, code);

@@ -5,6 +5,7 @@ mod job;
 mod open;
 mod prepare;
 mod status;
+mod types;
 
 use std::fmt;
 use std::sync::Arc;
@@ -15,6 +16,7 @@ pub use job::{
     SavedProfile, Value, WEAR_LIMIT,
 };
 pub use open::{check, may_have_other_master, open};
+pub use types::{BrokenTypes, encoder_types};
 
 use status::StatusKeeper;
 

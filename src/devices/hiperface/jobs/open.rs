@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Hiperface;
+use super::{Hiperface, encoder_types};
 use crate::devices::hiperface::procedures::{Echo, PARAMETERS, Station};
 use crate::devices::hiperface::sim::{Bus, Config};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
@@ -33,7 +33,7 @@ pub fn may_have_other_master(url: &LinkUrl) -> bool {
 /// See [`OpenError`]; nothing has been sent.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
     let (station, config) = read(url)?;
-    let types = store.encoder_types()?;
+    let types = encoder_types(&store)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let wire = open_bytes(url, station.format, &clock, || {
         let mut link = inside(Bus::new(&config), &clock);

@@ -1,5 +1,5 @@
 //! Encoder types: what the type byte of 52h says about periods and turns. The table is data
-//! (`assets/devices/hiperface.ron`), so that a user can add an encoder.
+//! (`assets/devices/hiperface/encoder_types.ron`), so that a user can add an encoder.
 
 use std::ops::RangeInclusive;
 
@@ -76,7 +76,7 @@ enum Shape {
 
 impl EncoderTypes {
     /// The table that ships with the program.
-    pub const BUILT_IN: &'static str = include_str!("../../../../assets/devices/hiperface.ron");
+    pub const BUILT_IN: &'static str = include_str!("../../../../assets/devices/hiperface/encoder_types.ron");
 
     /// Reads a table.
     ///

@@ -8,6 +8,7 @@ mod doing;
 mod frame;
 mod label;
 mod op;
+mod types;
 mod words;
 
 use std::path::Path;
@@ -20,6 +21,7 @@ pub use doing::doing;
 pub use frame::frame;
 pub use label::{LabelRow, label};
 pub use op::op;
+pub use types::{open, open_failed, store};
 pub use words::{
     field_access, field_code_required, field_status, geometry, line_settings, position, raw_position, status,
     status_with_number,

@@ -63,7 +63,7 @@ impl Search {
                 }
                 self.line = Some(line);
             }
-            Err(failed) => self.end = Some(explain::open_failed(&failed)),
+            Err(failed) => self.end = Some(words::open_failed(&failed)),
         }
     }
 

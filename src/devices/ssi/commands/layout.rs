@@ -9,6 +9,7 @@ use crate::cli::output::Output;
 use crate::cli::profiles::load;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
+use crate::devices::ssi::jobs::families as read_families;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{
     Descriptor, Families, Family, Layout, Resolved, Settings, SpecError, Times, from_linuxcnc,
@@ -45,9 +46,9 @@ pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<
 /// The families that ship, with the user's own before them; of those that cannot be used is said why.
 pub(super) fn families(output: &Output) -> Result<Families> {
     let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
-    let (families, broken) = store.ssi_families();
+    let (families, broken) = read_families(&store);
     for error in broken {
-        output.remark(&explain::store(&error).terminal());
+        output.remark(&words::store(&error).terminal());
     }
     Ok(families)
 }

@@ -1,6 +1,7 @@
 //! An SSI encoder behind an adapter, at the end of a session, and its jobs. The encoder has no memory: nothing is ever
 //! written into it.
 
+mod families;
 mod open;
 
 use std::convert::Infallible;
@@ -8,6 +9,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+pub use families::families;
 pub use open::{check, open};
 
 use crate::devices::ssi::procedures::{Asking, Error, Identity, Master, Station, Words, check};

@@ -10,8 +10,9 @@ use crate::app::services::Services;
 use crate::app::session::Source;
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
-use crate::app::{AnyDevice, Severity, explain};
+use crate::app::{AnyDevice, Severity};
 use crate::devices::ssi::protocol::Families;
+use crate::devices::ssi::state::explain as words;
 use crate::store::StoreError;
 
 impl Studio {
@@ -78,7 +79,7 @@ impl Studio {
     /// The families were read; those that cannot be used are told.
     pub(crate) fn take_families(&mut self, families: Arc<Families>, broken: &[StoreError]) {
         for error in broken {
-            self.services.tell(Severity::Warning, vec![explain::store(error)], None);
+            self.services.tell(Severity::Warning, vec![words::store(error)], None);
         }
         for device in &mut self.devices {
             if let Some(encoder) = device.ssi_mut() {

@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::{
 };
 
 pub use check::check;
-pub use family::note;
+pub use family::{note, store};
 pub(crate) use refused::{PHRASES, cannot_work};
 pub use refused::{format, frame_text, layout, settings};
 

@@ -1,7 +1,9 @@
 //! What the files of the families say in sentences: those that are built in are known in both languages, others are quoted.
 
 use crate::app::Text;
-use crate::app::explain::plain;
+use crate::app::explain::{self as general, plain, syntax};
+use crate::devices::ssi::protocol::FamilyError;
+use crate::store::StoreError;
 
 /// The first that fits counts.
 const NOTES: &[&str] = &[
@@ -22,6 +24,17 @@ const NOTES: &[&str] = &[
 /// A note or the source of a family.
 pub fn note(words: &str) -> Text {
     NOTES.iter().find_map(|id| Text::recognised(id, words)).unwrap_or_else(|| plain(words))
+}
+
+/// A family of the user's own that cannot be read or used.
+pub fn store(error: &StoreError) -> Text {
+    let StoreError::Refused(cause) = error else { return general::store(error) };
+    match cause.get::<FamilyError>() {
+        Some(FamilyError { file, line, column, what }) => {
+            Text::new("store.ssi_family").with("path", file).with_text("why", syntax(*line, *column, what))
+        }
+        None => general::store(error),
+    }
 }
 
 #[cfg(test)]

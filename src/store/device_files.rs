@@ -9,7 +9,7 @@ use super::files::read_file;
 
 /// The texts of a folder's files with this ending, with their paths as errors call them, by name; and those that cannot
 /// be read. A folder that does not exist has none.
-pub(super) fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
+pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
     match list(folder, ending) {
         Ok(paths) => {

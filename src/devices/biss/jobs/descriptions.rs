@@ -1,0 +1,42 @@
+//! The descriptions of encoders: the built-in ones, and those of the user's own before them.
+
+use crate::devices::biss::protocol::{Descriptions, KIND};
+use crate::profile::Cause;
+use crate::store::{Store, StoreError, read_folder};
+
+/// The built-in descriptions of encoders, those of the user's own before them, and what is wrong with those that cannot be
+/// used (a `DescriptionError` each).
+pub fn descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
+    let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
+    let (own, broken) = Descriptions::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));
+    let broken = broken.into_iter().map(|error| StoreError::Refused(Cause::new(error)));
+    let errors = unread.into_iter().map(StoreError::from).chain(broken).collect();
+    (Descriptions::built_in().overlaid_with(own), errors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn broken_descriptions_are_named_with_their_place_and_the_rest_counts() {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        assert_eq!(descriptions(&store), (Descriptions::built_in(), Vec::new()));
+        let folder = store.device_folder(KIND);
+        fs::create_dir_all(folder.join("folder.ron")).unwrap();
+        fs::write(folder.join("broken.ron"), "(\n  name: \"mine\",\n  register: [],\n)").unwrap();
+        fs::write(folder.join("latin.ron"), b"(name: \"\xFC\")").unwrap();
+        fs::write(folder.join("notes.txt"), "no description").unwrap();
+        let (_, unknown) = Descriptions::BUILT_IN[1];
+        fs::write(folder.join("own.RON"), unknown.replace("\"BiSS C encoder\"", "\"own\"")).unwrap();
+        let (known, errors) = descriptions(&store);
+        assert!(known.named("own").is_some() && known.named("POSITAL IXARC kit encoder").is_some());
+        let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
+        let [folder, latin, broken] = texts.as_slice() else { panic!("{texts:?}") };
+        assert!(folder.contains("folder.ron: it is a folder"), "{folder}");
+        assert!(latin.contains("latin.ron: it is not UTF-8 text: byte 8 does not fit"), "{latin}");
+        assert!(broken.contains("broken.ron, line 3, column "), "{broken}");
+    }
+}

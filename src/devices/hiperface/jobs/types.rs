@@ -1,0 +1,84 @@
+//! The table of encoder types: the built-in one, and the rows of the user's own before it.
+
+use std::path::PathBuf;
+
+use crate::devices::hiperface::protocol::{EncoderTypes, KIND, TypeTableError};
+use crate::profile::Cause;
+use crate::store::{FileError, FileProblem, Store, StoreError, read_text};
+
+/// The user's own table of encoder types is broken.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}, {cause}", path.display())]
+pub struct BrokenTypes {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong, with line and column or with the row's type byte.
+    pub cause: TypeTableError,
+}
+
+/// The built-in table of encoder types; rows in the user's own file go before its rows.
+///
+/// # Errors
+/// Where the user's file exists but cannot be read or understood ([`BrokenTypes`]). [`EncoderTypes::built_in`] is there to
+/// go on with.
+pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
+    let built_in = EncoderTypes::built_in();
+    let path = store.device_file(KIND);
+    let text = match read_text(&path) {
+        Ok(text) => text,
+        Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(built_in),
+        Err(error) => return Err(error.into()),
+    };
+    match EncoderTypes::parse(&text) {
+        Ok(own) => Ok(built_in.overlaid_with(own)),
+        Err(cause) => Err(StoreError::Refused(Cause::new(BrokenTypes { path, cause }))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn store_with(own: &[u8]) -> (tempfile::TempDir, Store) {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        fs::create_dir_all(store.device_file(KIND).parent().unwrap()).unwrap();
+        fs::write(store.device_file(KIND), own).unwrap();
+        (root, store)
+    }
+
+    #[test]
+    fn looking_makes_no_folder() {
+        let root = tempfile::tempdir().unwrap();
+        let store = Store::at(root.path());
+        assert_eq!(encoder_types(&store), Ok(EncoderTypes::built_in()));
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_users_encoder_type_goes_first() {
+        let (_root, store) = store_with("\u{FEFF}(types: [(code: 0x37, name: \"own\")])".as_bytes());
+        let types = encoder_types(&store).unwrap();
+        assert_eq!(types.find(0x37).unwrap().name, "own");
+        assert_eq!(types.find(0x22), EncoderTypes::built_in().find(0x22));
+    }
+
+    #[test]
+    fn a_broken_table_is_named_with_its_place() {
+        let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
+        let error = encoder_types(&store).unwrap_err();
+        let StoreError::Refused(cause) = &error else { panic!("{error:?}") };
+        let broken = cause.get::<BrokenTypes>().unwrap();
+        assert!(matches!(broken.cause, TypeTableError::Syntax { line: 2, .. }));
+        let text = error.to_string();
+        assert!(text.contains("hiperface.ron, line 2, column "), "{text}");
+
+        let (_root, store) = store_with(b"(types: \xFF)");
+        let error = encoder_types(&store).unwrap_err();
+        assert!(
+            matches!(&error, StoreError::File(FileError { problem: FileProblem::NotUtf8 { offset: 8 }, .. })),
+            "{error}"
+        );
+    }
+}

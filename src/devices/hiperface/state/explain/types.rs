@@ -1,0 +1,72 @@
+//! The user's own table of encoder types that cannot be used, and a link that cannot be opened for it.
+
+use crate::app::Text;
+use crate::app::action::OpenFailed;
+use crate::app::explain::{self as general, syntax};
+use crate::devices::hiperface::jobs::BrokenTypes;
+use crate::devices::hiperface::protocol::TypeTableError;
+use crate::store::StoreError;
+use crate::worker::OpenError;
+
+/// A table of encoder types that cannot be read or used.
+pub fn store(error: &StoreError) -> Text {
+    let StoreError::Refused(cause) = error else { return general::store(error) };
+    match cause.get::<BrokenTypes>() {
+        Some(BrokenTypes { path, cause }) => {
+            Text::new("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
+        }
+        None => general::store(error),
+    }
+}
+
+/// A link that cannot be opened.
+pub fn open(error: &OpenError) -> Text {
+    match error {
+        OpenError::Store(error) => store(error),
+        other => general::open(other),
+    }
+}
+
+/// A link that could not be opened, or had no thread to run on.
+pub fn open_failed(failed: &OpenFailed) -> Text {
+    match failed {
+        OpenFailed::Link(error) => open(error),
+        other => general::open_failed(other),
+    }
+}
+
+fn type_table(error: &TypeTableError) -> Text {
+    match error {
+        TypeTableError::Syntax { line, column, what } => syntax(*line, *column, what),
+        TypeTableError::Range { code, quantity, range } => Text::new("detail.range")
+            .with("code", format!("{code:02X}h"))
+            .with("quantity", quantity)
+            .with("low", range.start())
+            .with("high", range.end()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::devices::hiperface::protocol::EncoderTypes;
+    use crate::profile::Cause;
+
+    #[test]
+    fn a_broken_table_is_told_in_both_languages() {
+        let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
+        let cause = EncoderTypes::parse(zero).unwrap_err();
+        let why = type_table(&cause);
+        assert_eq!(why.words(English), cause.to_string());
+        assert_eq!(why.terminal(), cause.to_string());
+        assert_eq!(why.words(German), "Typ 01h: periods muss zwischen 1 und 134217728 liegen");
+        let broken = BrokenTypes { path: "own.ron".into(), cause };
+        let failed = OpenFailed::Link(StoreError::Refused(Cause::new(broken)).into());
+        assert_eq!(
+            open_failed(&failed).words(English),
+            "The table of encoder types own.ron cannot be used: type 01h: periods must lie within 1 and 134217728. Mend it \
+             or move it away."
+        );
+    }
+}
