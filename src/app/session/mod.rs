@@ -10,7 +10,9 @@ mod on_line;
 mod profiles;
 mod saved;
 mod saving;
+mod state;
 
+use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -25,17 +27,16 @@ pub use profiles::Listed;
 pub(crate) use saved::{Known, Saved, some, without_edits};
 pub(in crate::app) use saving::Found;
 pub use saving::{Guard, ProfileFile, Saving};
+pub use state::SessionState;
 
 use super::action::Opened;
 use super::leaving::Leaver;
 use super::line::Line;
 use super::services::{JobEnd, Services};
 use super::studio::SessionId;
-use super::trace::TraceLog;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Scheme};
 use crate::profile::Document;
-use crate::store::{Backup, Entry, StatusEntry};
 use crate::worker::SubmitError;
 
 /// Where the data come from.
@@ -77,11 +78,11 @@ pub enum Phase {
 }
 
 /// A link that is being opened.
-pub(in crate::app) struct Opening {
+pub(crate) struct Opening {
     /// Which attempt of the session it is.
-    pub(in crate::app) attempt: Option<u32>,
+    pub(crate) attempt: Option<u32>,
     /// Ends when it is over.
-    pub(in crate::app) over: crossbeam_channel::Receiver<()>,
+    pub(crate) over: crossbeam_channel::Receiver<()>,
 }
 
 /// A link as it may be shown and kept: the access codes of a virtual encoder are no part of that.
@@ -92,49 +93,33 @@ pub(in crate::app) fn without_codes(url: &LinkUrl) -> String {
     format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
 }
 
-/// A device on the desk, or a profile of one.
+/// A device on the desk, or a profile of one: its state, its line and its draft.
 pub struct Session<D: Kind> {
-    /// Its number in the studio.
-    pub id: SessionId,
-    /// Where the data come from.
-    pub source: Source,
-    /// How it stands with the connection.
-    pub phase: Phase,
+    state: SessionState,
     pub(crate) line: Option<Line<D>>,
-    pub(in crate::app) opening: Option<Opening>,
-    /// What the device calls itself, once it is known.
-    pub(crate) title: Option<String>,
-    /// What has passed over the line.
-    pub trace: TraceLog,
-    /// Backups, or why there are none.
-    pub backups: Option<Result<Vec<Backup>, Text>>,
-    /// Writes of this device that the logbook knows, or why it does not tell.
-    pub writes: Option<Result<Vec<Entry>, Text>>,
-    /// Write cycles that the logbook has seen of this device; `None` where it does not tell, or was not asked.
-    pub cycles: Option<u64>,
-    /// Status codes of this device that the logbook knows, the newest first.
-    pub statuses: Vec<StatusEntry>,
-    /// Nothing has been read since the link was opened.
-    pub(crate) just_connected: bool,
-    /// Where the profile goes that is being read.
-    pub(crate) save_to: Option<PathBuf>,
-    /// A profile is on its way into a file: what that says next is not known before it is there.
-    pub(in crate::app) is_saving: bool,
     /// How it stands with the draft of its edits.
     pub(crate) drafting: Drafting<D::Edits>,
+}
+
+/// The state of a session is read and changed as a part of it.
+impl<D: Kind> Deref for Session<D> {
+    type Target = SessionState;
+
+    fn deref(&self) -> &SessionState {
+        &self.state
+    }
+}
+
+impl<D: Kind> DerefMut for Session<D> {
+    fn deref_mut(&mut self) -> &mut SessionState {
+        &mut self.state
+    }
 }
 
 impl<D: Kind> Session<D> {
     /// At a link that is being opened.
     pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Session::new(id, Source::Link(url), Phase::Opening)
-    }
-
-    /// Tells the log who has answered for the first time since the link was opened, and what is to be known of it.
-    pub(crate) fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
-        let Source::Link(url) = &self.source else { return };
-        let texts = std::iter::once(Text::new("log.answers").with("link", without_codes(url))).chain(facts).collect();
-        services.note(Severity::Note, texts, Some(&self.name()));
     }
 
     /// With a profile.
@@ -148,23 +133,7 @@ impl<D: Kind> Session<D> {
     }
 
     fn new(id: SessionId, source: Source, phase: Phase) -> Self {
-        Session {
-            id,
-            source,
-            phase,
-            line: None,
-            opening: None,
-            title: None,
-            trace: TraceLog::default(),
-            backups: None,
-            writes: None,
-            cycles: None,
-            statuses: Vec::new(),
-            just_connected: false,
-            save_to: None,
-            is_saving: false,
-            drafting: Drafting::new(id),
-        }
+        Session { state: SessionState::new(id, source, phase), line: None, drafting: Drafting::new(id) }
     }
 
     /// The line to the device, while it is connected.
@@ -176,11 +145,6 @@ impl<D: Kind> Session<D> {
     pub fn is_virtual(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_virtual)
             || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)
-    }
-
-    /// This is the attempt to open its link that counts.
-    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
-        self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
 
     /// Something runs on its line.
@@ -218,27 +182,6 @@ impl<D: Kind> Session<D> {
         self.is_ready() || self.phase == Phase::Offline
     }
 
-    /// Where the data come from, in words that may be seen.
-    pub fn place(&self) -> String {
-        match &self.source {
-            Source::Link(url) => without_codes(url),
-            Source::File { path, .. } => path.display().to_string(),
-            Source::New { .. } => String::new(),
-        }
-    }
-
-    /// The name by which the log and the jobs call it.
-    pub fn name(&self) -> String {
-        match (&self.source, &self.title) {
-            (Source::File { path, .. }, _) => {
-                path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
-            }
-            (Source::Link(_) | Source::New { .. }, Some(title)) => title.clone(),
-            (Source::New { suggested }, None) => suggested.display().to_string(),
-            (Source::Link(url), None) => without_codes(url),
-        }
-    }
-
     /// Its link is open.
     pub(crate) fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
         self.opening = None;
@@ -247,39 +190,6 @@ impl<D: Kind> Session<D> {
         self.phase = Phase::Connected;
         services.log.settle("session.not_connected", Some(&self.name()));
         self.just_connected = true;
-    }
-
-    /// The device has answered, if only with a refusal.
-    pub(crate) fn answers(&mut self) {
-        if matches!(self.phase, Phase::Silent(_)) {
-            self.phase = Phase::Connected;
-        }
-    }
-
-    /// The link is open, and the device does not answer: why, and what to do.
-    pub(crate) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
-        self.phase = Phase::Silent(first(&why));
-        services.log.settle("session.not_connected", Some(&self.name()));
-        services.note(Severity::Error, why, Some(&self.name()));
-    }
-
-    /// Tells of this device; in the log alone what stands where it was asked for.
-    pub(crate) fn say(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
-        match stands_there {
-            true => services.note(severity, texts, Some(&self.name())),
-            false => services.tell(severity, texts, Some(&self.name())),
-        }
-    }
-
-    /// Another device was read than the one before.
-    pub(crate) fn tell_of_another(&self, serial: &str, services: &mut Services) {
-        let text = Text::new("session.other_encoder").with("serial", serial);
-        services.tell(Severity::Warning, vec![text], Some(&self.name()));
-    }
-
-    /// What was asked for cannot be.
-    pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
-        services.tell(Severity::Error, vec![why], Some(&self.name()));
     }
 
     /// Samples are wished at this interval, or none any more. Whether they begin with that; `None` without a line.

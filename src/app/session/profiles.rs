@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Guard, Kind, ProfileFile, Saving, Session, Source};
+use super::{Guard, ProfileFile, Saving, SessionState, Source};
 use crate::app::action::{Done, FileQuestion};
 use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
@@ -10,7 +10,7 @@ use crate::app::{Action, Severity, Text, explain};
 use crate::profile::{Body, Document};
 use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, StatusEntry, Store};
 
-impl<D: Kind> Session<D> {
+impl SessionState {
     /// A name for a profile of it.
     pub(crate) fn suggested_file(&self) -> PathBuf {
         if let Source::File { path, .. } | Source::New { suggested: path } = &self.source {

@@ -1,0 +1,126 @@
+//! What is the same of every session, whatever its device.
+
+use std::path::PathBuf;
+
+use super::{Opening, Phase, Source, first, without_codes};
+use crate::app::services::Services;
+use crate::app::studio::SessionId;
+use crate::app::trace::TraceLog;
+use crate::app::{Severity, Text};
+use crate::store::{Backup, Entry, StatusEntry};
+
+/// What is the same of every session, whatever its device: who it is, where its data come from, how it stands with the
+/// connection.
+pub struct SessionState {
+    /// Its number in the studio.
+    pub id: SessionId,
+    /// Where the data come from.
+    pub source: Source,
+    /// How it stands with the connection.
+    pub phase: Phase,
+    pub(crate) opening: Option<Opening>,
+    /// What the device calls itself, once it is known.
+    pub(crate) title: Option<String>,
+    /// What has passed over the line.
+    pub trace: TraceLog,
+    /// Backups, or why there are none.
+    pub backups: Option<Result<Vec<Backup>, Text>>,
+    /// Writes of this device that the logbook knows, or why it does not tell.
+    pub writes: Option<Result<Vec<Entry>, Text>>,
+    /// Write cycles that the logbook has seen of this device; `None` where it does not tell, or was not asked.
+    pub cycles: Option<u64>,
+    /// Status codes of this device that the logbook knows, the newest first.
+    pub statuses: Vec<StatusEntry>,
+    /// Nothing has been read since the link was opened.
+    pub(crate) just_connected: bool,
+    /// Where the profile goes that is being read.
+    pub(crate) save_to: Option<PathBuf>,
+    /// A profile is on its way into a file: what that says next is not known before it is there.
+    pub(crate) is_saving: bool,
+}
+
+impl SessionState {
+    pub(super) fn new(id: SessionId, source: Source, phase: Phase) -> Self {
+        SessionState {
+            id,
+            source,
+            phase,
+            opening: None,
+            title: None,
+            trace: TraceLog::default(),
+            backups: None,
+            writes: None,
+            cycles: None,
+            statuses: Vec::new(),
+            just_connected: false,
+            save_to: None,
+            is_saving: false,
+        }
+    }
+
+    /// This is the attempt to open its link that counts.
+    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
+        self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
+    }
+
+    /// Where the data come from, in words that may be seen.
+    pub fn place(&self) -> String {
+        match &self.source {
+            Source::Link(url) => without_codes(url),
+            Source::File { path, .. } => path.display().to_string(),
+            Source::New { .. } => String::new(),
+        }
+    }
+
+    /// The name by which the log and the jobs call it.
+    pub fn name(&self) -> String {
+        match (&self.source, &self.title) {
+            (Source::File { path, .. }, _) => {
+                path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+            }
+            (Source::Link(_) | Source::New { .. }, Some(title)) => title.clone(),
+            (Source::New { suggested }, None) => suggested.display().to_string(),
+            (Source::Link(url), None) => without_codes(url),
+        }
+    }
+
+    /// Tells the log who has answered for the first time since the link was opened, and what is to be known of it.
+    pub(crate) fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
+        let Source::Link(url) = &self.source else { return };
+        let texts = std::iter::once(Text::new("log.answers").with("link", without_codes(url))).chain(facts).collect();
+        services.note(Severity::Note, texts, Some(&self.name()));
+    }
+
+    /// The device has answered, if only with a refusal.
+    pub(crate) fn answers(&mut self) {
+        if matches!(self.phase, Phase::Silent(_)) {
+            self.phase = Phase::Connected;
+        }
+    }
+
+    /// The link is open, and the device does not answer: why, and what to do.
+    pub(crate) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
+        self.phase = Phase::Silent(first(&why));
+        services.log.settle("session.not_connected", Some(&self.name()));
+        services.note(Severity::Error, why, Some(&self.name()));
+    }
+
+    /// Tells of this device; in the log alone what stands where it was asked for.
+    pub(crate) fn say(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
+        match stands_there {
+            true => services.note(severity, texts, Some(&self.name())),
+            false => services.tell(severity, texts, Some(&self.name())),
+        }
+    }
+
+    /// Another device was read than the one before.
+    pub(crate) fn tell_of_another(&self, serial: &str, services: &mut Services) {
+        let text = Text::new("session.other_encoder").with("serial", serial);
+        services.tell(Severity::Warning, vec![text], Some(&self.name()));
+    }
+
+    /// What was asked for cannot be.
+    pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
+        services.tell(Severity::Error, vec![why], Some(&self.name()));
+    }
+}
