@@ -28,9 +28,9 @@ impl Studio {
     /// on disk; or it has had time enough.
     pub fn may_close(&self) -> bool {
         let services = &self.services;
-        let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(AnyDevice::is_draft_kept);
-        let writes = services.leaves_writing() || self.devices.iter().any(AnyDevice::is_writing);
-        let runs = !services.leaving.is_empty() || self.devices.iter().any(AnyDevice::is_busy);
+        let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
+        let writes = services.leaves_writing() || self.devices.iter().any(|device| device.is_writing());
+        let runs = !services.leaving.is_empty() || self.devices.iter().any(|device| device.is_busy());
         let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
         self.closing
             && over(Waited::Drives, services.brakes.is_done())
@@ -41,8 +41,8 @@ impl Studio {
 
     pub(super) fn close_session(&mut self, id: SessionId) {
         let Some(device) = self.device_mut(id) else { return };
-        if let Some(unit) = device.hiperdrive_mut() {
-            unit.moves.stop();
+        if let Some(motion) = device.motion_mut() {
+            motion.stop();
         }
         if device.is_busy() || device.is_dirty() || device.has_recorded_much() {
             let text = match (device.source(), device.is_dirty() && !device.keeps_edits()) {
@@ -72,12 +72,12 @@ impl Studio {
 
     pub(super) fn close(&mut self) {
         self.stop_motion();
-        let busy = self.devices.iter().any(AnyDevice::is_busy);
-        let edits = self.devices.iter().any(AnyDevice::is_dirty);
-        let recorded = self.devices.iter().any(AnyDevice::has_recorded_much);
+        let busy = self.devices.iter().any(|device| device.is_busy());
+        let edits = self.devices.iter().any(|device| device.is_dirty());
+        let recorded = self.devices.iter().any(|device| device.has_recorded_much());
         if busy || edits || recorded {
-            let lost = |device: &AnyDevice| device.is_dirty() && !device.keeps_edits();
-            let text = match self.devices.iter().find(|device| lost(device)) {
+            let lost = |device: &&Box<AnyDevice>| device.is_dirty() && !device.keeps_edits();
+            let text = match self.devices.iter().find(lost) {
                 Some(device) => Text::new("question.session_lost").with("name", device.name()),
                 None if busy => Text::new("question.busy"),
                 None => Text::new(if edits { "question.edits" } else { "question.recording" }),

@@ -6,7 +6,7 @@ use super::documents::read_error;
 use super::question::{Question, Then};
 use super::session::{Found, Guard, ProfileFile, Saving, Source};
 use super::studio::{SessionId, Studio};
-use super::{AnyDevice, Text, Wish};
+use super::{Text, Wish};
 use crate::profile::{Change, Changed, Document, Formats, ProfileError, divergence};
 
 /// One profile in two versions.
@@ -180,7 +180,7 @@ impl Studio {
     /// The file of a profile is not what was opened: that is asked about where the session is shown.
     pub(super) fn has_diverged(&mut self, diverged: Diverged) {
         self.with_device(diverged.session(), |device, _| device.save_waits());
-        if let Some(tab) = self.device(diverged.session()).map(AnyDevice::tab) {
+        if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {
             self.show(tab, diverged.session());
             self.diverged = Some(diverged);
         }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 
 use super::action::{Action, Done, Known, ReadError};
+use super::devices::device_in_file;
 use super::session::{DraftDone, ProfileFile, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
@@ -29,19 +30,18 @@ impl Studio {
                 if !remarks.is_empty() {
                     self.services.tell(Severity::Warning, remarks, None);
                 }
-                let own =
-                    |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
-                let open = self.devices.iter().find(own).map(AnyDevice::id);
+                let own = |device: &&Box<AnyDevice>| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
+                let open = self.devices.iter().find(own).map(|device| device.id());
                 let id = open.unwrap_or_else(|| self.new_id());
                 if open.is_some() {
                     self.with_device(id, |device, _| device.take_document(file, *document));
                 } else {
                     let (path, found) = (file.path.clone(), document.device());
-                    let device = AnyDevice::in_file(id, file, *document, known, &mut self.services);
+                    let device = device_in_file(id, file, *document, known, &mut self.services);
                     let Some(device) = device else { return self.cannot_show(&path, found) };
                     self.devices.push(device);
                 }
-                if let Some(tab) = self.device(id).map(AnyDevice::tab) {
+                if let Some(tab) = self.device(id).map(|device| device.tab()) {
                     self.show(tab, id);
                 }
             }
@@ -51,7 +51,8 @@ impl Studio {
 
     /// A profile is of a kind of device that the window does not show.
     fn cannot_show(&mut self, path: &Path, found: &str) {
-        let error = ProfileError::Device { found: found.to_owned(), known: AnyDevice::KINDS.to_vec() };
+        let error =
+            ProfileError::Device { found: found.to_owned(), known: self.services.world.formats.kinds().collect() };
         self.services.tell(Severity::Error, vec![explain::profile(path, &error)], None);
     }
 

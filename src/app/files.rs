@@ -8,7 +8,7 @@ use super::connect;
 use super::question::{Question, Then};
 use super::recorder::{self, Exported, Recorder};
 use super::studio::{SessionId, Studio};
-use super::{AnyDevice, Picture, Severity, Text, explain};
+use super::{Picture, Severity, Text, explain};
 use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;
@@ -90,14 +90,14 @@ impl Studio {
     /// The recorder of a desk.
     pub fn recorder(&self, desk: Desk) -> Option<&Recorder> {
         match desk {
-            Desk::Device(id) => self.device(id).map(AnyDevice::recorder),
+            Desk::Device(id) => self.device(id).map(|device| device.recorder()),
             Desk::Signals => Some(&self.signals.scope().recorder),
         }
     }
 
     fn recorder_mut(&mut self, desk: Desk) -> Option<&mut Recorder> {
         match desk {
-            Desk::Device(id) => self.device_mut(id).map(AnyDevice::recorder_mut),
+            Desk::Device(id) => self.device_mut(id).map(|device| device.recorder_mut()),
             Desk::Signals => Some(&mut self.signals.scope_mut().recorder),
         }
     }
@@ -164,7 +164,7 @@ impl Studio {
         let is_written = matches!(exported.rows, Ok(Some(_)));
         // Another drive may be shown by now.
         let recorders = match desk {
-            Desk::Device(id) => self.device_mut(id).map(AnyDevice::recorders_mut).unwrap_or_default(),
+            Desk::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
             Desk::Signals => vec![&mut self.signals.scope_mut().recorder],
         };
         let ended = recorders.into_iter().find_map(|recorder| recorder.end_export(exported.number, is_written));

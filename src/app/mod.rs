@@ -18,6 +18,7 @@ mod keep;
 pub(crate) mod leaving;
 pub(crate) mod line;
 mod look;
+mod motion;
 mod notices;
 pub(crate) mod number;
 mod opening;
@@ -41,7 +42,8 @@ pub(crate) mod track;
 
 pub use action::{Action, Desk, Done, FileQuestion, ReviewAction};
 pub use brakes::Brakes;
-pub use devices::{AnyDevice, Wish};
+pub use devices::{AnyDevice, OpenDevice, Wish};
+pub(crate) use devices::{DeviceMemory, DeviceModel, MotionControl};
 pub use hold::{HoldEvent, HoldInput, HoldScene, HoldState};
 pub use keep::{SettingsRead, SettingsWritten};
 pub use leaving::Patience;

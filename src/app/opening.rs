@@ -3,6 +3,7 @@
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
+use super::devices::device_at_link;
 use super::leaving::{Leaver, same_wire};
 use super::question::{Question, Then};
 use super::services::{JobEnd, World};
@@ -90,7 +91,7 @@ impl Studio {
             Some(id) => id,
             None => {
                 let id = self.new_id();
-                let device = AnyDevice::at_link(tab, id, url.clone(), &mut self.services)?;
+                let device = device_at_link(tab, id, url.clone(), &mut self.services)?;
                 self.devices.push(device);
                 id
             }
@@ -105,7 +106,7 @@ impl Studio {
     /// # Errors
     /// It writes: which one.
     pub(crate) fn free_wire(&mut self, url: &LinkUrl, why: &'static str) -> Result<Option<Receiver<()>>, Text> {
-        let holds = |device: &&mut AnyDevice| {
+        let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
             held && matches!(device.source(), Source::Link(own) if same_wire(own, url))
         };
@@ -144,7 +145,7 @@ impl Studio {
 
     /// The user says that no drive is on the line of this session.
     pub(super) fn open_confirmed(&mut self, id: SessionId) {
-        if let Some(Source::Link(url)) = self.device(id).map(AnyDevice::source) {
+        if let Some(Source::Link(url)) = self.device(id).map(|device| device.source()) {
             self.attempt_to_open(id, url.clone());
         }
     }
@@ -166,7 +167,7 @@ impl Studio {
             }
             Tab::Biss => self.open_task(url, earlier, |_: &mut Session<Biss>| (), opened(id, attempt)),
             Tab::Ssi => {
-                let asking = self.device(id).and_then(AnyDevice::ssi).map(ssi::Encoder::asking);
+                let asking = self.device(id).and_then(|device| device.get::<ssi::Encoder>()).map(ssi::Encoder::asking);
                 let prepare =
                     move |session: &mut Session<Ssi>| asking.into_iter().for_each(|own| session.ask_like(own));
                 self.open_task(url, earlier, prepare, opened(id, attempt))
@@ -210,7 +211,7 @@ impl Studio {
     /// A link was opened, or not; `take` gives it to the session that waits for it.
     pub(super) fn opened<D: Kind>(&mut self, done: Attempt<D>, take: impl FnOnce(&mut Studio, SessionId, Opened<D>)) {
         let Attempt { session, attempt, result } = done;
-        let own = |device: &&mut AnyDevice| device.id() == session && device.is_attempt(attempt);
+        let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);
         let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(own)) else {
             if let Ok(opened) = result {
                 self.turn_away(*opened, session);

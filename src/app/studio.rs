@@ -38,7 +38,7 @@ pub struct Studio {
     pub services: Services,
     /// The Signals tab.
     pub signals: Signals,
-    pub(crate) devices: Vec<AnyDevice>,
+    pub(crate) devices: Vec<Box<AnyDevice>>,
     pub(crate) shown: Shown,
     next_id: u32,
     pub(crate) keeper: Keeper,
@@ -91,7 +91,7 @@ impl Studio {
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
             Action::KeepSize(width, height) => self.settings.size = Some((width, height)),
             Action::Select(id) => {
-                if let Some(tab) = self.device(id).map(AnyDevice::tab) {
+                if let Some(tab) = self.device(id).map(|device| device.tab()) {
                     self.show(tab, id);
                 }
             }
@@ -144,7 +144,7 @@ impl Studio {
             Action::Signals(action) => self.act_signals(action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
-                self.devices.iter_mut().for_each(AnyDevice::save_waits);
+                self.devices.iter_mut().for_each(|device| device.save_waits());
                 let text = Text::new("session.no_thread").with("why", why);
                 self.services.tell(Severity::Error, vec![text], None);
             }
@@ -204,13 +204,13 @@ impl Studio {
     }
 
     /// All devices, in the order in which they came.
-    pub fn devices(&self) -> &[AnyDevice] {
+    pub fn devices(&self) -> &[Box<AnyDevice>] {
         &self.devices
     }
 
     /// One of them.
     pub fn device(&self, id: SessionId) -> Option<&AnyDevice> {
-        self.devices.iter().find(|device| device.id() == id)
+        self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }
 
     /// The device that the open tab shows; where that shows none, the one that was shown last.
@@ -224,7 +224,7 @@ impl Studio {
 
     /// The encoder that the HIPERFACE tab shows.
     pub fn hiperface(&self) -> Option<&Encoder> {
-        self.device(self.shown.of(Tab::Hiperface)?)?.hiperface()
+        self.device(self.shown.of(Tab::Hiperface)?)?.get()
     }
 
     /// Sine and cosine of a device that is shown in its own tab.
@@ -234,7 +234,7 @@ impl Studio {
 
     /// The encoder that the BiSS tab shows.
     pub fn biss(&self) -> Option<&biss::Encoder> {
-        self.device(self.shown.of(Tab::Biss)?)?.biss()
+        self.device(self.shown.of(Tab::Biss)?)?.get()
     }
 
     /// Shows a device in its tab.
@@ -246,19 +246,19 @@ impl Studio {
     /// Something runs or is read all the time, in any session: there is something to stop.
     pub fn can_stop(&self) -> bool {
         let search = self.search().is_some_and(crate::devices::hiperface::state::Search::is_running);
-        self.devices.iter().any(AnyDevice::is_active) || search || self.signals.can_stop()
+        self.devices.iter().any(|device| device.is_active()) || search || self.signals.can_stop()
     }
 
     /// Something runs that comes to an end by itself, or measures; being read all the time is none of that.
     pub fn works(&self) -> bool {
         let search = self.search().is_some_and(crate::devices::hiperface::state::Search::is_running);
-        let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
+        let device = |device: &Box<AnyDevice>| device.is_opening() || device.is_busy();
         self.devices.iter().any(device) || search || self.signals.can_stop()
     }
 
     /// Live values come in: the picture has to be drawn again and again.
     pub fn is_live(&self) -> bool {
-        self.devices.iter().any(AnyDevice::is_polling) || self.is_in_control()
+        self.devices.iter().any(|device| device.is_polling()) || self.is_in_control()
     }
 
     fn search(&self) -> Option<&crate::devices::hiperface::state::Search> {
@@ -266,7 +266,7 @@ impl Studio {
     }
 
     pub(super) fn device_mut(&mut self, id: SessionId) -> Option<&mut AnyDevice> {
-        self.devices.iter_mut().find(|device| device.id() == id)
+        self.devices.iter_mut().map(Box::as_mut).find(|device| device.id() == id)
     }
 
     pub(crate) fn new_id(&mut self) -> SessionId {
@@ -284,7 +284,7 @@ impl Studio {
             hiperface::Action::Reconnect => self.reconnect(id),
             hiperface::Action::WriteInto(_) if self.is_only_looked_at(id) => {}
             hiperface::Action::WriteInto(target) => {
-                let profile = self.device(id).and_then(AnyDevice::hiperface).and_then(Encoder::wanted_profile);
+                let profile = self.device(id).and_then(|device| device.get::<Encoder>()?.wanted_profile());
                 let Some(profile) = profile else { return };
                 self.show(Tab::Hiperface, target);
                 self.with_hiperface(target, |encoder, services| encoder.plan_restore(profile, services));
@@ -295,7 +295,7 @@ impl Studio {
 
     pub(crate) fn with_device(&mut self, id: SessionId, act: impl FnOnce(&mut AnyDevice, &mut Services)) {
         if let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) {
-            act(device, &mut self.services);
+            act(device.as_mut(), &mut self.services);
         }
     }
 
@@ -305,13 +305,13 @@ impl Studio {
             biss::Action::WriteInto(_) if self.is_only_looked_at(id) => {}
             biss::Action::PlanMounting { data: Some(data), .. } if self.is_only_looked_at(data) => {}
             biss::Action::WriteInto(target) => {
-                let profile = self.device(id).and_then(AnyDevice::biss).and_then(biss::Encoder::wanted_profile);
+                let profile = self.device(id).and_then(|device| device.get::<biss::Encoder>()?.wanted_profile());
                 let Some(profile) = profile else { return };
                 self.show(Tab::Biss, target);
                 self.with_biss(target, |encoder, services| encoder.plan_restore(profile, services));
             }
             biss::Action::PlanMounting { mut run, motor, data } => {
-                let profile = data.and_then(|id| self.device(id)?.biss()?.wanted_profile());
+                let profile = data.and_then(|id| self.device(id)?.get::<biss::Encoder>()?.wanted_profile());
                 run.data = profile.map(Box::new);
                 let change = Change::Guided { run: *run, motor };
                 self.with_biss(id, |encoder, services| encoder.act(biss::Action::Plan(Box::new(change)), services));
@@ -322,7 +322,7 @@ impl Studio {
 
     fn with_biss(&mut self, id: SessionId, act: impl FnOnce(&mut biss::Encoder, &mut Services)) {
         self.with_device(id, |device, services| {
-            if let Some(encoder) = device.biss_mut() {
+            if let Some(encoder) = device.get_mut::<biss::Encoder>() {
                 act(encoder, services);
             }
         });
@@ -330,7 +330,7 @@ impl Studio {
 
     fn with_hiperface(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
         self.with_device(id, |device, services| {
-            if let Some(encoder) = device.hiperface_mut() {
+            if let Some(encoder) = device.get_mut::<Encoder>() {
                 act(encoder, services);
             }
         });
@@ -429,7 +429,7 @@ impl Studio {
             self.close_dialog();
             return;
         }
-        if let Some(id) = self.shown().filter(|device| device.is_reviewing()).map(AnyDevice::id) {
+        if let Some(id) = self.shown().filter(|device| device.is_reviewing()).map(|device| device.id()) {
             self.with_device(id, |device, _| device.close_review());
             return;
         }

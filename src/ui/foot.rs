@@ -76,7 +76,7 @@ fn edits(ui: &mut Ui, skin: &Skin, count: usize, words: &str) {
 /// A profile goes into a connected device of its kind: which one is chosen here.
 fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
-    let targets: Vec<&AnyDevice> = studio.devices().iter().filter(own).collect();
+    let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
     let word = skin.say("memory.write_into");
     ui.add_enabled_ui(!targets.is_empty(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {

@@ -105,7 +105,7 @@ fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>
         ui.label(skin.caption(skin.say("shell.sessions")));
         for device in studio.devices() {
             ui.horizontal(|ui| {
-                phase_dot(ui, skin, device);
+                phase_dot(ui, skin, device.as_ref());
                 let is_shown = studio.shown().is_some_and(|own| own.id() == device.id());
                 if ui.selectable_label(is_shown, device.name()).clicked() {
                     actions.push(Action::Select(device.id()));
@@ -164,7 +164,7 @@ fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
     }
     phase_dot(ui, skin, device);
     let (id, colour) = match device.phase() {
-        Phase::Connected if device.hiperdrive().is_some_and(Unit::is_moving) => ("shell.moving", palette.bad),
+        Phase::Connected if device.get::<Unit>().is_some_and(Unit::is_moving) => ("shell.moving", palette.bad),
         Phase::Connected if device.is_writing() => ("shell.writing", palette.accent),
         Phase::Connected => ("shell.connected", palette.good),
         Phase::Opening => ("shell.opening", palette.accent),
@@ -173,7 +173,7 @@ fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
         Phase::Offline if is_read_only(device) => ("shell.read_only", palette.warn),
         Phase::Offline => ("shell.offline", palette.muted),
     };
-    let moving = device.hiperdrive().filter(|unit| id == "shell.moving" && unit.drives().len() > 1);
+    let moving = device.get::<Unit>().filter(|unit| id == "shell.moving" && unit.drives().len() > 1);
     let drives: Vec<String> = moving.map(moving_drives).unwrap_or_default();
     let words = if drives.is_empty() {
         skin.say(id)

@@ -425,7 +425,7 @@ fn moving_edge(ui: &mut Ui, skin: &Skin, studio: &Studio) {
 
 /// While something is written, a bar moves along the top edge.
 fn writing_bar(ui: &mut Ui, skin: &Skin, studio: &Studio) {
-    if !studio.devices().iter().any(AnyDevice::is_writing) {
+    if !studio.devices().iter().any(|device| device.is_writing()) {
         return;
     }
     let screen = ui.ctx().content_rect();

@@ -216,8 +216,10 @@ fn until_ready(desk: &mut Desk) {
     desk.until("it is read", |studio| {
         // There are no backups of what is never written, nor of what may not be disturbed yet.
         let has_word = |own: &AnyDevice| {
-            let ssi = own.ssi().is_some_and(|own| own.last().is_some());
-            ssi || own.interbus().is_some_and(|own| own.record.last().is_some())
+            let ssi = own.get::<encoder_studio::devices::ssi::state::Encoder>().is_some_and(|own| own.last().is_some());
+            ssi || own
+                .get::<encoder_studio::devices::interbus::state::Encoder>()
+                .is_some_and(|own| own.record.last().is_some())
         };
         let is_read = |own: &AnyDevice| own.backups().is_some() || has_word(own);
         let is_ready = |own: &AnyDevice| own.is_ready() && *own.phase() == Phase::Connected && is_read(own);

@@ -139,7 +139,12 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
         let target = unit(&desk).target.clone().unwrap();
         jog(&mut desk);
         cover(&mut desk);
-        let held = desk.studio.devices().iter().filter_map(|own| own.hiperdrive()).any(|own| own.moves.is_held());
+        let held = desk
+            .studio
+            .devices()
+            .iter()
+            .filter_map(|own| own.get::<encoder_studio::devices::hiperdrive::state::Unit>())
+            .any(|own| own.moves.is_held());
         assert!(!held, "{what}");
         let began = Instant::now();
         while !target

@@ -73,7 +73,11 @@ fn day(seed: u64, steps: usize) {
     }
     // Whatever was done: the window still draws and answers.
     screen.steps();
-    let written = screen.studio().devices().iter().filter_map(|own| own.hiperface()?.review.as_ref());
+    let written = screen
+        .studio()
+        .devices()
+        .iter()
+        .filter_map(|own| own.get::<encoder_studio::devices::hiperface::state::Encoder>()?.review.as_ref());
     for review in written {
         assert!(!matches!(review.state, ReviewState::Failed { begun: true, .. }), "seed {seed}");
     }

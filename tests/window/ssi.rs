@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, AnyDevice, FileQuestion, Severity, Tab, Wish};
+use encoder_studio::app::{Action, FileQuestion, Severity, Tab, Wish};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
 use encoder_studio::devices::ssi::protocol::{Code, Doubt, Place, Range};
 use encoder_studio::devices::ssi::state::strip::Handle;
@@ -275,9 +275,9 @@ fn each_new_layout_has_a_name_and_a_draft_of_its_own() {
     desk.act(Action::NewLayout);
     edit(&mut desk, Edit::Family("kh53".to_owned()));
     desk.settle();
-    assert_eq!(desk.studio.devices().iter().map(AnyDevice::name).collect::<Vec<_>>(), ["layout.ron", "layout-2.ron"]);
+    assert_eq!(desk.studio.devices().iter().map(|own| own.name()).collect::<Vec<_>>(), ["layout.ron", "layout-2.ron"]);
     // Closed, the first name is free again; what was begun under it comes back with it.
-    for id in desk.studio.devices().iter().map(AnyDevice::id).collect::<Vec<_>>() {
+    for id in desk.studio.devices().iter().map(|own| own.id()).collect::<Vec<_>>() {
         desk.act(Action::CloseSession(id));
         desk.act(Action::Confirm);
     }

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use encoder_studio::app::review::OpWords;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{AnyDevice, JobEnd, Language, Notice, Studio, Text, Texts};
+use encoder_studio::app::{JobEnd, Language, Notice, Studio, Text, Texts};
 use encoder_studio::devices::hiperface::state::explain as words;
 use encoder_studio::devices::hiperface::state::{Encoder, ReviewState};
 
@@ -68,7 +68,7 @@ pub(crate) fn check_all(studio: &Studio) {
     }
     studio.signals.problem().into_iter().for_each(check);
     studio.signals.source().problem().into_iter().for_each(check);
-    studio.devices().iter().filter_map(AnyDevice::hiperface).for_each(check_encoder);
+    studio.devices().iter().filter_map(|own| own.get()).for_each(check_encoder);
 }
 
 fn check_encoder(encoder: &Encoder) {

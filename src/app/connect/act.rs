@@ -1,17 +1,17 @@
 //! The connection dialog, carried out.
 
 use super::{Action, Connect, list_ports};
+use crate::app::Text;
 use crate::app::action::FileQuestion;
 use crate::app::studio::Studio;
 use crate::app::tab::Tab;
-use crate::app::{AnyDevice, Text};
 
 impl Studio {
     pub(in crate::app) fn act_connect(&mut self, action: Action) {
         match action {
             Action::Open => {
                 let device = match self.settings.tab {
-                    Tab::Signals => self.shown().map_or(Tab::Hiperface, AnyDevice::tab),
+                    Tab::Signals => self.shown().map_or(Tab::Hiperface, |device| device.tab()),
                     tab => tab,
                 };
                 // What was used before comes first.

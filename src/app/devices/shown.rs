@@ -30,7 +30,7 @@ impl Shown {
     }
 
     /// A device is gone; `left` are the others. Its tab shows the one that came last.
-    pub(in crate::app) fn remove(&mut self, left: &[AnyDevice], id: SessionId) {
+    pub(in crate::app) fn remove(&mut self, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id
                 && let Some(other) = left.iter().rev().find(|device| device.tab() == *tab)

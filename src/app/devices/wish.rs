@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::AnyDevice;
+use crate::app::Tab;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
 use crate::devices::biss::state as biss;
@@ -61,12 +62,13 @@ macro_rules! own {
 impl AnyDevice {
     /// What is to be asked of the studio for a wish.
     pub fn wish(&self, wish: Wish) -> Action {
-        match self {
-            AnyDevice::Hiperface(device) => Action::Hiperface(device.session.id, own!(hiperface, wish)),
-            AnyDevice::Biss(device) => Action::Biss(device.session.id, own!(biss, wish)),
-            AnyDevice::Ssi(device) => Action::Ssi(device.session.id, own!(ssi, wish)),
-            AnyDevice::Interbus(device) => Action::Interbus(device.session.id, own!(interbus, wish)),
-            AnyDevice::Hiperdrive(device) => Action::Hiperdrive(device.session.id, own!(hiperdrive, wish)),
+        let id = self.id();
+        match self.tab() {
+            Tab::Hiperface | Tab::Signals => Action::Hiperface(id, own!(hiperface, wish)),
+            Tab::Biss => Action::Biss(id, own!(biss, wish)),
+            Tab::Ssi => Action::Ssi(id, own!(ssi, wish)),
+            Tab::Interbus => Action::Interbus(id, own!(interbus, wish)),
+            Tab::Hiperdrive => Action::Hiperdrive(id, own!(hiperdrive, wish)),
         }
     }
 }

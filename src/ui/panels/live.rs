@@ -38,12 +38,16 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     };
     let paused = is_paused(ui, device);
     let ink = if device.is_polling() && !paused { skin.palette.text } else { skin.palette.muted };
-    match device {
-        AnyDevice::Hiperface(encoder) => hiperface::live::value_ui(ui, skin, encoder, ink),
-        AnyDevice::Biss(encoder) => biss::live::value_ui(ui, skin, encoder, ink),
-        AnyDevice::Ssi(encoder) => ssi::live::value_ui(ui, skin, encoder, ink),
-        AnyDevice::Interbus(encoder) => interbus::live::value_ui(ui, skin, encoder, ink),
-        AnyDevice::Hiperdrive(unit) => hiperdrive::live::value_ui(ui, skin, unit, ink),
+    if let Some(encoder) = device.get() {
+        hiperface::live::value_ui(ui, skin, encoder, ink);
+    } else if let Some(encoder) = device.get() {
+        biss::live::value_ui(ui, skin, encoder, ink);
+    } else if let Some(encoder) = device.get() {
+        ssi::live::value_ui(ui, skin, encoder, ink);
+    } else if let Some(encoder) = device.get() {
+        interbus::live::value_ui(ui, skin, encoder, ink);
+    } else if let Some(unit) = device.get() {
+        hiperdrive::live::value_ui(ui, skin, unit, ink);
     }
     if paused {
         ui.label(skin.caption(skin.say("live.paused_by_job")));
@@ -105,13 +109,11 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
         if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
             actions.push(device.wish(Wish::ReadPosition));
         }
-        match device {
-            AnyDevice::Hiperface(encoder) => {
-                hiperface::live::watch_menu(ui, skin, encoder, &mut views.channel, actions)
-            }
-            AnyDevice::Biss(encoder) => biss::live::watch_menu(ui, skin, encoder, actions),
-            // They have no other values beside the position.
-            AnyDevice::Ssi(_) | AnyDevice::Interbus(_) | AnyDevice::Hiperdrive(_) => {}
+        // Other kinds have no other values beside the position.
+        if let Some(encoder) = device.get() {
+            hiperface::live::watch_menu(ui, skin, encoder, &mut views.channel, actions);
+        } else if let Some(encoder) = device.get() {
+            biss::live::watch_menu(ui, skin, encoder, actions);
         }
         if choice(ui, &skin.say("live.rate"), &mut rate, rates) {
             views.rate = rate;

@@ -13,6 +13,7 @@ mod log;
 mod mark;
 mod meaning;
 mod memory;
+mod model;
 mod news;
 mod record;
 mod review;

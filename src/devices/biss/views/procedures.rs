@@ -192,8 +192,12 @@ fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
 
 /// Whose data is written: that of a profile which is open.
 fn data_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, data: &mut Option<SessionId>) {
-    let profiles: Vec<&AnyDevice> =
-        studio.devices().iter().filter(|own| own.biss().is_some_and(|own| own.profile().is_some())).collect();
+    let profiles: Vec<&AnyDevice> = studio
+        .devices()
+        .iter()
+        .map(Box::as_ref)
+        .filter(|own| own.get::<Encoder>().is_some_and(|own| own.profile().is_some()))
+        .collect();
     if data.is_some_and(|own| profiles.iter().all(|other| other.id() != own)) {
         *data = None;
     }

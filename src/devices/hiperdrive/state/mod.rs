@@ -12,6 +12,7 @@ pub mod explain;
 pub mod forms;
 mod job;
 pub mod leds;
+mod model;
 mod moves;
 pub mod network;
 mod news;

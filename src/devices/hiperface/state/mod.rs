@@ -9,6 +9,7 @@ mod encoder;
 pub mod explain;
 pub mod forms;
 mod meaning;
+mod model;
 mod mounting;
 mod news;
 mod record;

@@ -11,6 +11,7 @@ mod encoder;
 pub mod explain;
 pub mod forms;
 mod job;
+mod model;
 mod news;
 mod preview;
 pub mod reader;

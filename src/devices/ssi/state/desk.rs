@@ -10,7 +10,7 @@ use crate::app::services::Services;
 use crate::app::session::Source;
 use crate::app::studio::{SessionId, Studio};
 use crate::app::tab::Tab;
-use crate::app::{AnyDevice, Severity};
+use crate::app::Severity;
 use crate::devices::ssi::protocol::Families;
 use crate::devices::ssi::state::explain as words;
 use crate::store::StoreError;
@@ -18,7 +18,7 @@ use crate::store::StoreError;
 impl Studio {
     /// The encoder or layout that the SSI tab shows.
     pub fn ssi(&self) -> Option<&Encoder> {
-        self.device(self.shown.of(Tab::Ssi)?)?.ssi()
+        self.device(self.shown.of(Tab::Ssi)?)?.get()
     }
 
     /// Shows a tab. A layout needs no device: where there is none, one to begin with.
@@ -32,7 +32,7 @@ impl Studio {
     /// A layout that is in no file yet, with the first name that no other such layout has.
     pub(crate) fn new_layout(&mut self) {
         let taken = |name: &PathBuf| {
-            let others = self.devices.iter().map(AnyDevice::source);
+            let others = self.devices.iter().map(|device| device.source());
             others.into_iter().any(|source| matches!(source, Source::New { suggested } if suggested == name))
         };
         let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
@@ -40,7 +40,7 @@ impl Studio {
         let Some(name) = names.find(|name| !taken(name)) else { return };
         let id = self.new_id();
         let layout = Encoder::new_layout(id, name, &mut self.services);
-        self.devices.push(AnyDevice::Ssi(Box::new(layout)));
+        self.devices.push(Box::new(layout));
         self.show(Tab::Ssi, id);
     }
 
@@ -48,14 +48,16 @@ impl Studio {
         match action {
             Action::Reconnect => self.reconnect(id),
             Action::WriteInto(target) => {
-                let Some(profile) = self.device(id).and_then(AnyDevice::ssi).map(Encoder::wanted_profile) else {
+                let Some(profile) =
+                    self.device(id).and_then(|device| device.get::<Encoder>()).map(Encoder::wanted_profile)
+                else {
                     return;
                 };
                 self.show(Tab::Ssi, target);
                 self.with_ssi(target, |encoder, _| encoder.edit(Edit::Whole(Box::new(profile))));
             }
             Action::SendLayout => {
-                let link = self.device(id).and_then(AnyDevice::ssi).and_then(Encoder::link_to_send);
+                let link = self.device(id).and_then(|device| device.get::<Encoder>()?.link_to_send());
                 let Some(url) = link else { return };
                 self.with_device(id, |device, services| {
                     // The draft belongs to the encoder that the link before stands for.
@@ -70,7 +72,7 @@ impl Studio {
 
     pub(crate) fn with_ssi(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
         self.with_device(id, |device, services| {
-            if let Some(encoder) = device.ssi_mut() {
+            if let Some(encoder) = device.get_mut::<Encoder>() {
                 act(encoder, services);
             }
         });
@@ -82,7 +84,7 @@ impl Studio {
             self.services.tell(Severity::Warning, vec![words::store(error)], None);
         }
         for device in &mut self.devices {
-            if let Some(encoder) = device.ssi_mut() {
+            if let Some(encoder) = device.get_mut::<Encoder>() {
                 encoder.take_families(families.clone());
             }
         }

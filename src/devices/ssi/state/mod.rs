@@ -11,6 +11,7 @@ mod encoder;
 pub mod explain;
 mod export;
 mod form;
+mod model;
 mod news;
 mod record;
 mod search;

@@ -255,7 +255,7 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, encoder: 
 /// The layout for an encoder that is connected: which one is chosen here.
 fn take_for(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && other.is_connected() && other.id() != device.id();
-    let targets: Vec<&AnyDevice> = studio.devices().iter().filter(own).collect();
+    let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
     if targets.is_empty() {
         return;
     }

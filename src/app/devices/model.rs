@@ -1,0 +1,195 @@
+//! A kind of device as the studio sees it, typed: what a device brings so that the rest is done for all of them alike.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::action::{ReadError, ReviewAction};
+use crate::app::recorder::Recorder;
+use crate::app::review::Sheet;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, Listed, OnLine, Saved};
+use crate::app::{SineCosineSource, Tab};
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::store::DeviceKey;
+
+/// A device, or a profile of one, with everything that is known of it.
+pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
+    /// The tab that shows it.
+    const TAB: Tab;
+
+    /// Returns the number of edits that are not written.
+    fn edits(&self) -> usize;
+
+    /// There are edits that are not written.
+    fn is_dirty(&self) -> bool;
+
+    /// There is an edit to take back.
+    fn can_undo(&self) -> bool;
+
+    /// There is an edit to do again.
+    fn can_redo(&self) -> bool;
+
+    /// Saves a profile.
+    fn save(&mut self, path: PathBuf, services: &mut Services);
+
+    /// A profile can be saved now.
+    fn is_savable(&self) -> bool;
+
+    /// Returns what was recorded of it.
+    fn recorder(&self) -> &Recorder;
+
+    /// Returns what was recorded of it, to be changed.
+    fn recorder_mut(&mut self) -> &mut Recorder;
+
+    /// Returns all its recorders, that of what is shown first.
+    fn recorders(&self) -> Vec<&Recorder> {
+        vec![self.recorder()]
+    }
+
+    /// Returns all its recorders, to be changed.
+    fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
+        vec![self.recorder_mut()]
+    }
+
+    /// Returns the number of samples that were taken and dropped before they were recorded.
+    fn dropped(&self) -> u64;
+
+    /// Its positions can come as a stream, thousands a second.
+    fn streams(&self) -> bool {
+        false
+    }
+
+    /// There is something to stop.
+    fn is_active(&self) -> bool {
+        self.session().is_active()
+    }
+
+    /// Ends what runs.
+    fn stop(&mut self, services: &mut Services) {
+        self.session_mut().stop(services);
+    }
+
+    /// Another link leads to the wire from now on.
+    fn take_link(&mut self, _url: &LinkUrl) {}
+
+    /// Returns its memory; `None` for a kind into which nothing is written.
+    fn memory(&self) -> Option<&dyn DeviceMemory> {
+        None
+    }
+
+    /// Returns its memory, to be changed.
+    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
+        None
+    }
+
+    /// Returns its sine and cosine; `None` for a kind that gives none.
+    fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
+        None
+    }
+
+    /// Returns its sine and cosine, to be read.
+    fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource> {
+        None
+    }
+
+    /// Returns what moves; `None` for a kind of which nothing moves.
+    fn motion(&self) -> Option<&dyn MotionControl> {
+        None
+    }
+
+    /// Returns what moves, to be stopped.
+    fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
+        None
+    }
+}
+
+/// Motion that was asked for in this window. Stop and let-go go this way alone, never as an action of a kind.
+pub(crate) trait MotionControl {
+    /// Stops everything that moves.
+    fn stop(&mut self);
+
+    /// Ends what lives only as long as it is held: a jog, and a run without an end.
+    fn let_go(&mut self);
+
+    /// Something moves, or is about to.
+    fn is_moving(&self) -> bool;
+
+    /// Something moves, or is about to, that was asked for in this window.
+    fn moves_by_hand(&self) -> bool;
+
+    /// A motion that was asked for in this window has not ended.
+    fn is_under_way(&self) -> bool;
+
+    /// This window has the control: values come without being asked for.
+    fn is_in_control(&self) -> bool;
+}
+
+/// A memory that is written through a review, and saved and restored as a profile.
+pub(crate) trait DeviceMemory {
+    /// A review of a write is open.
+    fn is_reviewing(&self) -> bool;
+
+    /// Returns the review of a write, where one is on its way.
+    fn sheet(&self) -> Option<Sheet>;
+
+    /// Does what is asked of the review.
+    fn act_review(&mut self, action: ReviewAction, services: &mut Services);
+
+    /// Closes the review; what is being written goes on.
+    fn close_review(&mut self);
+
+    /// Takes the lists of backups and writes; those of another device than the one that is connected are dropped.
+    fn listed(&mut self, of: &DeviceKey, listed: Listed);
+
+    /// Takes a backup that was read, or not; one of another device than the one that is connected is dropped.
+    fn take_backup(
+        &mut self,
+        of: &DeviceKey,
+        path: &Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    );
+}
+
+impl<T: Saved> DeviceMemory for T {
+    fn is_reviewing(&self) -> bool {
+        self.review().is_some()
+    }
+
+    fn sheet(&self) -> Option<Sheet> {
+        let running = self.session().line().and_then(|line| line.running());
+        let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
+        crate::app::session::WithMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
+    }
+
+    fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
+        match action {
+            ReviewAction::Write(plan) => self.write(plan, services),
+            ReviewAction::Toggle(permit) => self.plan_with(permit, services),
+            ReviewAction::ForceWear(force) => self.force_wear(force),
+            ReviewAction::Close => DeviceMemory::close_review(self),
+        }
+    }
+
+    fn close_review(&mut self) {
+        crate::app::session::WithMemory::close_review(self);
+    }
+
+    fn listed(&mut self, of: &DeviceKey, listed: Listed) {
+        if self.key().as_ref() == Some(of) {
+            self.session_mut().take_backups(listed);
+        }
+    }
+
+    fn take_backup(
+        &mut self,
+        of: &DeviceKey,
+        path: &Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    ) {
+        if self.key().as_ref() == Some(of) {
+            Saved::take_backup(self, path, result, services);
+        }
+    }
+}

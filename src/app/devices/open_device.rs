@@ -1,0 +1,422 @@
+//! A device of any kind, as the studio, the window's common parts and other devices see it. There is one implementation for
+//! all kinds.
+
+use std::any::Any;
+use std::path::{Path, PathBuf};
+
+use super::model::{DeviceMemory, DeviceModel, MotionControl};
+use crate::app::action::{ReadError, ReviewAction};
+use crate::app::closing::MUCH;
+use crate::app::line::Progressing;
+use crate::app::recorder::Recorder;
+use crate::app::review::Sheet;
+use crate::app::services::{JobEnd, Services};
+use crate::app::session::{
+    DraftDone, Drafted, Listed, OnLine, Opening, Phase, ProfileFile, Saving, SessionState, Source,
+};
+use crate::app::studio::SessionId;
+use crate::app::trace::TraceLog;
+use crate::app::{SineCosineSource, Tab, Text};
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::store::{Backup, DeviceKey, Entry, FileError, StatusEntry};
+
+/// A device, or a profile of one, of whatever kind.
+pub type AnyDevice = dyn OpenDevice;
+
+/// What is asked of every device. [`DeviceModel`] is what a kind implements; this follows from it.
+#[allow(private_interfaces, reason = "devices within this crate alone see these types")]
+pub trait OpenDevice: Any {
+    /// Returns what is the same of every session.
+    fn state(&self) -> &SessionState;
+    #[doc(hidden)]
+    fn state_mut(&mut self) -> &mut SessionState;
+    /// The tab that shows it.
+    fn tab(&self) -> Tab;
+    /// The device lives in this process.
+    fn is_virtual(&self) -> bool;
+    /// Its line is open.
+    fn is_connected(&self) -> bool;
+    /// Something runs on its line.
+    fn is_busy(&self) -> bool;
+    /// Its memory is being changed.
+    fn is_writing(&self) -> bool;
+    /// It is read all the time.
+    fn is_polling(&self) -> bool;
+    /// There is something to stop.
+    fn is_active(&self) -> bool;
+    /// Connected and nothing runs: a job may begin.
+    fn is_ready(&self) -> bool;
+    /// It can be read again: also a device that did not answer, and a profile.
+    fn is_readable(&self) -> bool;
+    /// A profile of it can be saved now.
+    fn is_savable(&self) -> bool;
+    /// Its positions can come as a stream, thousands a second.
+    fn streams(&self) -> bool;
+    /// Returns the job that runs.
+    fn running(&self) -> Option<Progressing>;
+    /// There are edits that are not written.
+    fn is_dirty(&self) -> bool;
+    /// Returns the number of edits that are not written.
+    fn edits(&self) -> usize;
+    /// There is an edit to take back.
+    fn can_undo(&self) -> bool;
+    /// There is an edit to do again.
+    fn can_redo(&self) -> bool;
+    /// Its edits come back after it was closed.
+    fn keeps_edits(&self) -> bool;
+    /// Every edit is on disk, as far as the disk takes it.
+    fn is_draft_kept(&self) -> bool;
+    /// Returns the number of samples that were taken and dropped before they were recorded.
+    fn dropped(&self) -> u64;
+    /// Returns what was recorded of it.
+    fn recorder(&self) -> &Recorder;
+    #[doc(hidden)]
+    fn recorder_mut(&mut self) -> &mut Recorder;
+    /// Returns its recorders, that of what is shown first.
+    fn recorders(&self) -> Vec<&Recorder>;
+    #[doc(hidden)]
+    fn recorders_mut(&mut self) -> Vec<&mut Recorder>;
+    /// Returns its sine and cosine; `None` for a kind that gives none.
+    fn sine_cosine(&self) -> Option<&dyn SineCosineSource>;
+    #[doc(hidden)]
+    fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource>;
+    #[doc(hidden)]
+    fn memory(&self) -> Option<&dyn DeviceMemory>;
+    #[doc(hidden)]
+    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory>;
+    #[doc(hidden)]
+    fn motion(&self) -> Option<&dyn MotionControl>;
+    #[doc(hidden)]
+    fn motion_mut(&mut self) -> Option<&mut dyn MotionControl>;
+    #[doc(hidden)]
+    fn take_link(&mut self, url: LinkUrl);
+    #[doc(hidden)]
+    fn save(&mut self, path: PathBuf, services: &mut Services);
+    #[doc(hidden)]
+    fn pump(&mut self, services: &mut Services);
+    #[doc(hidden)]
+    fn stop(&mut self, services: &mut Services);
+    #[doc(hidden)]
+    fn lose(&mut self, why: Text, services: &mut Services);
+    #[doc(hidden)]
+    fn let_go(&mut self, end: JobEnd, services: &mut Services);
+    #[doc(hidden)]
+    fn keep_draft(&mut self, services: &mut Services);
+    #[doc(hidden)]
+    fn leave_draft(&mut self, services: &mut Services);
+    #[doc(hidden)]
+    fn take_draft(&mut self, done: DraftDone, services: &mut Services);
+    #[doc(hidden)]
+    fn take_document(&mut self, file: ProfileFile, document: Document);
+    #[doc(hidden)]
+    fn revert_edits(&mut self);
+    #[doc(hidden)]
+    fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services);
+}
+
+#[allow(private_interfaces, reason = "as in the trait")]
+impl<M: DeviceModel> OpenDevice for M {
+    fn state(&self) -> &SessionState {
+        self.session()
+    }
+
+    fn state_mut(&mut self) -> &mut SessionState {
+        self.session_mut()
+    }
+
+    fn tab(&self) -> Tab {
+        M::TAB
+    }
+
+    fn is_virtual(&self) -> bool {
+        self.session().is_virtual()
+    }
+
+    fn is_connected(&self) -> bool {
+        self.session().line().is_some()
+    }
+
+    fn is_busy(&self) -> bool {
+        self.session().is_busy()
+    }
+
+    fn is_writing(&self) -> bool {
+        self.session().is_writing()
+    }
+
+    fn is_polling(&self) -> bool {
+        self.session().is_polling()
+    }
+
+    fn is_active(&self) -> bool {
+        DeviceModel::is_active(self)
+    }
+
+    fn is_ready(&self) -> bool {
+        self.session().is_ready()
+    }
+
+    fn is_readable(&self) -> bool {
+        self.session().is_readable()
+    }
+
+    fn is_savable(&self) -> bool {
+        DeviceModel::is_savable(self)
+    }
+
+    fn streams(&self) -> bool {
+        DeviceModel::streams(self)
+    }
+
+    fn running(&self) -> Option<Progressing> {
+        self.session().line().and_then(|line| line.progressing())
+    }
+
+    fn is_dirty(&self) -> bool {
+        DeviceModel::is_dirty(self)
+    }
+
+    fn edits(&self) -> usize {
+        DeviceModel::edits(self)
+    }
+
+    fn can_undo(&self) -> bool {
+        DeviceModel::can_undo(self)
+    }
+
+    fn can_redo(&self) -> bool {
+        DeviceModel::can_redo(self)
+    }
+
+    fn keeps_edits(&self) -> bool {
+        Drafted::keeps_edits(self)
+    }
+
+    fn is_draft_kept(&self) -> bool {
+        self.session().drafting.is_kept()
+    }
+
+    fn dropped(&self) -> u64 {
+        DeviceModel::dropped(self)
+    }
+
+    fn recorder(&self) -> &Recorder {
+        DeviceModel::recorder(self)
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        DeviceModel::recorder_mut(self)
+    }
+
+    fn recorders(&self) -> Vec<&Recorder> {
+        DeviceModel::recorders(self)
+    }
+
+    fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
+        DeviceModel::recorders_mut(self)
+    }
+
+    fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
+        DeviceModel::sine_cosine(self)
+    }
+
+    fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource> {
+        DeviceModel::sine_cosine_mut(self)
+    }
+
+    fn memory(&self) -> Option<&dyn DeviceMemory> {
+        DeviceModel::memory(self)
+    }
+
+    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
+        DeviceModel::memory_mut(self)
+    }
+
+    fn motion(&self) -> Option<&dyn MotionControl> {
+        DeviceModel::motion(self)
+    }
+
+    fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
+        DeviceModel::motion_mut(self)
+    }
+
+    fn take_link(&mut self, url: LinkUrl) {
+        DeviceModel::take_link(self, &url);
+        self.session_mut().source = Source::Link(url);
+    }
+
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        DeviceModel::save(self, path, services);
+    }
+
+    fn pump(&mut self, services: &mut Services) {
+        OnLine::pump(self, services);
+    }
+
+    fn stop(&mut self, services: &mut Services) {
+        DeviceModel::stop(self, services);
+    }
+
+    fn lose(&mut self, why: Text, services: &mut Services) {
+        OnLine::lose(self, why, services);
+    }
+
+    fn let_go(&mut self, end: JobEnd, services: &mut Services) {
+        OnLine::let_go(self, end, services);
+    }
+
+    fn keep_draft(&mut self, services: &mut Services) {
+        Drafted::keep_draft(self, services);
+    }
+
+    fn leave_draft(&mut self, services: &mut Services) {
+        Drafted::leave_draft(self, services);
+    }
+
+    fn take_draft(&mut self, done: DraftDone, services: &mut Services) {
+        Drafted::take_draft(self, done, services);
+    }
+
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
+        Drafted::take_document(self, file, document);
+    }
+
+    fn revert_edits(&mut self) {
+        Drafted::revert_edits(self);
+    }
+
+    fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
+        Drafted::written(self, saving, file, result, services);
+    }
+}
+
+impl dyn OpenDevice {
+    /// Returns the device as what it is; `None` where it is of another kind.
+    pub fn get<M: Any>(&self) -> Option<&M> {
+        (self as &dyn Any).downcast_ref()
+    }
+
+    pub(crate) fn get_mut<M: Any>(&mut self) -> Option<&mut M> {
+        (self as &mut dyn Any).downcast_mut()
+    }
+
+    /// Its number in the studio.
+    pub fn id(&self) -> SessionId {
+        self.state().id
+    }
+
+    /// The name by which the log and the jobs call it.
+    pub fn name(&self) -> String {
+        self.state().name()
+    }
+
+    /// Where the data come from, in words that may be seen.
+    pub fn place(&self) -> String {
+        self.state().place()
+    }
+
+    /// Where the data come from.
+    pub fn source(&self) -> &Source {
+        &self.state().source
+    }
+
+    /// How it stands with the connection.
+    pub fn phase(&self) -> &Phase {
+        &self.state().phase
+    }
+
+    pub(in crate::app) fn phase_mut(&mut self) -> &mut Phase {
+        &mut self.state_mut().phase
+    }
+
+    /// Its link is being opened.
+    pub(in crate::app) fn is_opening(&self) -> bool {
+        self.state().opening.is_some()
+    }
+
+    pub(in crate::app) fn opening_mut(&mut self) -> &mut Option<Opening> {
+        &mut self.state_mut().opening
+    }
+
+    /// What has passed over the line.
+    pub fn trace(&self) -> &TraceLog {
+        &self.state().trace
+    }
+
+    /// This is the attempt to open its link that counts.
+    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
+        self.state().is_attempt(attempt)
+    }
+
+    /// Backups, or why there are none; `None`: not asked for yet.
+    pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
+        self.state().backups.as_ref()
+    }
+
+    /// Writes of this device that the logbook knows, or why it does not tell; `None`: not asked for yet.
+    pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
+        self.state().writes.as_ref()
+    }
+
+    /// Status codes of this device that the logbook knows, the newest first.
+    pub fn statuses(&self) -> &[StatusEntry] {
+        &self.state().statuses
+    }
+
+    /// A review of a write is open.
+    pub fn is_reviewing(&self) -> bool {
+        self.memory().is_some_and(DeviceMemory::is_reviewing)
+    }
+
+    /// The review of a write, where one is on its way.
+    pub fn sheet(&self) -> Option<Sheet> {
+        self.memory()?.sheet()
+    }
+
+    pub(in crate::app) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
+        if let Some(memory) = self.memory_mut() {
+            memory.act_review(action, services);
+        }
+    }
+
+    pub(in crate::app) fn close_review(&mut self) {
+        if let Some(memory) = self.memory_mut() {
+            memory.close_review();
+        }
+    }
+
+    /// Backups and writes were listed.
+    pub(in crate::app) fn listed(&mut self, of: &DeviceKey, listed: Listed) {
+        if let Some(memory) = self.memory_mut() {
+            memory.listed(of, listed);
+        }
+    }
+
+    /// A backup was read, or not.
+    pub(in crate::app) fn take_backup(
+        &mut self,
+        of: &DeviceKey,
+        path: &Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    ) {
+        if let Some(memory) = self.memory_mut() {
+            memory.take_backup(of, path, result, services);
+        }
+    }
+
+    /// There are minutes of a recording that no table has.
+    pub(in crate::app) fn has_recorded_much(&self) -> bool {
+        self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
+    }
+
+    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
+        self.state().suggested_file()
+    }
+
+    /// A save has come to a question: another one may begin.
+    pub(in crate::app) fn save_waits(&mut self) {
+        self.state_mut().is_saving = false;
+    }
+}

@@ -1,0 +1,67 @@
+//! What moves, in all sessions: stopped and let go here, whatever kind of device it is.
+
+use super::devices::MotionControl;
+use super::studio::Studio;
+use super::tab::Tab;
+
+impl Studio {
+    fn motions(&self) -> impl Iterator<Item = &dyn MotionControl> {
+        self.devices.iter().filter_map(|device| device.motion())
+    }
+
+    fn motions_mut(&mut self) -> impl Iterator<Item = &mut dyn MotionControl> {
+        self.devices.iter_mut().filter_map(|device| device.motion_mut())
+    }
+
+    /// Drives are connected, in whichever session: STOP has to be in reach.
+    pub fn has_drives(&self) -> bool {
+        self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
+    }
+
+    /// Some drive moves, as far as is known here, or is about to.
+    pub fn moves(&self) -> bool {
+        self.motions().any(MotionControl::is_moving)
+    }
+
+    /// Something is under way that was asked for here: whoever presses Esc in a fright means that.
+    pub fn moves_by_hand(&self) -> bool {
+        self.motions().any(MotionControl::moves_by_hand)
+    }
+
+    /// A motion that was asked for here has not ended.
+    pub fn is_under_way(&self) -> bool {
+        self.motions().any(MotionControl::is_under_way)
+    }
+
+    /// Somebody has control of some drives: what they say comes by itself.
+    pub fn is_in_control(&self) -> bool {
+        self.motions().any(MotionControl::is_in_control)
+    }
+
+    /// Stops all drives of all sessions, whatever moves them.
+    pub(super) fn stop_motion(&mut self) {
+        self.motions_mut().for_each(MotionControl::stop);
+    }
+
+    /// Whatever a person holds is let go, and what turns without an end: the window has lost the keyboard, or has put
+    /// something over itself.
+    pub(super) fn let_go_of_jogs(&mut self) {
+        self.motions_mut().for_each(MotionControl::let_go);
+    }
+
+    /// A jog and a run live only as long as their panel can be seen: another tab or device, a dialog, a question for a file or
+    /// any other end them.
+    pub(super) fn hold_in_sight(&mut self) {
+        let asks = self.question.is_some() || self.services.file_question.is_some();
+        let is_covered = self.connect.is_some() || asks;
+        let tab = self.settings.tab;
+        let seen = self.shown.of(tab).filter(|_| tab != Tab::Signals && !is_covered);
+        for device in &mut self.devices {
+            let is_seen = seen == Some(device.id()) && !device.is_reviewing();
+            if let Some(motion) = device.motion_mut().filter(|_| !is_seen) {
+                // A run in speed mode has no end of its own either.
+                motion.let_go();
+            }
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! HIPERDRIVE drives behind an adapter or a hub among the devices of the studio.
+
+use std::path::PathBuf;
+
+use super::Unit;
+use crate::app::recorder::Recorder;
+use crate::app::services::Services;
+use crate::app::session::Saved;
+use crate::app::{DeviceMemory, DeviceModel, MotionControl, Tab};
+
+impl DeviceModel for Unit {
+    const TAB: Tab = Tab::Hiperdrive;
+
+    fn edits(&self) -> usize {
+        Unit::edits(self)
+    }
+
+    fn is_dirty(&self) -> bool {
+        Unit::is_dirty(self)
+    }
+
+    fn can_undo(&self) -> bool {
+        Unit::can_undo(self)
+    }
+
+    fn can_redo(&self) -> bool {
+        Unit::can_redo(self)
+    }
+
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        Saved::save(self, path, services);
+    }
+
+    fn is_savable(&self) -> bool {
+        self.saves_what_was_read() || self.session.is_savable()
+    }
+
+    fn recorder(&self) -> &Recorder {
+        self.record.recorder()
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        self.record.recorder_mut()
+    }
+
+    fn dropped(&self) -> u64 {
+        self.record.dropped()
+    }
+
+    fn memory(&self) -> Option<&dyn DeviceMemory> {
+        Some(self)
+    }
+
+    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
+        Some(self)
+    }
+
+    fn recorders(&self) -> Vec<&Recorder> {
+        Unit::recorders(self).collect()
+    }
+
+    fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
+        Unit::recorders_mut(self).collect()
+    }
+
+    fn is_active(&self) -> bool {
+        Unit::is_active(self)
+    }
+
+    fn stop(&mut self, services: &mut Services) {
+        Unit::stop(self, services);
+    }
+
+    fn motion(&self) -> Option<&dyn MotionControl> {
+        Some(self)
+    }
+
+    fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
+        Some(self)
+    }
+}
+
+impl MotionControl for Unit {
+    fn stop(&mut self) {
+        self.moves.stop();
+    }
+
+    fn let_go(&mut self) {
+        self.moves.let_go();
+    }
+
+    fn is_moving(&self) -> bool {
+        Unit::is_moving(self)
+    }
+
+    fn moves_by_hand(&self) -> bool {
+        self.moves.is_moving() || self.moves.is_under_way()
+    }
+
+    fn is_under_way(&self) -> bool {
+        self.moves.is_under_way()
+    }
+
+    fn is_in_control(&self) -> bool {
+        self.moves.is_open()
+    }
+}

@@ -1,0 +1,57 @@
+//! An INTERBUS encoder among the devices of the studio.
+
+use std::path::PathBuf;
+
+use super::Encoder;
+use crate::app::recorder::Recorder;
+use crate::app::services::Services;
+use crate::app::session::Saved;
+use crate::app::{DeviceMemory, DeviceModel, Tab};
+
+impl DeviceModel for Encoder {
+    const TAB: Tab = Tab::Interbus;
+
+    fn edits(&self) -> usize {
+        Encoder::edits(self)
+    }
+
+    fn is_dirty(&self) -> bool {
+        Encoder::is_dirty(self)
+    }
+
+    fn can_undo(&self) -> bool {
+        Encoder::can_undo(self)
+    }
+
+    fn can_redo(&self) -> bool {
+        Encoder::can_redo(self)
+    }
+
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        Saved::save(self, path, services);
+    }
+
+    fn is_savable(&self) -> bool {
+        self.saves_what_was_read() || self.session.is_savable()
+    }
+
+    fn recorder(&self) -> &Recorder {
+        self.record.recorder()
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        self.record.recorder_mut()
+    }
+
+    fn dropped(&self) -> u64 {
+        self.record.dropped()
+    }
+
+    fn memory(&self) -> Option<&dyn DeviceMemory> {
+        Some(self)
+    }
+
+    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
+        Some(self)
+    }
+}

@@ -1,0 +1,59 @@
+//! An SSI encoder among the devices of the studio.
+
+use std::path::PathBuf;
+
+use super::Encoder;
+use crate::app::recorder::Recorder;
+use crate::app::services::Services;
+use crate::app::{DeviceModel, Tab};
+use crate::link::LinkUrl;
+
+impl DeviceModel for Encoder {
+    const TAB: Tab = Tab::Ssi;
+
+    fn edits(&self) -> usize {
+        Encoder::edits(self)
+    }
+
+    fn is_dirty(&self) -> bool {
+        Encoder::is_dirty(self)
+    }
+
+    fn can_undo(&self) -> bool {
+        Encoder::can_undo(self)
+    }
+
+    fn can_redo(&self) -> bool {
+        Encoder::can_redo(self)
+    }
+
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        Encoder::save(self, path, services);
+    }
+
+    fn is_savable(&self) -> bool {
+        // A layout can be saved at any time.
+        true
+    }
+
+    fn recorder(&self) -> &Recorder {
+        self.record.recorder()
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        self.record.recorder_mut()
+    }
+
+    fn dropped(&self) -> u64 {
+        self.record.dropped()
+    }
+
+    fn streams(&self) -> bool {
+        // There is always an adapter.
+        true
+    }
+
+    fn take_link(&mut self, url: &LinkUrl) {
+        Encoder::take_link(self, url);
+    }
+}
