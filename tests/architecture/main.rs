@@ -109,8 +109,8 @@ fn devices_and_buses_are_known_only_where_it_is_allowed() {
     for source in sources() {
         for (used, place) in source.uses(&source.text) {
             let (excepted, needed) = match &place.owner {
-                Owner::Device(_) => (&KNOWS_A_DEVICE[..], &mut of_devices),
-                Owner::Bus(_) | Owner::Signals => (&KNOWS_A_BUS[..], &mut of_buses),
+                Owner::Device(_) => (KNOWS_A_DEVICE, &mut of_devices),
+                Owner::Bus(_) | Owner::Signals => (KNOWS_A_BUS, &mut of_buses),
                 Owner::Core => continue,
             };
             let is_user =
@@ -126,7 +126,7 @@ fn devices_and_buses_are_known_only_where_it_is_allowed() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.into_iter().collect::<Vec<_>>().join("\n"));
-    for (excepted, needed) in [(&KNOWS_A_DEVICE[..], of_devices), (&KNOWS_A_BUS[..], of_buses)] {
+    for (excepted, needed) in [(KNOWS_A_DEVICE, of_devices), (KNOWS_A_BUS, of_buses)] {
         let gone: Vec<&&str> = excepted.iter().filter(|path| !needed.contains(**path)).collect();
         assert!(gone.is_empty(), "no exceptions any more: {gone:?}");
     }
