@@ -81,7 +81,7 @@ const STREAMED: Duration = Duration::from_secs(15);
 fn stream() {
     use encoder_studio::app::{Action, Look, Studio, Tab, World};
     use encoder_studio::devices::biss::state::Action as Biss;
-    use encoder_studio::kinds::FORMATS;
+    use encoder_studio::kinds::{FORMATS, TABS};
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
 
@@ -142,7 +142,7 @@ fn stream() {
             studio.act(Action::ShowTab(Tab::Biss));
             // 2 MHz: a frame of 43 clocks takes 21.5 µs beside 27 µs of waiting.
             studio.begin(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
-            let window = Window::new(studio, Look::built_in()?);
+            let window = Window::new(studio, Look::built_in()?, TABS);
             Ok(Box::new(Streaming { window, began: None, took: Vec::new() }))
         }),
     )
@@ -167,7 +167,7 @@ fn write_capture(path: &std::path::Path) {
 fn plot() {
     use encoder_studio::analysis::Time;
     use encoder_studio::app::{Action, Desk, Look, Studio, World, recorder};
-    use encoder_studio::kinds::FORMATS;
+    use encoder_studio::kinds::{FORMATS, TABS};
     use encoder_studio::signals::state as signals;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
@@ -232,7 +232,7 @@ fn plot() {
         options,
         Box::new(move |cc| {
             install_fonts(&cc.egui_ctx);
-            Ok(Box::new(Plotting { window: Window::new(studio, look), times: Vec::new() }))
+            Ok(Box::new(Plotting { window: Window::new(studio, look, TABS), times: Vec::new() }))
         }),
     )
     .unwrap();

@@ -3,13 +3,13 @@
 use std::process::ExitCode;
 
 use encoder_studio::cli::{self, Asked};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::{FORMATS, TABS};
 use encoder_studio::ui;
 
 fn main() -> ExitCode {
     match cli::run(FORMATS) {
         Asked::Command(code) => code,
-        Asked::Window(start) => match ui::run(start, FORMATS) {
+        Asked::Window(start) => match ui::run(start, FORMATS, TABS) {
             Ok(()) => ExitCode::SUCCESS,
             Err(why) => cli::no_window(&why),
         },

@@ -3,15 +3,11 @@
 use egui::Ui;
 
 use super::controls::{icon_button, name};
+use super::device_view::PageInfo;
 use super::docks::Docks;
+use super::views::shown_in;
 use super::{Skin, Views, icons};
-use crate::app::{Action, Studio, Tab};
-use crate::devices::biss::views as biss;
-use crate::devices::hiperdrive::views as hiperdrive;
-use crate::devices::hiperface::views as hiperface;
-use crate::devices::interbus::views as interbus;
-use crate::devices::ssi::views as ssi;
-use crate::signals::views as signals;
+use crate::app::{Action, Studio};
 
 /// The tabs, with the pages of the open one.
 pub(super) fn navigation_ui(
@@ -23,8 +19,8 @@ pub(super) fn navigation_ui(
     actions: &mut Vec<Action>,
 ) {
     ui.spacing_mut().item_spacing.y = skin.space.inside;
-    for tab in Tab::DEVICES.into_iter().chain([Tab::Signals]) {
-        let word = tab.bus().map_or_else(|| skin.say("tab.signals"), str::to_owned);
+    for tab in views.tabs.tabs() {
+        let word = views.tabs.title(skin, tab);
         let text = egui::RichText::new(&word).font(skin.strong(skin.sizes.body));
         if entry(ui, false, text, &word).clicked() {
             views.plot.make_small();
@@ -42,95 +38,45 @@ pub(super) fn navigation_ui(
     }
 }
 
-/// The pages of a tab, as its kind has them.
-trait TabPage: Copy + PartialEq {
-    /// Its icon and its word.
-    fn face(self) -> (&'static str, &'static str);
-}
-
-macro_rules! tab_pages {
-    ($($page:path),*) => {
-        $(impl TabPage for $page {
-            fn face(self) -> (&'static str, &'static str) {
-                (self.icon(), self.word())
-            }
-        })*
-    };
-}
-
-tab_pages!(hiperface::Page, biss::Page, ssi::Page, interbus::Page, hiperdrive::Page, signals::Page);
-
-/// The entries of a tab's pages; the page that was pressed. Edits that are not written mark the page that `edited` names.
-fn pages_ui<P: TabPage>(
-    ui: &mut Ui,
-    skin: &Skin,
-    all: impl IntoIterator<Item = P>,
-    shown: P,
-    edited: impl Fn(P) -> bool,
-) -> Option<P> {
-    let mut pressed = None;
-    for page in all {
-        let (icon, id) = page.face();
-        let word = skin.say(id);
-        let mut text = egui::RichText::new(format!("{icon}  {word}"));
-        if edited(page) {
-            text = text.color(skin.palette.staged);
-        }
-        if entry(ui, shown == page, text, &word).clicked() {
-            pressed = Some(page);
-        }
-    }
-    pressed
-}
-
 /// The pages of the open tab, where it shows something.
 fn open_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
-    let has_moved = match studio.settings.tab {
-        Tab::Hiperface => studio.hiperface().is_some_and(|encoder| {
-            let edited = |page| page == hiperface::Page::Memory && encoder.staged.is_dirty();
-            let shown = &mut views.hiperface(encoder).page;
-            move_to(shown, pages_ui(ui, skin, hiperface::Page::ALL, *shown, edited))
-        }),
-        Tab::Biss => studio.biss().is_some_and(|encoder| {
-            let edited = |page| page == biss::Page::Data && encoder.is_dirty();
-            let shown = &mut views.biss(encoder).page;
-            move_to(shown, pages_ui(ui, skin, biss::Page::ALL, *shown, edited))
-        }),
-        Tab::Ssi => studio.ssi().is_some_and(|encoder| {
-            let edited = |page| page == ssi::Page::Frame && encoder.is_dirty();
-            let shown = &mut views.ssi(encoder).page;
-            move_to(shown, pages_ui(ui, skin, ssi::Page::ALL, *shown, edited))
-        }),
-        Tab::Interbus => studio.interbus().is_some_and(|encoder| {
-            let edited = |page| match page {
-                interbus::Page::Parameters => encoder.edits_parameters(),
-                interbus::Page::Cams => encoder.edits_cams(),
-                _ => false,
-            };
-            let shown = &mut views.interbus(encoder).page;
-            move_to(shown, pages_ui(ui, skin, interbus::Page::ALL, *shown, edited))
-        }),
-        Tab::Hiperdrive => studio.hiperdrive().is_some_and(|unit| {
-            let edited = |page| page == hiperdrive::Page::Parameters && unit.is_dirty();
-            let shown = &mut views.hiperdrive(unit).page;
-            move_to(shown, pages_ui(ui, skin, hiperdrive::Page::ALL, *shown, edited))
-        }),
-        Tab::Signals => {
-            let shown = &mut views.signals.page;
-            move_to(shown, pages_ui(ui, skin, signals::Page::ALL, *shown, |_| false))
-        }
+    let tab = studio.settings.tab;
+    let pages = views.tabs.pages(tab);
+    let pressed = if let Some(tool) = views.tool(tab) {
+        let pressed = pages_ui(ui, skin, &pages, tool.page(), |_| false);
+        pressed.inspect(|page| tool.open(*page))
+    } else {
+        let Some(device) = shown_in(studio, tab) else { return };
+        let Some(session) = views.session(device) else { return };
+        let pressed = pages_ui(ui, skin, &pages, session.page(), |page| session.is_edited(device, page));
+        pressed.inspect(|page| session.open(*page))
     };
-    if has_moved {
+    if pressed.is_some() {
         views.plot.make_small();
     }
 }
 
-fn move_to<P>(shown: &mut P, pressed: Option<P>) -> bool {
-    let has_moved = pressed.is_some();
-    if let Some(pressed) = pressed {
-        *shown = pressed;
+/// The entries of a tab's pages; the place of the page that was pressed. Edits that are not written mark the page that
+/// `edited` names.
+fn pages_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    pages: &[PageInfo],
+    shown: usize,
+    edited: impl Fn(usize) -> bool,
+) -> Option<usize> {
+    let mut pressed = None;
+    for (at, page) in pages.iter().enumerate() {
+        let word = skin.say(page.word);
+        let mut text = egui::RichText::new(format!("{}  {word}", page.icon));
+        if edited(at) {
+            text = text.color(skin.palette.staged);
+        }
+        if entry(ui, shown == at, text, &word).clicked() {
+            pressed = Some(at);
+        }
     }
-    has_moved
+    pressed
 }
 
 /// An entry of the navigation, as wide as it.

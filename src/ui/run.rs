@@ -3,17 +3,17 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use super::{Window, end, install_fonts};
+use super::{TabViews, Window, end, install_fonts};
 use crate::app::{Look, Studio, Wake, World, explain};
 use crate::cli::Window as Start;
 use crate::profile::Formats;
 use crate::store::{LogFile, Store};
 
-/// Opens the window and returns when it is closed. Profiles are read in these formats.
+/// Opens the window with these tabs and returns when it is closed. Profiles are read in these formats.
 ///
 /// # Errors
 /// Why there is no window, in one line.
-pub fn run(start: Start, formats: Formats) -> Result<(), String> {
+pub fn run(start: Start, formats: Formats, tabs: TabViews) -> Result<(), String> {
     let began = Instant::now();
     if !has_display() {
         return Err(NO_DISPLAY.to_owned());
@@ -49,7 +49,7 @@ pub fn run(start: Start, formats: Formats) -> Result<(), String> {
         Box::new(move |cc| {
             install_fonts(&cc.egui_ctx);
             let _ = context.set(cc.egui_ctx.clone());
-            Ok(Box::new(Shown { window: Window::new(studio, look), began: Some(began) }))
+            Ok(Box::new(Shown { window: Window::new(studio, look, tabs), began: Some(began) }))
         }),
     );
     let result = result.map_err(|error| {

@@ -1,86 +1,18 @@
 //! The window: header, navigation, panels, dialogs and the keyboard; what eframe asks of an application.
 
-use std::collections::BTreeMap;
 use std::time::Duration;
 
 use egui::{Key, Modifiers, Panel, Ui};
 
-use super::dialogs::{self, ConnectView, FileView};
+use super::device_view::TabViews;
+use super::dialogs::{self, FileView};
 use super::docks::Docks;
 use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Skin, header, review, stopping};
-use crate::app::{Action, AnyDevice, Look, SessionId, Severity, Studio, Tab, Wish};
-use crate::devices::biss::views as biss;
-use crate::devices::hiperdrive::views as hiperdrive;
-use crate::devices::hiperface::state::Encoder;
-use crate::devices::hiperface::views as hiperface;
-use crate::devices::interbus::views as interbus;
-use crate::devices::ssi::views as ssi;
-use crate::signals::views as signals;
-
-/// What views remember while the window is open: text buffers and selections, nothing of the state.
-#[derive(Default)]
-pub struct Views {
-    /// The HIPERFACE tab, for each session.
-    hiperface: BTreeMap<SessionId, hiperface::View>,
-    /// The BiSS tab, for each session.
-    biss: BTreeMap<SessionId, biss::View>,
-    /// The SSI tab, for each session.
-    ssi: BTreeMap<SessionId, ssi::View>,
-    /// The INTERBUS tab, for each session.
-    interbus: BTreeMap<SessionId, interbus::View>,
-    /// The HIPERDRIVE tab, for each session.
-    hiperdrive: BTreeMap<SessionId, hiperdrive::View>,
-    pub(super) signals: signals::View,
-    pub(super) connect: ConnectView,
-    pub(super) file: Option<FileView>,
-    pub(super) about: bool,
-    pub(super) help: bool,
-    /// The plot of the encoder that is shown.
-    pub(super) plot: super::plot::View,
-    /// The analogue channel that is typed, to be watched.
-    pub(super) channel: String,
-    /// Microseconds from one reading of the position to the next.
-    pub(super) rate: u64,
-}
-
-impl Views {
-    /// The HIPERFACE tab of a session.
-    pub(super) fn hiperface(&mut self, encoder: &Encoder) -> &mut hiperface::View {
-        let view = self.hiperface.entry(encoder.session.id).or_default();
-        view.follow(encoder);
-        view
-    }
-
-    /// The BiSS tab of a session.
-    pub(super) fn biss(&mut self, encoder: &crate::devices::biss::state::Encoder) -> &mut biss::View {
-        let view = self.biss.entry(encoder.session.id).or_default();
-        view.follow(encoder);
-        view
-    }
-
-    /// The SSI tab of a session.
-    pub(super) fn ssi(&mut self, encoder: &crate::devices::ssi::state::Encoder) -> &mut ssi::View {
-        self.ssi.entry(encoder.session.id).or_default()
-    }
-
-    /// The HIPERDRIVE tab of a session.
-    pub(super) fn hiperdrive(&mut self, unit: &crate::devices::hiperdrive::state::Unit) -> &mut hiperdrive::View {
-        let view = self.hiperdrive.entry(unit.session.id).or_default();
-        view.follow(unit);
-        view
-    }
-
-    /// The INTERBUS tab of a session.
-    pub(super) fn interbus(&mut self, encoder: &crate::devices::interbus::state::Encoder) -> &mut interbus::View {
-        let view = self.interbus.entry(encoder.session.id).or_default();
-        view.follow(encoder);
-        view
-    }
-}
+use super::{Skin, Views, header, review, stopping};
+use crate::app::{Action, AnyDevice, Look, Severity, Studio, Tab, Wish};
 
 /// The window.
 pub struct Window {
@@ -96,6 +28,10 @@ pub struct Window {
     notice_since: Option<(jiff::Zoned, f64)>,
 }
 
+/// The keys of the tabs with Ctrl, in the tabs' order.
+const TAB_KEYS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
 /// Seconds for which a notice stands; `None`: until it is closed.
 const fn stands(severity: Severity) -> Option<f64> {
     match severity {
@@ -106,10 +42,10 @@ const fn stands(severity: Severity) -> Option<f64> {
 }
 
 impl Window {
-    /// A window on a studio.
-    pub fn new(studio: Studio, look: &'static Look) -> Self {
+    /// A window on a studio, with these tabs.
+    pub fn new(studio: Studio, look: &'static Look, tabs: TabViews) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
-        let views = Views { rate: 50_000, plot: super::plot::View::in_panel(), ..Views::default() };
+        let views = Views::new(tabs);
         Window { studio, views, docks, keys: Keys::new(), close_heard: false, look, dressed: None, notice_since: None }
     }
 
@@ -192,31 +128,10 @@ impl Window {
         if self.views.about && dialogs::about_ui(ctx, skin) {
             self.views.about = false;
         }
-        let page = match self.studio.settings.tab {
-            Tab::Hiperface => {
-                let page =
-                    self.studio.hiperface().map(|encoder| self.views.hiperface(encoder).page).unwrap_or_default();
-                (page.word(), page.help())
-            }
-            Tab::Biss => {
-                let page = self.studio.biss().map(|encoder| self.views.biss(encoder).page).unwrap_or_default();
-                (page.word(), page.help())
-            }
-            Tab::Ssi => {
-                let page = self.studio.ssi().map(|encoder| self.views.ssi(encoder).page).unwrap_or_default();
-                (page.word(), page.help())
-            }
-            Tab::Interbus => {
-                let page = self.studio.interbus().map(|own| self.views.interbus(own).page).unwrap_or_default();
-                (page.word(), page.help())
-            }
-            Tab::Hiperdrive => {
-                let page = self.studio.hiperdrive().map(|own| self.views.hiperdrive(own).page).unwrap_or_default();
-                (page.word(), page.help())
-            }
-            Tab::Signals => (self.views.signals.page.word(), self.views.signals.page.help()),
-        };
-        if self.views.help && dialogs::help_ui(ctx, skin, page) {
+        if self.views.help
+            && let Some(page) = self.views.page(&self.studio)
+            && dialogs::help_ui(ctx, skin, (page.word, page.help))
+        {
             self.views.help = false;
         }
         dialogs::diverged_ui(ctx, skin, &self.studio, actions);
@@ -314,15 +229,9 @@ impl Window {
         if self.is_covered() {
             return;
         }
-        let mut keys = vec![
-            (Modifiers::COMMAND, Key::O, Action::AskOpen),
-            (Modifiers::COMMAND, Key::Num1, Action::ShowTab(Tab::Hiperface)),
-            (Modifiers::COMMAND, Key::Num2, Action::ShowTab(Tab::Biss)),
-            (Modifiers::COMMAND, Key::Num3, Action::ShowTab(Tab::Ssi)),
-            (Modifiers::COMMAND, Key::Num4, Action::ShowTab(Tab::Interbus)),
-            (Modifiers::COMMAND, Key::Num5, Action::ShowTab(Tab::Hiperdrive)),
-            (Modifiers::COMMAND, Key::Num6, Action::ShowTab(Tab::Signals)),
-        ];
+        let mut keys = vec![(Modifiers::COMMAND, Key::O, Action::AskOpen)];
+        let tabs = TAB_KEYS.into_iter().zip(self.views.tabs.tabs());
+        keys.extend(tabs.map(|(key, tab)| (Modifiers::COMMAND, key, Action::ShowTab(tab))));
         if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
             keys.push((Modifiers::NONE, Key::F5, device.wish(Wish::Read)));
             // The one with more keys first: it would be taken for the other.
@@ -399,11 +308,7 @@ impl Window {
         if self.studio.may_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        self.views.hiperface.retain(|id, _| self.studio.device(*id).is_some());
-        self.views.biss.retain(|id, _| self.studio.device(*id).is_some());
-        self.views.ssi.retain(|id, _| self.studio.device(*id).is_some());
-        self.views.interbus.retain(|id, _| self.studio.device(*id).is_some());
-        self.views.hiperdrive.retain(|id, _| self.studio.device(*id).is_some());
+        self.views.forget_closed(&self.studio);
         if self.studio.moves() {
             // The heartbeat of whatever moves: 250 ms without a picture stop it.
             ctx.request_repaint_after(Duration::from_millis(30));

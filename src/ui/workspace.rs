@@ -3,18 +3,14 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::controls::{button, empty, paragraph, spinner};
+use super::device_view::DeviceView;
 use super::page::apart;
 use super::panels::plot_ui;
+use super::views::shown_in;
 use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Studio, Tab, Wish};
-use crate::devices::biss::views as biss;
-use crate::devices::hiperdrive::views as hiperdrive;
-use crate::devices::hiperface::views as hiperface;
-use crate::devices::interbus::views as interbus;
-use crate::devices::ssi::views as ssi;
-use crate::signals::views as signals;
+use crate::app::{Action, AnyDevice, Studio, Wish};
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -25,74 +21,22 @@ pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mu
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, skin, device, views, actions));
         return;
     }
-    match studio.settings.tab {
-        Tab::Hiperface => hiperface_ui(ui, skin, studio, views, actions),
-        Tab::Biss => biss_ui(ui, skin, studio, views, actions),
-        Tab::Ssi => ssi_ui(ui, skin, studio, views, actions),
-        Tab::Interbus => interbus_ui(ui, skin, studio, views, actions),
-        Tab::Hiperdrive => hiperdrive_ui(ui, skin, studio, views, actions),
-        Tab::Signals => {
-            signals::page_ui(ui, skin, &studio.signals, studio.sine_cosine(), &mut views.signals, actions);
-        }
+    let tab = studio.settings.tab;
+    if let Some(tool) = views.tool(tab) {
+        tool.page_ui(ui, skin, studio, actions);
+        return;
     }
-}
-
-fn hiperface_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    let (Some(encoder), Some(device)) = (studio.hiperface(), studio.shown()) else {
-        return nothing(ui, skin, studio, actions);
+    let Some(device) = shown_in(studio, tab) else {
+        return nothing(ui, skin, views.tabs.device(tab), actions);
     };
-    running(ui, skin, device, None, actions);
+    let Some(session) = views.session(device) else { return };
+    session.running_ui(ui, skin, device, actions);
     lost(ui, skin, device, actions);
-    apart(ui, "page", |ui| hiperface::page_ui(ui, skin, (studio, device), encoder, views.hiperface(encoder), actions));
-}
-
-fn biss_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    let (Some(encoder), Some(device)) = (studio.biss(), studio.shown()) else {
-        return nothing(ui, skin, studio, actions);
-    };
-    let view = views.biss(encoder);
-    let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && view.page == biss::Page::Procedures;
-    // How far it is stands below, step by step: here, what ending it does.
-    let instead = is_led.then(|| skin.say("guide.cancel_note"));
-    running(ui, skin, device, instead, actions);
-    lost(ui, skin, device, actions);
-    apart(ui, "page", |ui| biss::page_ui(ui, skin, (studio, device), encoder, view, actions));
-}
-
-fn ssi_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    let (Some(encoder), Some(device)) = (studio.ssi(), studio.shown()) else {
-        return nothing(ui, skin, studio, actions);
-    };
-    lost(ui, skin, device, actions);
-    apart(ui, "page", |ui| ssi::page_ui(ui, skin, (studio, device), encoder, views.ssi(encoder), actions));
-}
-
-fn interbus_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    let (Some(encoder), Some(device)) = (studio.interbus(), studio.shown()) else {
-        return nothing(ui, skin, studio, actions);
-    };
-    running(ui, skin, device, None, actions);
-    lost(ui, skin, device, actions);
-    apart(ui, "page", |ui| interbus::page_ui(ui, skin, (studio, device), encoder, views.interbus(encoder), actions));
-}
-
-fn hiperdrive_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    let (Some(unit), Some(device)) = (studio.hiperdrive(), studio.shown()) else {
-        return nothing(ui, skin, studio, actions);
-    };
-    // Below, so that nothing moves away under the finger that holds a drive.
-    if device.running().is_some() && !device.is_reviewing() {
-        egui::Panel::bottom(egui::Id::unique(device.id()).with("hiperdrive_running"))
-            .frame(egui::Frame::NONE.inner_margin(egui::Margin { left: 0, right: 0, top: 0, bottom: 8 }))
-            .show_separator_line(false)
-            .show(ui, |ui| running(ui, skin, device, None, actions));
-    }
-    lost(ui, skin, device, actions);
-    apart(ui, "page", |ui| hiperdrive::page_ui(ui, skin, (studio, device), unit, views.hiperdrive(unit), actions));
+    apart(ui, "page", |ui| session.page_ui(ui, skin, (studio, device), actions));
 }
 
 /// No device is on the desk: the ways to one.
-fn nothing(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+fn nothing(ui: &mut Ui, skin: &Skin, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
         actions.push(Action::Connect(connect::Action::Open));
     }
@@ -103,15 +47,20 @@ fn nothing(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>)
         if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
             actions.push(Action::AskOpen);
         }
-        // A layout needs no device.
-        if studio.settings.tab == Tab::Ssi && button(ui, icons::PLUS, &skin.say("ssi.new_layout")).clicked() {
-            actions.push(Action::NewLayout);
+        if let Some(view) = view {
+            view.empty_ui(ui, skin, actions);
         }
     });
 }
 
 /// What runs, how far it is, or what is to be known `instead`, and a way to end it.
-fn running(ui: &mut Ui, skin: &Skin, device: &AnyDevice, instead: Option<String>, actions: &mut Vec<Action>) {
+pub(crate) fn running_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    device: &AnyDevice,
+    instead: Option<String>,
+    actions: &mut Vec<Action>,
+) {
     let opening = *device.phase() == Phase::Opening;
     let running = device.running();
     // A review that is open says how far it is by itself.

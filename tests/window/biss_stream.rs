@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::app::{Action, Severity, Studio, Tab};
 use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
-use encoder_studio::ui::pages;
 
 use crate::biss_support::is_read;
 use crate::screen::Screen;
@@ -86,7 +85,7 @@ fn the_window_shows_a_stream_without_loss() {
     screen.act(action);
     screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let began = Instant::now();
-    for page in pages(Tab::Biss) {
+    for page in encoder_studio::kinds::TABS.page_words(Tab::Biss) {
         screen.click(page);
     }
     screen.until("three seconds pass", |_| began.elapsed() > Duration::from_secs(3));

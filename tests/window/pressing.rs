@@ -66,7 +66,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
             screen.act(Action::Interbus(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
-        for page in encoder_studio::ui::pages(tab) {
+        for page in encoder_studio::kinds::TABS.page_words(tab) {
             screen.click(page);
             let before = widgets(&screen);
             screen.act(Action::NoThread("told".to_owned()));

@@ -8,6 +8,7 @@ use egui_kittest::{Harness, Node};
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::{Action, Language, Look, Studio, Tab, Text};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder};
+use encoder_studio::kinds::TABS;
 use encoder_studio::link::LinkUrl;
 use encoder_studio::ui::{Window, install_fonts};
 
@@ -41,7 +42,7 @@ impl Screen {
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
-            Shown(Window::new(studio, Look::built_in().unwrap()))
+            Shown(Window::new(studio, Look::built_in().unwrap(), TABS))
         });
         Screen { harness, outside }
     }

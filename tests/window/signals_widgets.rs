@@ -23,7 +23,7 @@ impl Screen {
             for theme in [Theme::Dark, Theme::Light] {
                 self.act(Action::SetLanguage(language));
                 self.act(Action::SetTheme(theme));
-                for page in encoder_studio::ui::pages(Tab::Signals) {
+                for page in encoder_studio::kinds::TABS.page_words(Tab::Signals) {
                     self.click(page);
                     self.check_language();
                 }

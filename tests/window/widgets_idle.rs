@@ -20,7 +20,7 @@ fn next_picture(screen: &Screen) -> Duration {
 #[test]
 fn a_window_with_nothing_to_show_asks_for_no_picture() {
     let mut screen = Screen::begun(SIZE);
-    for page in encoder_studio::ui::pages(encoder_studio::app::Tab::Hiperface) {
+    for page in encoder_studio::kinds::TABS.page_words(encoder_studio::app::Tab::Hiperface) {
         screen.click(page);
         for _ in 0..30 {
             screen.harness.step();

@@ -16,9 +16,10 @@ mod virtual_encoder;
 
 use egui::Ui;
 
-use crate::app::{Action, SineCosineSource, Text};
+use crate::app::{Action, SineCosineSource, Studio, Tab, Text};
 use crate::signals::state::Signals;
 use crate::signals::state::input_circuit::Form as Circuit;
+use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, place_of};
 use crate::ui::{Skin, icons, page};
 
 /// A page of the tab.
@@ -37,10 +38,10 @@ pub(crate) enum Page {
     InputCircuit,
 }
 
-impl Page {
-    pub(crate) const ALL: [Page; 5] = [Page::Scope, Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
+impl TabPage for Page {
+    const ALL: &'static [Page] = &[Page::Scope, Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
 
-    pub(crate) fn icon(self) -> &'static str {
+    fn icon(self) -> &'static str {
         match self {
             Page::Scope => icons::WAVE_SINE,
             Page::Quality => icons::TARGET,
@@ -50,7 +51,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Page::Scope => "page.scope",
             Page::Quality => "page.quality",
@@ -60,7 +61,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn help(self) -> &'static str {
+    fn help(self) -> &'static str {
         match self {
             Page::Scope => "help.scope",
             Page::Quality => "help.quality",
@@ -78,7 +79,7 @@ type Draft = Option<(String, Option<Text>)>;
 #[derive(Default)]
 pub(crate) struct View {
     /// The open page.
-    pub page: Page,
+    page: Page,
     source: source::View,
     periods: Draft,
     corrected: bool,
@@ -88,8 +89,45 @@ pub(crate) struct View {
     input_circuit: Circuit,
 }
 
+/// The view of the Signals tab.
+pub(crate) struct SignalsView;
+
+impl ToolView for SignalsView {
+    fn tab(&self) -> Tab {
+        Tab::Signals
+    }
+
+    fn title(&self) -> &'static str {
+        "tab.signals"
+    }
+
+    fn pages(&self) -> Vec<PageInfo> {
+        infos::<Page>()
+    }
+
+    fn begin(&self) -> Box<dyn ToolPages> {
+        Box::new(View::default())
+    }
+}
+
+impl ToolPages for View {
+    fn page(&self) -> usize {
+        place_of(self.page)
+    }
+
+    fn open(&mut self, page: usize) {
+        if let Some(page) = Page::ALL.get(page) {
+            self.page = *page;
+        }
+    }
+
+    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+        page_ui(ui, skin, &studio.signals, studio.sine_cosine(), self, actions);
+    }
+}
+
 /// Draws the open page; `device` is one that is shown in its own tab, and can be read.
-pub(crate) fn page_ui(
+fn page_ui(
     ui: &mut Ui,
     skin: &Skin,
     signals: &Signals,

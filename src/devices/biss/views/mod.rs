@@ -14,10 +14,11 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio};
+use crate::app::{Action, AnyDevice, Studio, Tab};
 use crate::devices::biss::state::{Action as Biss, Encoder};
 use crate::ui::controls::{enabled_button, paragraph};
-use crate::ui::{Skin, backups, icons, page};
+use crate::ui::device_view::{TabPage, TypedDeviceView};
+use crate::ui::{Skin, backups, icons, page, workspace};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,10 +36,10 @@ pub(crate) enum Page {
     Backups,
 }
 
-impl Page {
-    pub(crate) const ALL: [Page; 5] = [Page::Encoder, Page::Registers, Page::Data, Page::Procedures, Page::Backups];
+impl TabPage for Page {
+    const ALL: &'static [Page] = &[Page::Encoder, Page::Registers, Page::Data, Page::Procedures, Page::Backups];
 
-    pub(crate) fn icon(self) -> &'static str {
+    fn icon(self) -> &'static str {
         match self {
             Page::Encoder => icons::CPU,
             Page::Registers => icons::TABLE,
@@ -48,7 +49,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Page::Encoder => "page.encoder",
             Page::Registers => "page.registers",
@@ -58,7 +59,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn help(self) -> &'static str {
+    fn help(self) -> &'static str {
         match self {
             Page::Encoder => "help.biss_encoder",
             Page::Registers => "help.biss_registers",
@@ -67,7 +68,9 @@ impl Page {
             Page::Backups => "help.backups",
         }
     }
+}
 
+impl Page {
     /// It scrolls by itself; its buttons stay where they are.
     fn is_fixed(self) -> bool {
         matches!(self, Page::Registers | Page::Data)
@@ -77,24 +80,9 @@ impl Page {
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct View {
-    /// The open page.
-    pub page: Page,
-    /// The encoder that the rest is about.
-    serial_number: Option<String>,
     registers: registers::View,
     data: data::View,
     procedures: procedures::View,
-}
-
-impl View {
-    /// What was selected for another encoder is not for this one.
-    pub(crate) fn follow(&mut self, encoder: &Encoder) {
-        let Some(own) = encoder.serial_number() else { return };
-        if self.serial_number.as_deref().is_some_and(|before| before != own) {
-            *self = View { page: self.page, ..View::default() };
-        }
-        self.serial_number = Some(own.to_owned());
-    }
 }
 
 /// Why data were not read, where somebody wanted it.
@@ -128,27 +116,63 @@ fn lead_back_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<A
     }
 }
 
-/// Draws the open page.
-pub(crate) fn page_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    (studio, device): (&Studio, &AnyDevice),
-    encoder: &Encoder,
-    view: &mut View,
-    actions: &mut Vec<Action>,
-) {
-    if view.page.is_fixed() {
-        // Tables fill what there is.
-        let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
-        frame.show(ui, |ui| match view.page {
-            Page::Data => data::page_ui(ui, skin, (studio, device), encoder, &mut view.data, actions),
-            _ => registers::page_ui(ui, skin, encoder, &mut view.registers, actions),
-        });
-        return;
+/// The view of BiSS encoders.
+pub(crate) struct BissView;
+
+impl TypedDeviceView for BissView {
+    type Device = Encoder;
+    type Page = Page;
+    type Memory = View;
+
+    const TAB: Tab = Tab::Biss;
+
+    fn device(any: &AnyDevice) -> Option<&Encoder> {
+        any.get()
     }
-    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| match view.page {
-        Page::Backups => backups::page_ui(ui, skin, device, actions),
-        Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
-        _ => encoder::page_ui(ui, skin, encoder, actions),
-    });
+
+    fn serial_number(encoder: &Encoder) -> Option<&str> {
+        encoder.serial_number()
+    }
+
+    fn is_edited(encoder: &Encoder, page: Page) -> bool {
+        page == Page::Data && encoder.is_dirty()
+    }
+
+    fn page_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        (studio, device): (&Studio, &AnyDevice),
+        encoder: &Encoder,
+        (page, view): (Page, &mut View),
+        actions: &mut Vec<Action>,
+    ) {
+        if page.is_fixed() {
+            // Tables fill what there is.
+            let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
+            frame.show(ui, |ui| match page {
+                Page::Data => data::page_ui(ui, skin, (studio, device), encoder, &mut view.data, actions),
+                _ => registers::page_ui(ui, skin, encoder, &mut view.registers, actions),
+            });
+            return;
+        }
+        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| match page {
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
+            Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
+            _ => encoder::page_ui(ui, skin, encoder, actions),
+        });
+    }
+
+    fn running_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        device: &AnyDevice,
+        encoder: &Encoder,
+        page: Page,
+        actions: &mut Vec<Action>,
+    ) {
+        let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
+        // How far it is stands below, step by step: here, what ending it does.
+        let instead = is_led.then(|| skin.say("guide.cancel_note"));
+        workspace::running_ui(ui, skin, device, instead, actions);
+    }
 }

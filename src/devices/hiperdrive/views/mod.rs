@@ -21,10 +21,11 @@ use std::collections::BTreeMap;
 
 use egui::{ScrollArea, Ui};
 
-use crate::app::{Action, AnyDevice, Studio};
+use crate::app::{Action, AnyDevice, Studio, Tab};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::Unit;
-use crate::ui::{Skin, backups, foot, icons};
+use crate::ui::device_view::{TabPage, TypedDeviceView};
+use crate::ui::{Skin, backups, foot, icons, workspace};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,11 +45,11 @@ pub(crate) enum Page {
     Backups,
 }
 
-impl Page {
-    pub(crate) const ALL: [Page; 6] =
-        [Page::Motion, Page::Parameters, Page::Axis, Page::Diagnosis, Page::Device, Page::Backups];
+impl TabPage for Page {
+    const ALL: &'static [Page] =
+        &[Page::Motion, Page::Parameters, Page::Axis, Page::Diagnosis, Page::Device, Page::Backups];
 
-    pub(crate) fn icon(self) -> &'static str {
+    fn icon(self) -> &'static str {
         match self {
             Page::Motion => icons::GAUGE,
             Page::Parameters => icons::SLIDERS,
@@ -59,7 +60,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Page::Motion => "page.motion",
             Page::Parameters => "page.parameters",
@@ -70,7 +71,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn help(self) -> &'static str {
+    fn help(self) -> &'static str {
         match self {
             Page::Motion => "help.hd_motion",
             Page::Parameters => "help.hd_parameters",
@@ -80,7 +81,9 @@ impl Page {
             Page::Backups => "help.backups",
         }
     }
+}
 
+impl Page {
     /// What is edited here is written from here.
     fn has_foot(self) -> bool {
         self == Page::Parameters
@@ -90,10 +93,6 @@ impl Page {
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct View {
-    /// The open page.
-    pub page: Page,
-    /// The device that the rest is about.
-    serial_number: Option<String>,
     drives: BTreeMap<DriveNumber, DriveEntries>,
     parameters: parameters::View,
     leds: leds::View,
@@ -107,73 +106,94 @@ struct DriveEntries {
     axis: axis::View,
 }
 
-impl View {
-    /// What was typed for another device is not for this one.
-    pub(crate) fn follow(&mut self, unit: &Unit) {
-        let Some(own) = unit.serial_number() else { return };
-        if self.serial_number.as_deref().is_some_and(|before| before != own) {
-            *self = View { page: self.page, ..View::default() };
-        }
-        self.serial_number = Some(own.to_owned());
-    }
-}
+/// The view of HIPERDRIVE drives.
+pub(crate) struct HiperdriveView;
 
-/// Draws the open page.
-pub(crate) fn page_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    (studio, device): (&Studio, &AnyDevice),
-    unit: &Unit,
-    view: &mut View,
-    actions: &mut Vec<Action>,
-) {
-    let narrow = ui.available_width() < 720.0;
-    let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
-    let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
-    let id = egui::Id::unique(unit.session.id);
-    if unit.profile().is_none() {
-        // Stays where it is while the rest scrolls: STOP, and what it is not.
-        egui::Panel::top(id.with("hiperdrive_bar"))
-            .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
-            .show(ui, |ui| bar::bar_ui(ui, skin, studio, unit, actions));
+impl TypedDeviceView for HiperdriveView {
+    type Device = Unit;
+    type Page = Page;
+    type Memory = View;
+
+    const TAB: Tab = Tab::Hiperdrive;
+
+    fn device(any: &AnyDevice) -> Option<&Unit> {
+        any.get()
     }
-    if view.page.has_foot() {
-        egui::Panel::bottom(id.with("hiperdrive_foot"))
-            .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
-            .show_separator_line(false)
-            .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+
+    fn serial_number(unit: &Unit) -> Option<&str> {
+        unit.serial_number()
     }
-    let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
-    let drive = unit.drive();
-    if view.page == Page::Parameters {
-        // A table scrolls by itself.
-        let frame = frame.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
-        frame.show(ui, |ui| parameters::page_ui(ui, skin, unit, &mut view.parameters, actions));
-        return;
+
+    fn is_edited(unit: &Unit, page: Page) -> bool {
+        page == Page::Parameters && unit.is_dirty()
     }
-    ScrollArea::vertical().id_salt((unit.session.id, view.page.word())).auto_shrink(false).show(ui, |ui| {
-        frame.show(ui, |ui| match view.page {
-            // No entry, and nothing that undoes what was typed into it, is another drive's.
-            Page::Motion => {
-                let own = &mut view.drives.entry(drive).or_default().motion;
-                ui.push_id(drive, |ui| motion::page_ui(ui, skin, unit, own, actions));
-            }
-            Page::Parameters => {}
-            Page::Axis => {
-                let own = &mut view.drives.entry(drive).or_default().axis;
-                ui.push_id(drive, |ui| axis::page_ui(ui, skin, unit, own, actions));
-            }
-            Page::Diagnosis => {
-                errors::cards_ui(ui, skin, unit, actions);
-                ui.add_space(skin.space.groups);
-                leds::cards_ui(ui, skin, &mut view.leds);
-            }
-            Page::Device => {
-                device::cards_ui(ui, skin, unit, actions);
-                ui.add_space(skin.space.groups);
-                network::card_ui(ui, skin, unit, &mut view.network, actions);
-            }
-            Page::Backups => backups::page_ui(ui, skin, device, actions),
+
+    fn page_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        (studio, device): (&Studio, &AnyDevice),
+        unit: &Unit,
+        (page, view): (Page, &mut View),
+        actions: &mut Vec<Action>,
+    ) {
+        let narrow = ui.available_width() < 720.0;
+        let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+        let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
+        let id = egui::Id::unique(unit.session.id);
+        if unit.profile().is_none() {
+            // Stays where it is while the rest scrolls: STOP, and what it is not.
+            egui::Panel::top(id.with("hiperdrive_bar"))
+                .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
+                .show(ui, |ui| bar::bar_ui(ui, skin, studio, unit, actions));
+        }
+        if page.has_foot() {
+            egui::Panel::bottom(id.with("hiperdrive_foot"))
+                .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
+                .show_separator_line(false)
+                .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+        }
+        let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
+        let drive = unit.drive();
+        if page == Page::Parameters {
+            // A table scrolls by itself.
+            let frame = frame.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
+            frame.show(ui, |ui| parameters::page_ui(ui, skin, unit, &mut view.parameters, actions));
+            return;
+        }
+        ScrollArea::vertical().id_salt((unit.session.id, page.word())).auto_shrink(false).show(ui, |ui| {
+            frame.show(ui, |ui| match page {
+                // No entry, and nothing that undoes what was typed into it, is another drive's.
+                Page::Motion => {
+                    let own = &mut view.drives.entry(drive).or_default().motion;
+                    ui.push_id(drive, |ui| motion::page_ui(ui, skin, unit, own, actions));
+                }
+                Page::Parameters => {}
+                Page::Axis => {
+                    let own = &mut view.drives.entry(drive).or_default().axis;
+                    ui.push_id(drive, |ui| axis::page_ui(ui, skin, unit, own, actions));
+                }
+                Page::Diagnosis => {
+                    errors::cards_ui(ui, skin, unit, actions);
+                    ui.add_space(skin.space.groups);
+                    leds::cards_ui(ui, skin, &mut view.leds);
+                }
+                Page::Device => {
+                    device::cards_ui(ui, skin, unit, actions);
+                    ui.add_space(skin.space.groups);
+                    network::card_ui(ui, skin, unit, &mut view.network, actions);
+                }
+                Page::Backups => backups::page_ui(ui, skin, device, actions),
+            });
         });
-    });
+    }
+
+    fn running_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, _unit: &Unit, _page: Page, actions: &mut Vec<Action>) {
+        // Below, so that nothing moves away under the finger that holds a drive.
+        if device.running().is_some() && !device.is_reviewing() {
+            egui::Panel::bottom(egui::Id::unique(device.id()).with("hiperdrive_running"))
+                .frame(egui::Frame::NONE.inner_margin(egui::Margin { left: 0, right: 0, top: 0, bottom: 8 }))
+                .show_separator_line(false)
+                .show(ui, |ui| workspace::running_ui(ui, skin, device, None, actions));
+        }
+    }
 }

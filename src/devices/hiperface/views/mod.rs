@@ -11,8 +11,9 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio};
+use crate::app::{Action, AnyDevice, Studio, Tab};
 use crate::devices::hiperface::state::Encoder;
+use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page};
 
 /// A page of the tab.
@@ -33,11 +34,11 @@ pub(crate) enum Page {
     Backups,
 }
 
-impl Page {
-    pub(crate) const ALL: [Page; 6] =
-        [Page::Encoder, Page::Memory, Page::Values, Page::Setup, Page::Commutation, Page::Backups];
+impl TabPage for Page {
+    const ALL: &'static [Page] =
+        &[Page::Encoder, Page::Memory, Page::Values, Page::Setup, Page::Commutation, Page::Backups];
 
-    pub(crate) fn icon(self) -> &'static str {
+    fn icon(self) -> &'static str {
         match self {
             Page::Encoder => icons::CPU,
             Page::Memory => icons::MEMORY,
@@ -48,7 +49,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Page::Encoder => "page.encoder",
             Page::Memory => "page.memory",
@@ -59,7 +60,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn help(self) -> &'static str {
+    fn help(self) -> &'static str {
         match self {
             Page::Encoder => "help.encoder",
             Page::Memory => "help.memory",
@@ -74,50 +75,56 @@ impl Page {
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct View {
-    /// The open page.
-    pub page: Page,
-    /// The encoder that the rest is about.
-    serial_number: Option<String>,
     memory: memory::View,
     values: values::View,
     setup: setup::View,
     check_restart: bool,
 }
 
-impl View {
-    /// What was typed for another encoder is not for this one.
-    pub(crate) fn follow(&mut self, encoder: &Encoder) {
-        let Some(identity) = &encoder.identity else { return };
-        let own = &identity.serial.serial_number;
-        if self.serial_number.as_ref().is_some_and(|before| before != own) {
-            *self = View { page: self.page, ..View::default() };
-        }
-        self.serial_number = Some(own.clone());
-    }
-}
+/// The view of HIPERFACE encoders.
+pub(crate) struct HiperfaceView;
 
-/// Draws the open page.
-pub(crate) fn page_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    (studio, device): (&Studio, &AnyDevice),
-    encoder: &Encoder,
-    view: &mut View,
-    actions: &mut Vec<Action>,
-) {
-    if view.page == Page::Memory {
-        // The editor scrolls by itself; its buttons stay where they are.
-        egui::Frame::NONE
-            .inner_margin(page::around(ui, skin))
-            .show(ui, |ui| memory::page_ui(ui, skin, (studio, device), encoder, &mut view.memory, actions));
-        return;
+impl TypedDeviceView for HiperfaceView {
+    type Device = Encoder;
+    type Page = Page;
+    type Memory = View;
+
+    const TAB: Tab = Tab::Hiperface;
+
+    fn device(any: &AnyDevice) -> Option<&Encoder> {
+        any.get()
     }
-    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| match view.page {
-        Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
-        Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
-        Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
-        Page::Commutation => commutation::page_ui(ui, skin, encoder, actions),
-        Page::Backups => backups::page_ui(ui, skin, device, actions),
-        Page::Memory => {}
-    });
+
+    fn serial_number(encoder: &Encoder) -> Option<&str> {
+        encoder.identity.as_ref().map(|identity| identity.serial.serial_number.as_str())
+    }
+
+    fn is_edited(encoder: &Encoder, page: Page) -> bool {
+        page == Page::Memory && encoder.staged.is_dirty()
+    }
+
+    fn page_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        (studio, device): (&Studio, &AnyDevice),
+        encoder: &Encoder,
+        (page, view): (Page, &mut View),
+        actions: &mut Vec<Action>,
+    ) {
+        if page == Page::Memory {
+            // The editor scrolls by itself; its buttons stay where they are.
+            egui::Frame::NONE
+                .inner_margin(page::around(ui, skin))
+                .show(ui, |ui| memory::page_ui(ui, skin, (studio, device), encoder, &mut view.memory, actions));
+            return;
+        }
+        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| match page {
+            Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
+            Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
+            Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
+            Page::Commutation => commutation::page_ui(ui, skin, encoder, actions),
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
+            Page::Memory => {}
+        });
+    }
 }

@@ -14,8 +14,9 @@ mod widgets;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio};
+use crate::app::{Action, AnyDevice, Studio, Tab};
 use crate::devices::interbus::state::Encoder;
+use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, foot, icons, page};
 
 /// A page of the tab.
@@ -34,10 +35,10 @@ pub(crate) enum Page {
     Backups,
 }
 
-impl Page {
-    pub(crate) const ALL: [Page; 5] = [Page::Encoder, Page::Parameters, Page::Cams, Page::Diagnosis, Page::Backups];
+impl TabPage for Page {
+    const ALL: &'static [Page] = &[Page::Encoder, Page::Parameters, Page::Cams, Page::Diagnosis, Page::Backups];
 
-    pub(crate) fn icon(self) -> &'static str {
+    fn icon(self) -> &'static str {
         match self {
             Page::Encoder => icons::CPU,
             Page::Parameters => icons::SLIDERS,
@@ -47,7 +48,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Page::Encoder => "page.encoder",
             Page::Parameters => "page.parameters",
@@ -57,7 +58,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn help(self) -> &'static str {
+    fn help(self) -> &'static str {
         match self {
             Page::Encoder => "help.ib_encoder",
             Page::Parameters => "help.ib_parameters",
@@ -66,7 +67,9 @@ impl Page {
             Page::Backups => "help.backups",
         }
     }
+}
 
+impl Page {
     /// What is edited here is written from here.
     fn has_foot(self) -> bool {
         matches!(self, Page::Parameters | Page::Cams)
@@ -76,63 +79,74 @@ impl Page {
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct View {
-    /// The open page.
-    pub page: Page,
-    /// The encoder that the rest is about.
-    serial_number: Option<String>,
     parameters: parameters::View,
     cams: cams::View,
     reader: reader::View,
     lamps: lamps::View,
 }
 
-impl View {
-    /// What was typed for another encoder is not for this one.
-    pub(crate) fn follow(&mut self, encoder: &Encoder) {
-        let Some(own) = encoder.serial_number() else { return };
-        if self.serial_number.as_deref().is_some_and(|before| before != own) {
-            *self = View { page: self.page, ..View::default() };
-        }
-        self.serial_number = Some(own.to_owned());
-    }
-}
+/// The view of INTERBUS encoders.
+pub(crate) struct InterbusView;
 
-/// Draws the open page.
-pub(crate) fn page_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    (studio, device): (&Studio, &AnyDevice),
-    encoder: &Encoder,
-    view: &mut View,
-    actions: &mut Vec<Action>,
-) {
-    if view.page.has_foot() {
-        // Stays where it is while the rest scrolls.
-        let around = page::sides(ui, skin);
-        let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
-        egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
-            .frame(egui::Frame::NONE.inner_margin(margin))
-            .show_separator_line(false)
-            .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+impl TypedDeviceView for InterbusView {
+    type Device = Encoder;
+    type Page = Page;
+    type Memory = View;
+
+    const TAB: Tab = Tab::Interbus;
+
+    fn device(any: &AnyDevice) -> Option<&Encoder> {
+        any.get()
     }
-    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| {
-        if view.page != Page::Backups {
-            standstill::bar_ui(ui, skin, encoder, actions);
+
+    fn serial_number(encoder: &Encoder) -> Option<&str> {
+        encoder.serial_number()
+    }
+
+    fn is_edited(encoder: &Encoder, page: Page) -> bool {
+        match page {
+            Page::Parameters => encoder.edits_parameters(),
+            Page::Cams => encoder.edits_cams(),
+            _ => false,
         }
-        let shown = (view.page == Page::Cams).then(|| view.cams.shown());
-        marks::marks_ui(ui, skin, encoder, shown);
-        match view.page {
-            Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
-            Page::Parameters => parameters::page_ui(ui, skin, encoder, &mut view.parameters, actions),
-            Page::Cams => cams::page_ui(ui, skin, encoder, &mut view.cams, actions),
-            Page::Diagnosis => {
-                read_outs::cards_ui(ui, skin, encoder, actions);
-                ui.add_space(skin.space.groups);
-                reader::card_ui(ui, skin, &mut view.reader);
-                ui.add_space(skin.space.groups);
-                lamps::cards_ui(ui, skin, &mut view.lamps);
+    }
+
+    fn page_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        (studio, device): (&Studio, &AnyDevice),
+        encoder: &Encoder,
+        (page, view): (Page, &mut View),
+        actions: &mut Vec<Action>,
+    ) {
+        if page.has_foot() {
+            // Stays where it is while the rest scrolls.
+            let around = page::sides(ui, skin);
+            let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
+            egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
+                .frame(egui::Frame::NONE.inner_margin(margin))
+                .show_separator_line(false)
+                .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+        }
+        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| {
+            if page != Page::Backups {
+                standstill::bar_ui(ui, skin, encoder, actions);
             }
-            Page::Backups => backups::page_ui(ui, skin, device, actions),
-        }
-    });
+            let shown = (page == Page::Cams).then(|| view.cams.shown());
+            marks::marks_ui(ui, skin, encoder, shown);
+            match page {
+                Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
+                Page::Parameters => parameters::page_ui(ui, skin, encoder, &mut view.parameters, actions),
+                Page::Cams => cams::page_ui(ui, skin, encoder, &mut view.cams, actions),
+                Page::Diagnosis => {
+                    read_outs::cards_ui(ui, skin, encoder, actions);
+                    ui.add_space(skin.space.groups);
+                    reader::card_ui(ui, skin, &mut view.reader);
+                    ui.add_space(skin.space.groups);
+                    lamps::cards_ui(ui, skin, &mut view.lamps);
+                }
+                Page::Backups => backups::page_ui(ui, skin, device, actions),
+            }
+        });
+    }
 }

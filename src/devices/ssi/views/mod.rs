@@ -14,8 +14,10 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio};
+use crate::app::{Action, AnyDevice, Studio, Tab};
 use crate::devices::ssi::state::Encoder;
+use crate::ui::controls::button;
+use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, icons, page};
 
 /// A page of the tab.
@@ -34,10 +36,10 @@ pub(crate) enum Page {
     Encoder,
 }
 
-impl Page {
-    pub(crate) const ALL: [Page; 5] = [Page::Frame, Page::Timing, Page::Find, Page::Export, Page::Encoder];
+impl TabPage for Page {
+    const ALL: &'static [Page] = &[Page::Frame, Page::Timing, Page::Find, Page::Export, Page::Encoder];
 
-    pub(crate) fn icon(self) -> &'static str {
+    fn icon(self) -> &'static str {
         match self {
             Page::Frame => icons::TABLE,
             Page::Timing => icons::CLOCK_COUNTER_CLOCKWISE,
@@ -47,7 +49,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Page::Frame => "page.frame",
             Page::Timing => "page.timing",
@@ -57,7 +59,7 @@ impl Page {
         }
     }
 
-    pub(crate) fn help(self) -> &'static str {
+    fn help(self) -> &'static str {
         match self {
             Page::Frame => "help.ssi_frame",
             Page::Timing => "help.ssi_timing",
@@ -71,8 +73,6 @@ impl Page {
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct View {
-    /// The open page.
-    pub page: Page,
     form: form::View,
     frame: frame::View,
     trial: trial::View,
@@ -80,20 +80,48 @@ pub(crate) struct View {
     find: find::View,
 }
 
-/// Draws the open page.
-pub(crate) fn page_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    (studio, device): (&Studio, &AnyDevice),
-    encoder: &Encoder,
-    view: &mut View,
-    actions: &mut Vec<Action>,
-) {
-    page::scrolling(ui, skin, (encoder.session.id, view.page.word()), |ui| match view.page {
-        Page::Frame => frame::page_ui(ui, skin, (studio, device), encoder, view, actions),
-        Page::Timing => timing::page_ui(ui, skin, encoder, &mut view.form, actions),
-        Page::Find => find::page_ui(ui, skin, encoder, &mut view.find, actions),
-        Page::Export => export::page_ui(ui, skin, encoder, &mut view.export, actions),
-        Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
-    });
+/// The view of SSI encoders.
+pub(crate) struct SsiView;
+
+impl TypedDeviceView for SsiView {
+    type Device = Encoder;
+    type Page = Page;
+    type Memory = View;
+
+    const TAB: Tab = Tab::Ssi;
+
+    fn device(any: &AnyDevice) -> Option<&Encoder> {
+        any.get()
+    }
+
+    fn is_edited(encoder: &Encoder, page: Page) -> bool {
+        page == Page::Frame && encoder.is_dirty()
+    }
+
+    fn page_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        (studio, device): (&Studio, &AnyDevice),
+        encoder: &Encoder,
+        (page, view): (Page, &mut View),
+        actions: &mut Vec<Action>,
+    ) {
+        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| match page {
+            Page::Frame => frame::page_ui(ui, skin, (studio, device), encoder, view, actions),
+            Page::Timing => timing::page_ui(ui, skin, encoder, &mut view.form, actions),
+            Page::Find => find::page_ui(ui, skin, encoder, &mut view.find, actions),
+            Page::Export => export::page_ui(ui, skin, encoder, &mut view.export, actions),
+            Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
+        });
+    }
+
+    /// A transfer is over at once.
+    fn running_ui(_: &mut Ui, _: &Skin, _: &AnyDevice, _: &Encoder, _: Page, _: &mut Vec<Action>) {}
+
+    fn empty_ui(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+        // A layout needs no device.
+        if button(ui, icons::PLUS, &skin.say("ssi.new_layout")).clicked() {
+            actions.push(Action::NewLayout);
+        }
+    }
 }

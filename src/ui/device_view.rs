@@ -1,0 +1,273 @@
+//! The view of a device: typed in the device's folder, object-safe for the window. One adapter stands between the two.
+
+use egui::Ui;
+
+use super::{Skin, workspace};
+use crate::app::{Action, AnyDevice, Studio, Tab};
+
+/// A page of a tab, as the navigation and the help show it. `word` and `help` name texts of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PageInfo {
+    /// The icon before the word.
+    pub icon: &'static str,
+    /// The name of the page.
+    pub word: &'static str,
+    /// The help for the page.
+    pub help: &'static str,
+}
+
+/// The pages of a tab.
+pub trait TabPage: Copy + PartialEq + Default + 'static {
+    /// All pages, in the order of the navigation.
+    const ALL: &'static [Self];
+
+    /// Returns the icon of the page.
+    fn icon(self) -> &'static str;
+
+    /// Returns the name of the page, as the table of texts calls it.
+    fn word(self) -> &'static str;
+
+    /// Returns the help for the page, as the table of texts calls it.
+    fn help(self) -> &'static str;
+}
+
+/// Returns all pages of a tab.
+pub(crate) fn infos<P: TabPage>() -> Vec<PageInfo> {
+    P::ALL.iter().map(|page| PageInfo { icon: page.icon(), word: page.word(), help: page.help() }).collect()
+}
+
+/// Returns the place of a page among all of its tab.
+pub(crate) fn place_of<P: TabPage>(page: P) -> usize {
+    P::ALL.iter().position(|own| *own == page).unwrap_or_default()
+}
+
+/// The view of a kind of device, as the device implements it.
+pub trait TypedDeviceView: Sync + 'static {
+    /// The state of the device.
+    type Device: 'static;
+    /// The pages of the tab.
+    type Page: TabPage;
+    /// The text buffers and selections of one session; they are dropped when another device answers.
+    type Memory: Default + 'static;
+
+    /// The tab that shows the device.
+    const TAB: Tab;
+
+    /// Returns the state of the device; `None` for another kind.
+    fn device(any: &AnyDevice) -> Option<&Self::Device>;
+
+    /// Returns what tells one device from another of its kind; `None` where that is unknown or makes no difference.
+    fn serial_number(_device: &Self::Device) -> Option<&str> {
+        None
+    }
+
+    /// Returns whether a page holds edits that are not written.
+    fn is_edited(_device: &Self::Device, _page: Self::Page) -> bool {
+        false
+    }
+
+    /// Draws the open page.
+    fn page_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        shared: (&Studio, &AnyDevice),
+        device: &Self::Device,
+        open: (Self::Page, &mut Self::Memory),
+        actions: &mut Vec<Action>,
+    );
+
+    /// Draws the progress of the running job, apart from the page.
+    fn running_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        any: &AnyDevice,
+        _device: &Self::Device,
+        _page: Self::Page,
+        actions: &mut Vec<Action>,
+    ) {
+        workspace::running_ui(ui, skin, any, None, actions);
+    }
+
+    /// Draws what the tab offers without a device, below the buttons of every kind.
+    fn empty_ui(_ui: &mut Ui, _skin: &Skin, _actions: &mut Vec<Action>) {}
+}
+
+/// The view of a kind of device, as the window uses it.
+pub trait DeviceView: Sync {
+    /// Returns the tab that shows the device.
+    fn tab(&self) -> Tab;
+
+    /// Returns all pages, in the order of the navigation.
+    fn pages(&self) -> Vec<PageInfo>;
+
+    /// Begins the view of a session.
+    fn session(&self) -> Box<dyn SessionView>;
+
+    /// Draws what the tab offers without a device, below the buttons of every kind.
+    fn empty_ui(&self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>);
+}
+
+/// The view of one session: its open page, text buffers and selections. A device of another kind has no edits here and
+/// is not drawn.
+pub trait SessionView {
+    /// Returns the place of the open page.
+    fn page(&self) -> usize;
+
+    /// Opens a page.
+    fn open(&mut self, page: usize);
+
+    /// Returns whether a page holds edits that are not written.
+    fn is_edited(&self, device: &AnyDevice, page: usize) -> bool;
+
+    /// Draws the open page.
+    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>);
+
+    /// Draws the progress of the running job, apart from the page.
+    fn running_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>);
+}
+
+impl<V: TypedDeviceView> DeviceView for V {
+    fn tab(&self) -> Tab {
+        V::TAB
+    }
+
+    fn pages(&self) -> Vec<PageInfo> {
+        infos::<V::Page>()
+    }
+
+    fn session(&self) -> Box<dyn SessionView> {
+        let (page, memory) = (V::Page::default(), V::Memory::default());
+        Box::new(Session::<V> { page, serial_number: None, memory })
+    }
+
+    fn empty_ui(&self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+        V::empty_ui(ui, skin, actions);
+    }
+}
+
+/// The adapter from [`TypedDeviceView`] to [`SessionView`].
+struct Session<V: TypedDeviceView> {
+    page: V::Page,
+    /// The device that the memory is about.
+    serial_number: Option<String>,
+    memory: V::Memory,
+}
+
+impl<V: TypedDeviceView> Session<V> {
+    /// Drops what was typed and selected for another device.
+    fn follow(&mut self, device: &V::Device) {
+        let Some(own) = V::serial_number(device) else { return };
+        if self.serial_number.as_deref() == Some(own) {
+            return;
+        }
+        if self.serial_number.replace(own.to_owned()).is_some() {
+            self.memory = V::Memory::default();
+        }
+    }
+}
+
+impl<V: TypedDeviceView> SessionView for Session<V> {
+    fn page(&self) -> usize {
+        place_of(self.page)
+    }
+
+    fn open(&mut self, page: usize) {
+        if let Some(page) = V::Page::ALL.get(page) {
+            self.page = *page;
+        }
+    }
+
+    fn is_edited(&self, device: &AnyDevice, page: usize) -> bool {
+        let (device, page) = (V::device(device), V::Page::ALL.get(page));
+        device.zip(page).is_some_and(|(device, page)| V::is_edited(device, *page))
+    }
+
+    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>) {
+        let Some(device) = V::device(shared.1) else { return };
+        self.follow(device);
+        V::page_ui(ui, skin, shared, device, (self.page, &mut self.memory), actions);
+    }
+
+    fn running_ui(&self, ui: &mut Ui, skin: &Skin, any: &AnyDevice, actions: &mut Vec<Action>) {
+        let Some(device) = V::device(any) else { return };
+        V::running_ui(ui, skin, any, device, self.page, actions);
+    }
+}
+
+/// The view of a tab without devices.
+pub trait ToolView: Sync {
+    /// Returns the tab.
+    fn tab(&self) -> Tab;
+
+    /// Returns the name of the tab, as the table of texts calls it.
+    fn title(&self) -> &'static str;
+
+    /// Returns all pages, in the order of the navigation.
+    fn pages(&self) -> Vec<PageInfo>;
+
+    /// Begins the view of a window.
+    fn begin(&self) -> Box<dyn ToolPages>;
+}
+
+/// The view of a tab without devices in one window: its open page, text buffers and selections.
+pub trait ToolPages {
+    /// Returns the place of the open page.
+    fn page(&self) -> usize;
+
+    /// Opens a page.
+    fn open(&mut self, page: usize);
+
+    /// Draws the open page.
+    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>);
+}
+
+/// The views of all tabs, in the order of the navigation: devices first.
+#[derive(Clone, Copy)]
+pub struct TabViews {
+    devices: &'static [&'static dyn DeviceView],
+    tools: &'static [&'static dyn ToolView],
+}
+
+impl TabViews {
+    /// A list of views, each for a tab of its own.
+    pub const fn new(devices: &'static [&'static dyn DeviceView], tools: &'static [&'static dyn ToolView]) -> Self {
+        TabViews { devices, tools }
+    }
+
+    /// Returns the pages of a tab in their order, as the table of texts calls them.
+    pub fn page_words(self, tab: Tab) -> Vec<&'static str> {
+        self.pages(tab).into_iter().map(|page| page.word).collect()
+    }
+
+    /// Returns the pages of a tab in their order.
+    pub(crate) fn pages(self, tab: Tab) -> Vec<PageInfo> {
+        let of_device = self.device(tab).map(DeviceView::pages);
+        of_device.or_else(|| self.tool(tab).map(ToolView::pages)).unwrap_or_default()
+    }
+
+    /// Returns all tabs in their order.
+    pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
+        self.devices.iter().map(|view| view.tab()).chain(self.tools.iter().map(|view| view.tab()))
+    }
+
+    /// Returns the name of a tab.
+    pub(crate) fn title(self, skin: &Skin, tab: Tab) -> String {
+        let title = self.tool(tab).map(|view| skin.say(view.title()));
+        title.or_else(|| tab.bus().map(str::to_owned)).unwrap_or_default()
+    }
+
+    /// Returns the view of the device that a tab shows.
+    pub(crate) fn device(self, tab: Tab) -> Option<&'static dyn DeviceView> {
+        self.devices.iter().copied().find(|view| view.tab() == tab)
+    }
+
+    /// Returns the tabs without devices in their order.
+    pub(crate) fn tools(self) -> &'static [&'static dyn ToolView] {
+        self.tools
+    }
+
+    /// Returns the view of a tab without devices.
+    fn tool(self, tab: Tab) -> Option<&'static dyn ToolView> {
+        self.tools.iter().copied().find(|view| view.tab() == tab)
+    }
+}

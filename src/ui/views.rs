@@ -1,0 +1,76 @@
+//! The memory of the views while the window is open: text buffers and selections, nothing of the state.
+
+use std::collections::BTreeMap;
+
+use super::device_view::{PageInfo, SessionView, TabViews, ToolPages};
+use super::dialogs::{ConnectView, FileView};
+use super::plot;
+use crate::app::{AnyDevice, SessionId, Studio, Tab};
+
+/// The memory of the views.
+pub struct Views {
+    pub(super) tabs: TabViews,
+    sessions: BTreeMap<SessionId, Box<dyn SessionView>>,
+    tools: Vec<(Tab, Box<dyn ToolPages>)>,
+    pub(super) connect: ConnectView,
+    pub(super) file: Option<FileView>,
+    pub(super) about: bool,
+    pub(super) help: bool,
+    /// The plot of the encoder that is shown.
+    pub(super) plot: plot::View,
+    /// The analogue channel that is typed, to be watched.
+    pub(super) channel: String,
+    /// Microseconds from one reading of the position to the next.
+    pub(super) rate: u64,
+}
+
+impl Views {
+    /// Begins the memory of a window with these tabs.
+    pub(super) fn new(tabs: TabViews) -> Self {
+        Views {
+            tabs,
+            sessions: BTreeMap::new(),
+            tools: tabs.tools().iter().map(|view| (view.tab(), view.begin())).collect(),
+            connect: ConnectView::default(),
+            file: None,
+            about: false,
+            help: false,
+            plot: plot::View::in_panel(),
+            channel: String::new(),
+            rate: 50_000,
+        }
+    }
+
+    /// Returns the view of a session; `None` where no tab shows this kind of device.
+    pub(super) fn session(&mut self, device: &AnyDevice) -> Option<&mut dyn SessionView> {
+        let view = self.tabs.device(device.tab())?;
+        Some(self.sessions.entry(device.id()).or_insert_with(|| view.session()).as_mut())
+    }
+
+    /// Returns the view of a tab without devices; `None` for a tab of devices.
+    pub(super) fn tool(&mut self, tab: Tab) -> Option<&mut dyn ToolPages> {
+        let (_, tool) = self.tools.iter_mut().find(|(own, _)| *own == tab)?;
+        Some(tool.as_mut())
+    }
+
+    /// Returns the open page of the open tab; of a tab of devices without one, the first page.
+    pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
+        let tab = studio.settings.tab;
+        let page = match (self.tool(tab), shown_in(studio, tab)) {
+            (Some(tool), _) => tool.page(),
+            (None, Some(device)) => self.session(device)?.page(),
+            (None, None) => 0,
+        };
+        self.tabs.pages(tab).get(page).copied()
+    }
+
+    /// Forgets the sessions that were closed.
+    pub(super) fn forget_closed(&mut self, studio: &Studio) {
+        self.sessions.retain(|id, _| studio.device(*id).is_some());
+    }
+}
+
+/// Returns the device that a tab shows, where it is the open tab.
+pub(super) fn shown_in(studio: &Studio, tab: Tab) -> Option<&AnyDevice> {
+    studio.shown().filter(|device| device.tab() == tab)
+}
