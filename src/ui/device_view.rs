@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::{Skin, workspace};
-use crate::app::{Action, AnyDevice, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Tab, Text};
 
 /// A page of a tab, as the navigation and the help show it. `word` and `help` name texts of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +52,8 @@ pub trait TypedDeviceView: Sync + 'static {
 
     /// The tab that shows the device.
     const TAB: Tab;
+    /// Whether the keys of undo and redo act on the edits of the device: not where an editor has steps of its own.
+    const HAS_UNDO_KEYS: bool;
 
     /// Returns the state of the device; `None` for another kind.
     fn device(any: &AnyDevice) -> Option<&Self::Device>;
@@ -88,17 +90,44 @@ pub trait TypedDeviceView: Sync + 'static {
         workspace::running_ui(ui, skin, any, None, actions);
     }
 
+    /// Draws the position large, in this ink, and the numbers beside it.
+    fn value_ui(ui: &mut Ui, skin: &Skin, device: &Self::Device, ink: Rgb);
+
+    /// Draws the menu of the values that are read beside the position, where the device has any.
+    fn watch_menu(
+        _ui: &mut Ui,
+        _skin: &Skin,
+        _device: &Self::Device,
+        _memory: &mut Self::Memory,
+        _actions: &mut Vec<Action>,
+    ) {
+    }
+
+    /// Returns what the header says while the device moves; `None` while it does not.
+    fn motion(_device: &Self::Device) -> Option<Text> {
+        None
+    }
+
     /// Draws what the tab offers without a device, below the buttons of every kind.
     fn empty_ui(_ui: &mut Ui, _skin: &Skin, _actions: &mut Vec<Action>) {}
 }
 
-/// The view of a kind of device, as the window uses it.
+/// The view of a kind of device, as the window uses it. A device of another kind is not drawn, and has no edits here.
 pub trait DeviceView: Sync {
     /// Returns the tab that shows the device.
     fn tab(&self) -> Tab;
 
     /// Returns all pages, in the order of the navigation.
     fn pages(&self) -> Vec<PageInfo>;
+
+    /// Returns whether the keys of undo and redo act on the edits of the device.
+    fn has_undo_keys(&self) -> bool;
+
+    /// Returns what the header says while the device moves; `None` while it does not.
+    fn motion(&self, device: &AnyDevice) -> Option<Text>;
+
+    /// Draws the position large, in this ink, and the numbers beside it.
+    fn value_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, ink: Rgb);
 
     /// Begins the view of a session.
     fn session(&self) -> Box<dyn SessionView>;
@@ -107,8 +136,7 @@ pub trait DeviceView: Sync {
     fn empty_ui(&self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>);
 }
 
-/// The view of one session: its open page, text buffers and selections. A device of another kind has no edits here and
-/// is not drawn.
+/// The view of one session: its open page, text buffers and selections.
 pub trait SessionView {
     /// Returns the place of the open page.
     fn page(&self) -> usize;
@@ -124,6 +152,9 @@ pub trait SessionView {
 
     /// Draws the progress of the running job, apart from the page.
     fn running_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>);
+
+    /// Draws the menu of the values that are read beside the position, where the device has any.
+    fn watch_menu(&mut self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>);
 }
 
 impl<V: TypedDeviceView> DeviceView for V {
@@ -133,6 +164,20 @@ impl<V: TypedDeviceView> DeviceView for V {
 
     fn pages(&self) -> Vec<PageInfo> {
         infos::<V::Page>()
+    }
+
+    fn has_undo_keys(&self) -> bool {
+        V::HAS_UNDO_KEYS
+    }
+
+    fn motion(&self, device: &AnyDevice) -> Option<Text> {
+        V::device(device).and_then(V::motion)
+    }
+
+    fn value_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, ink: Rgb) {
+        if let Some(device) = V::device(device) {
+            V::value_ui(ui, skin, device, ink);
+        }
     }
 
     fn session(&self) -> Box<dyn SessionView> {
@@ -191,6 +236,12 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
     fn running_ui(&self, ui: &mut Ui, skin: &Skin, any: &AnyDevice, actions: &mut Vec<Action>) {
         let Some(device) = V::device(any) else { return };
         V::running_ui(ui, skin, any, device, self.page, actions);
+    }
+
+    fn watch_menu(&mut self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+        let Some(device) = V::device(device) else { return };
+        self.follow(device);
+        V::watch_menu(ui, skin, device, &mut self.memory, actions);
     }
 }
 

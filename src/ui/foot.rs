@@ -6,13 +6,28 @@ use egui::{RichText, Ui, WidgetInfo};
 use super::controls::{enabled_button, icon_button, name, primary};
 use super::{Skin, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, Studio, Tab, Text, Wish};
+use crate::app::{Action, AnyDevice, Studio, Text, Wish};
 
 /// Width below which not all buttons of a profile, or those of a device and the count of edits, have room for their words.
 const NARROW: f32 = 660.0;
 
+/// What is counted as edits on a page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Edited {
+    /// Bytes of a memory.
+    Bytes,
+    /// Values with a name.
+    Values,
+}
+
 /// Draws the foot.
-pub(crate) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+pub(crate) fn foot_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    (studio, device): (&Studio, &AnyDevice),
+    edited: Edited,
+    actions: &mut Vec<Action>,
+) {
     ui.add_space(skin.space.between);
     let dirty = device.is_dirty();
     let width = ui.available_width();
@@ -43,17 +58,15 @@ pub(crate) fn foot_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDev
             }
             if dirty {
                 let count = device.edits();
-                // What is edited of an INTERBUS encoder are values, of others bytes.
-                let are_values = matches!(device.tab(), Tab::Interbus | Tab::Hiperdrive);
-                let text = Text::new(match (device.source(), count, are_values) {
-                    (Source::Link(_), 1, false) => "memory.edited_one",
-                    (Source::Link(_), _, false) => "memory.edited",
-                    (Source::File { .. } | Source::New { .. }, 1, false) => "memory.unsaved_one",
-                    (Source::File { .. } | Source::New { .. }, _, false) => "memory.unsaved",
-                    (Source::Link(_), 1, true) => "values.edited_one",
-                    (Source::Link(_), _, true) => "values.edited",
-                    (Source::File { .. } | Source::New { .. }, 1, true) => "values.unsaved_one",
-                    (Source::File { .. } | Source::New { .. }, _, true) => "values.unsaved",
+                let text = Text::new(match (device.source(), count, edited) {
+                    (Source::Link(_), 1, Edited::Bytes) => "memory.edited_one",
+                    (Source::Link(_), _, Edited::Bytes) => "memory.edited",
+                    (Source::File { .. } | Source::New { .. }, 1, Edited::Bytes) => "memory.unsaved_one",
+                    (Source::File { .. } | Source::New { .. }, _, Edited::Bytes) => "memory.unsaved",
+                    (Source::Link(_), 1, Edited::Values) => "values.edited_one",
+                    (Source::Link(_), _, Edited::Values) => "values.edited",
+                    (Source::File { .. } | Source::New { .. }, 1, Edited::Values) => "values.unsaved_one",
+                    (Source::File { .. } | Source::New { .. }, _, Edited::Values) => "values.unsaved",
                 })
                 .with("count", count);
                 edits(ui, skin, count, &skin.words(&text));

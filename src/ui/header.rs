@@ -9,7 +9,6 @@ use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme};
-use crate::devices::hiperdrive::state::Unit;
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;
@@ -19,7 +18,8 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
     ui.horizontal_centered(|ui| {
         sessions(ui, skin, studio, actions);
         if let Some(device) = studio.shown() {
-            status(ui, skin, device);
+            let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
+            status(ui, skin, device, motion);
         }
         // Drawn from left to right, as the keyboard goes through it; how wide it is is known from the picture before.
         let width_id = ui.scope_id().with("tools");
@@ -157,39 +157,28 @@ fn phase_dot(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
 }
 
 /// *virtual*, *offline*, *connected*, *moving*, *lost*: each with a word.
-fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
+fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice, motion: Option<Text>) {
     let palette = skin.palette;
     if device.is_virtual() {
         badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
     }
     phase_dot(ui, skin, device);
-    let (id, colour) = match device.phase() {
-        Phase::Connected if device.get::<Unit>().is_some_and(Unit::is_moving) => ("shell.moving", palette.bad),
-        Phase::Connected if device.is_writing() => ("shell.writing", palette.accent),
-        Phase::Connected => ("shell.connected", palette.good),
-        Phase::Opening => ("shell.opening", palette.accent),
-        Phase::Lost(_) => ("shell.lost", palette.bad),
-        Phase::Silent(_) => ("shell.silent", palette.bad),
-        Phase::Offline if is_read_only(device) => ("shell.read_only", palette.warn),
-        Phase::Offline => ("shell.offline", palette.muted),
+    let (text, colour) = match (device.phase(), motion) {
+        (Phase::Connected, Some(motion)) => (motion, palette.bad),
+        (Phase::Connected, None) if device.is_writing() => (Text::new("shell.writing"), palette.accent),
+        (Phase::Connected, None) => (Text::new("shell.connected"), palette.good),
+        (Phase::Opening, _) => (Text::new("shell.opening"), palette.accent),
+        (Phase::Lost(_), _) => (Text::new("shell.lost"), palette.bad),
+        (Phase::Silent(_), _) => (Text::new("shell.silent"), palette.bad),
+        (Phase::Offline, _) if is_read_only(device) => (Text::new("shell.read_only"), palette.warn),
+        (Phase::Offline, _) => (Text::new("shell.offline"), palette.muted),
     };
-    let moving = device.get::<Unit>().filter(|unit| id == "shell.moving" && unit.drives().len() > 1);
-    let drives: Vec<String> = moving.map(moving_drives).unwrap_or_default();
-    let words = if drives.is_empty() {
-        skin.say(id)
-    } else {
-        skin.words(&Text::new("shell.moving_drives").with("drives", drives.join(", ")))
-    };
-    ui.label(RichText::new(words).color(colour));
+    ui.label(RichText::new(skin.words(&text)).color(colour));
 }
 
 /// A profile of a newer schema, which is neither saved nor written.
 fn is_read_only(device: &AnyDevice) -> bool {
     matches!(device.source(), Source::File { document, .. } if document.is_newer())
-}
-
-fn moving_drives(unit: &Unit) -> Vec<String> {
-    unit.moving_drives().into_iter().map(|drive| drive.get().to_string()).collect()
 }
 
 fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {

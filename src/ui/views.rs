@@ -18,8 +18,6 @@ pub struct Views {
     pub(super) help: bool,
     /// The plot of the encoder that is shown.
     pub(super) plot: plot::View,
-    /// The analogue channel that is typed, to be watched.
-    pub(super) channel: String,
     /// Microseconds from one reading of the position to the next.
     pub(super) rate: u64,
 }
@@ -36,7 +34,6 @@ impl Views {
             about: false,
             help: false,
             plot: plot::View::in_panel(),
-            channel: String::new(),
             rate: 50_000,
         }
     }

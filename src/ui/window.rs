@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Key, Modifiers, Panel, Ui};
 
-use super::device_view::TabViews;
+use super::device_view::{DeviceView, TabViews};
 use super::dialogs::{self, FileView};
 use super::docks::Docks;
 use super::keys::Keys;
@@ -12,7 +12,7 @@ use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
 use super::{Skin, Views, header, review, stopping};
-use crate::app::{Action, AnyDevice, Look, Severity, Studio, Tab, Wish};
+use crate::app::{Action, AnyDevice, Look, Severity, Studio, Wish};
 
 /// The window.
 pub struct Window {
@@ -239,7 +239,8 @@ impl Window {
             keys.push((Modifiers::COMMAND, Key::S, Action::Save(device.id())));
             keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
             // A text that is typed has steps of its own, and so has the hex editor. A boundary that was just moved has none.
-            if matches!(device.tab(), Tab::Ssi | Tab::Interbus | Tab::Hiperdrive) && !ctx.text_edit_focused() {
+            let view = self.views.tabs.device(device.tab());
+            if view.is_some_and(DeviceView::has_undo_keys) && !ctx.text_edit_focused() {
                 keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.wish(Wish::Redo)));
                 keys.push((Modifiers::COMMAND, Key::Z, device.wish(Wish::Undo)));
                 keys.push((Modifiers::COMMAND, Key::Y, device.wish(Wish::Redo)));

@@ -24,8 +24,6 @@ pub(crate) const KNOWS_A_DEVICE: &[&str] = &[
     "src/cli/mod.rs",
     "src/sim/at_adapter.rs",
     "src/ui/dialogs/connect.rs",
-    "src/ui/header.rs",
-    "src/ui/panels/live.rs",
 ];
 
 /// A bus, or the Signals tab, outside of them and of the devices on them.

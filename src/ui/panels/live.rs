@@ -7,11 +7,6 @@ use egui::{RichText, Ui};
 use super::nothing;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Desk, Rgb, Studio, Text, Wish};
-use crate::devices::biss::views as biss;
-use crate::devices::hiperdrive::views as hiperdrive;
-use crate::devices::hiperface::views as hiperface;
-use crate::devices::interbus::views as interbus;
-use crate::devices::ssi::views as ssi;
 use crate::ui::controls::{choice, enabled_button, icon_button};
 use crate::ui::page::apart;
 use crate::ui::{Skin, Views, icons, plot};
@@ -38,16 +33,8 @@ pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &
     };
     let paused = is_paused(ui, device);
     let ink = if device.is_polling() && !paused { skin.palette.text } else { skin.palette.muted };
-    if let Some(encoder) = device.get() {
-        hiperface::live::value_ui(ui, skin, encoder, ink);
-    } else if let Some(encoder) = device.get() {
-        biss::live::value_ui(ui, skin, encoder, ink);
-    } else if let Some(encoder) = device.get() {
-        ssi::live::value_ui(ui, skin, encoder, ink);
-    } else if let Some(encoder) = device.get() {
-        interbus::live::value_ui(ui, skin, encoder, ink);
-    } else if let Some(unit) = device.get() {
-        hiperdrive::live::value_ui(ui, skin, unit, ink);
+    if let Some(view) = views.tabs.device(device.tab()) {
+        view.value_ui(ui, skin, device, ink);
     }
     if paused {
         ui.label(skin.caption(skin.say("live.paused_by_job")));
@@ -109,11 +96,8 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
         if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
             actions.push(device.wish(Wish::ReadPosition));
         }
-        // Other kinds have no other values beside the position.
-        if let Some(encoder) = device.get() {
-            hiperface::live::watch_menu(ui, skin, encoder, &mut views.channel, actions);
-        } else if let Some(encoder) = device.get() {
-            biss::live::watch_menu(ui, skin, encoder, actions);
+        if let Some(session) = views.session(device) {
+            session.watch_menu(ui, skin, device, actions);
         }
         if choice(ui, &skin.say("live.rate"), &mut rate, rates) {
             views.rate = rate;

@@ -32,7 +32,7 @@ pub(super) fn page_ui(
         return;
     };
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        foot::foot_ui(ui, skin, studio, device, actions);
+        foot::foot_ui(ui, skin, (studio, device), foot::Edited::Bytes, actions);
     });
     let shown = encoder.shown(area);
     ui.horizontal_wrapped(|ui| {

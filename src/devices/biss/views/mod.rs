@@ -4,7 +4,7 @@ pub(crate) mod connect_form;
 mod data;
 mod encoder;
 mod frame;
-pub(crate) mod live;
+mod live;
 mod motor;
 mod procedures;
 mod registers;
@@ -14,7 +14,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
 use crate::devices::biss::state::{Action as Biss, Encoder};
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{TabPage, TypedDeviceView};
@@ -125,6 +125,7 @@ impl TypedDeviceView for BissView {
     type Memory = View;
 
     const TAB: Tab = Tab::Biss;
+    const HAS_UNDO_KEYS: bool = false;
 
     fn device(any: &AnyDevice) -> Option<&Encoder> {
         any.get()
@@ -174,5 +175,13 @@ impl TypedDeviceView for BissView {
         // How far it is stands below, step by step: here, what ending it does.
         let instead = is_led.then(|| skin.say("guide.cancel_note"));
         workspace::running_ui(ui, skin, device, instead, actions);
+    }
+
+    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, skin, encoder, ink);
+    }
+
+    fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, _view: &mut View, actions: &mut Vec<Action>) {
+        live::watch_menu(ui, skin, encoder, actions);
     }
 }

@@ -9,7 +9,7 @@ mod errors;
 mod figures;
 mod jog;
 mod leds;
-pub(crate) mod live;
+mod live;
 mod motion;
 mod network;
 pub(crate) mod outside;
@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 
 use egui::{ScrollArea, Ui};
 
-use crate::app::{Action, AnyDevice, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Tab, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::Unit;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
@@ -115,6 +115,7 @@ impl TypedDeviceView for HiperdriveView {
     type Memory = View;
 
     const TAB: Tab = Tab::Hiperdrive;
+    const HAS_UNDO_KEYS: bool = true;
 
     fn device(any: &AnyDevice) -> Option<&Unit> {
         any.get()
@@ -150,7 +151,7 @@ impl TypedDeviceView for HiperdriveView {
             egui::Panel::bottom(id.with("hiperdrive_foot"))
                 .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
                 .show_separator_line(false)
-                .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+                .show(ui, |ui| foot::foot_ui(ui, skin, (studio, device), foot::Edited::Values, actions));
         }
         let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
         let drive = unit.drive();
@@ -195,5 +196,21 @@ impl TypedDeviceView for HiperdriveView {
                 .show_separator_line(false)
                 .show(ui, |ui| workspace::running_ui(ui, skin, device, None, actions));
         }
+    }
+
+    fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
+        live::value_ui(ui, skin, unit, ink);
+    }
+
+    fn motion(unit: &Unit) -> Option<Text> {
+        if !unit.is_moving() {
+            return None;
+        }
+        let moving = unit.moving_drives();
+        if unit.drives().len() < 2 || moving.is_empty() {
+            return Some(Text::new("shell.moving"));
+        }
+        let drives: Vec<String> = moving.into_iter().map(|drive| drive.get().to_string()).collect();
+        Some(Text::new("shell.moving_drives").with("drives", drives.join(", ")))
     }
 }

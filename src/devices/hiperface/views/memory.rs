@@ -58,7 +58,7 @@ pub(super) fn page_ui(
         return;
     }
     egui::Panel::bottom("memory_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        foot::foot_ui(ui, skin, studio, device, actions);
+        foot::foot_ui(ui, skin, (studio, device), foot::Edited::Bytes, actions);
     });
     map(ui, skin, encoder, &wanted, memory, view, actions);
     ui.add_space(skin.space.between);

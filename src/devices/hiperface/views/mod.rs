@@ -3,7 +3,7 @@
 mod commutation;
 pub(crate) mod connect_form;
 mod encoder;
-pub(crate) mod live;
+mod live;
 mod memory;
 mod setup;
 mod values;
@@ -11,7 +11,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
 use crate::devices::hiperface::state::Encoder;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page};
@@ -79,6 +79,8 @@ pub(crate) struct View {
     values: values::View,
     setup: setup::View,
     check_restart: bool,
+    /// The analogue channel that is typed, to be watched.
+    channel: String,
 }
 
 /// The view of HIPERFACE encoders.
@@ -90,6 +92,7 @@ impl TypedDeviceView for HiperfaceView {
     type Memory = View;
 
     const TAB: Tab = Tab::Hiperface;
+    const HAS_UNDO_KEYS: bool = false;
 
     fn device(any: &AnyDevice) -> Option<&Encoder> {
         any.get()
@@ -126,5 +129,13 @@ impl TypedDeviceView for HiperfaceView {
             Page::Backups => backups::page_ui(ui, skin, device, actions),
             Page::Memory => {}
         });
+    }
+
+    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, skin, encoder, ink);
+    }
+
+    fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+        live::watch_menu(ui, skin, encoder, &mut view.channel, actions);
     }
 }

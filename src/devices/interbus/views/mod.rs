@@ -4,7 +4,7 @@ mod cams;
 pub(crate) mod connect_form;
 mod encoder;
 mod lamps;
-pub(crate) mod live;
+mod live;
 mod marks;
 mod parameters;
 mod read_outs;
@@ -14,7 +14,7 @@ mod widgets;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
 use crate::devices::interbus::state::Encoder;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, foot, icons, page};
@@ -94,6 +94,7 @@ impl TypedDeviceView for InterbusView {
     type Memory = View;
 
     const TAB: Tab = Tab::Interbus;
+    const HAS_UNDO_KEYS: bool = true;
 
     fn device(any: &AnyDevice) -> Option<&Encoder> {
         any.get()
@@ -126,7 +127,7 @@ impl TypedDeviceView for InterbusView {
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
                 .frame(egui::Frame::NONE.inner_margin(margin))
                 .show_separator_line(false)
-                .show(ui, |ui| foot::foot_ui(ui, skin, studio, device, actions));
+                .show(ui, |ui| foot::foot_ui(ui, skin, (studio, device), foot::Edited::Values, actions));
         }
         page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| {
             if page != Page::Backups {
@@ -148,5 +149,9 @@ impl TypedDeviceView for InterbusView {
                 Page::Backups => backups::page_ui(ui, skin, device, actions),
             }
         });
+    }
+
+    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, skin, encoder, ink);
     }
 }

@@ -6,7 +6,7 @@ mod export;
 mod find;
 mod form;
 mod frame;
-pub(crate) mod live;
+mod live;
 mod timing;
 mod trial;
 mod widgets;
@@ -14,7 +14,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
 use crate::devices::ssi::state::Encoder;
 use crate::ui::controls::button;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
@@ -89,6 +89,7 @@ impl TypedDeviceView for SsiView {
     type Memory = View;
 
     const TAB: Tab = Tab::Ssi;
+    const HAS_UNDO_KEYS: bool = true;
 
     fn device(any: &AnyDevice) -> Option<&Encoder> {
         any.get()
@@ -123,5 +124,9 @@ impl TypedDeviceView for SsiView {
         if button(ui, icons::PLUS, &skin.say("ssi.new_layout")).clicked() {
             actions.push(Action::NewLayout);
         }
+    }
+
+    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, skin, encoder, ink);
     }
 }
