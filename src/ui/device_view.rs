@@ -2,6 +2,7 @@
 
 use egui::Ui;
 
+use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Skin, workspace};
 use crate::app::{Action, AnyDevice, Rgb, Studio, Tab, Text};
 
@@ -49,6 +50,8 @@ pub trait TypedDeviceView: Sync + 'static {
     type Page: TabPage;
     /// The text buffers and selections of one session; they are dropped when another device answers.
     type Memory: Default + 'static;
+    /// The form in the connection dialog.
+    type ConnectForm: TypedConnectForm;
 
     /// The tab that shows the device.
     const TAB: Tab;
@@ -129,6 +132,9 @@ pub trait DeviceView: Sync {
     /// Draws the position large, in this ink, and the numbers beside it.
     fn value_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, ink: Rgb);
 
+    /// Begins the form in the connection dialog.
+    fn connect_form(&self) -> Box<dyn ConnectForm>;
+
     /// Begins the view of a session.
     fn session(&self) -> Box<dyn SessionView>;
 
@@ -178,6 +184,10 @@ impl<V: TypedDeviceView> DeviceView for V {
         if let Some(device) = V::device(device) {
             V::value_ui(ui, skin, device, ink);
         }
+    }
+
+    fn connect_form(&self) -> Box<dyn ConnectForm> {
+        connect::form::begun::<V::ConnectForm>()
     }
 
     fn session(&self) -> Box<dyn SessionView> {
@@ -298,13 +308,18 @@ impl TabViews {
 
     /// Returns all tabs in their order.
     pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
-        self.devices.iter().map(|view| view.tab()).chain(self.tools.iter().map(|view| view.tab()))
+        self.of_devices().chain(self.tools.iter().map(|view| view.tab()))
     }
 
     /// Returns the name of a tab.
     pub(crate) fn title(self, skin: &Skin, tab: Tab) -> String {
         let title = self.tool(tab).map(|view| skin.say(view.title()));
         title.or_else(|| tab.bus().map(str::to_owned)).unwrap_or_default()
+    }
+
+    /// Returns the tabs of devices in their order.
+    pub(crate) fn of_devices(self) -> impl Iterator<Item = Tab> {
+        self.devices.iter().map(|view| view.tab())
     }
 
     /// Returns the view of the device that a tab shows.

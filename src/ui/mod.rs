@@ -28,6 +28,7 @@ pub(crate) mod wires;
 pub(crate) mod workspace;
 
 pub use device_view::{DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView};
+pub use dialogs::connect::{ConnectForm, TypedConnectForm};
 pub use run::run;
 pub use skin::{Skin, install_fonts};
 pub use views::Views;

@@ -119,7 +119,8 @@ impl Window {
         if let Some(device) = self.studio.shown() {
             review::review_ui(ctx, skin, device, actions);
         }
-        dialogs::connect_ui(ctx, skin, &self.studio, &mut self.views.connect, actions);
+        let forms = (self.views.tabs, &mut self.views.connect);
+        dialogs::connect_ui(ctx, skin, &self.studio, forms, actions);
         if let Some(file) = &mut self.views.file
             && dialogs::file_ui(ctx, skin, file, actions)
         {

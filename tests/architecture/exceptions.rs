@@ -23,7 +23,6 @@ pub(crate) const KNOWS_A_DEVICE: &[&str] = &[
     "src/cli/kind.rs",
     "src/cli/mod.rs",
     "src/sim/at_adapter.rs",
-    "src/ui/dialogs/connect.rs",
 ];
 
 /// A bus, or the Signals tab, outside of them and of the devices on them.

@@ -149,6 +149,11 @@ impl Connect {
         self.typed = Some(link);
     }
 
+    /// A search for an encoder runs.
+    pub fn is_searching(&self) -> bool {
+        self.search.as_ref().is_some_and(Search::is_running)
+    }
+
     /// The link as text: as it was typed, else as the form stands for it; empty where it stands for none.
     pub fn link(&self) -> String {
         match &self.typed {

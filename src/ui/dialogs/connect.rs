@@ -2,27 +2,26 @@
 //! settings nobody remembers.
 
 pub(crate) mod entries;
+pub(in crate::ui) mod form;
+
+use std::collections::BTreeMap;
 
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::connect::{Action as Connect, Connect as Dialog, is_missing};
 use crate::app::{Action, Studio, Tab, Text};
-use crate::devices::biss::views as biss;
-use crate::devices::hiperdrive::views as hiperdrive;
-use crate::devices::hiperface::state::Search;
-use crate::devices::hiperface::views as hiperface;
-use crate::devices::interbus::views as interbus;
-use crate::devices::ssi::views as ssi;
 use crate::link::LinkUrl;
 use crate::ui::controls::{
     at_the_right, button, entry, icon_button, modal, mono_entry, name, paragraph, primary, problem,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Skin, TabViews, icons};
+
+pub use form::{ConnectForm, TypedConnectForm};
 
 /// What the dialog remembers.
 #[derive(Default)]
 pub(in crate::ui) struct ConnectView {
-    search: hiperface::connect_form::SearchView,
+    forms: BTreeMap<Tab, Box<dyn ConnectForm>>,
     /// What is rarely needed is unfolded.
     more: bool,
 }
@@ -38,44 +37,30 @@ pub(in crate::ui) fn connect_ui(
     ctx: &egui::Context,
     skin: &Skin,
     studio: &Studio,
-    view: &mut ConnectView,
+    (tabs, view): (TabViews, &mut ConnectView),
     actions: &mut Vec<Action>,
 ) {
     let Some(dialog) = &studio.connect else { return };
     let height = (ctx.content_rect().height() - 250.0).min(540.0);
-    let (mut form, mut biss, mut ssi) = (dialog.form.clone(), dialog.biss.clone(), dialog.ssi.clone());
-    let (mut interbus, mut hiperdrive) = (dialog.interbus.clone(), dialog.hiperdrive.clone());
     modal(ctx, skin, "connect", WIDTH, |ui| {
         ui.horizontal(|ui| {
             ui.label(skin.heading(skin.say("connect.title")));
             ui.add_space(skin.space.groups);
-            devices(ui, skin, dialog.device, actions);
+            devices(ui, skin, tabs, dialog.device, actions);
         });
         ui.add_space(skin.space.inside);
         // Always as high: nothing jumps away under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
             used_before(ui, skin, studio.settings.links(dialog.device), actions);
-            match dialog.device {
-                Tab::Biss => biss::connect_form::form_ui(ui, skin, dialog, &mut biss, &mut view.more, actions),
-                Tab::Ssi => ssi::connect_form::form_ui(ui, skin, dialog, &mut ssi, &mut view.more, actions),
-                Tab::Interbus => interbus::connect_form::form_ui(ui, skin, &mut interbus, &mut view.more, actions),
-                Tab::Hiperdrive => {
-                    hiperdrive::connect_form::form_ui(ui, skin, dialog, &mut hiperdrive, &mut view.more, actions)
-                }
-                Tab::Hiperface | Tab::Signals => hiperface::connect_form::form_ui(
-                    ui,
-                    skin,
-                    dialog,
-                    &mut form,
-                    (&mut view.search, &mut view.more),
-                    actions,
-                ),
+            if let Some(own) = tabs.device(dialog.device) {
+                let form = view.forms.entry(dialog.device).or_insert_with(|| own.connect_form());
+                form.form_ui(ui, skin, dialog, &mut view.more, actions);
             }
         });
         ui.add_space(skin.space.between);
         let url = dialog.url();
         link_ui(ui, skin, dialog, url.as_ref().ok(), actions);
-        let searching = dialog.search.as_ref().is_some_and(Search::is_running).then(|| Text::new("connect.searching"));
+        let searching = dialog.is_searching().then(|| Text::new("connect.searching"));
         let refused = searching.or(url.err());
         why_ui(ui, skin, refused.as_ref().or(dialog.problem.as_ref()));
         at_the_right(ui, |ui| {
@@ -88,31 +73,15 @@ pub(in crate::ui) fn connect_ui(
             }
         });
     });
-    // Before whatever else was clicked: that is to see it.
-    if form != dialog.form {
-        actions.insert(0, Action::Connect(Connect::Edit(Box::new(form))));
-    }
-    if biss != dialog.biss {
-        actions.insert(0, Action::Connect(Connect::EditBiss(Box::new(biss))));
-    }
-    if interbus != dialog.interbus {
-        actions.insert(0, Action::Connect(Connect::EditInterbus(Box::new(interbus))));
-    }
-    if hiperdrive != dialog.hiperdrive {
-        actions.insert(0, Action::Connect(Connect::EditHiperdrive(Box::new(hiperdrive))));
-    }
-    if ssi != dialog.ssi {
-        actions.insert(0, Action::Connect(Connect::EditSsi(Box::new(ssi))));
-    }
 }
 
 /// The kinds of devices.
-fn devices(ui: &mut Ui, skin: &Skin, device: Tab, actions: &mut Vec<Action>) {
-    for own in Tab::DEVICES {
-        let word = own.bus().unwrap_or_default();
-        let text = RichText::new(word).font(skin.strong(skin.sizes.body));
+fn devices(ui: &mut Ui, skin: &Skin, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
+    for own in tabs.of_devices() {
+        let word = tabs.title(skin, own);
+        let text = RichText::new(&word).font(skin.strong(skin.sizes.body));
         let response = ui.add(egui::Button::selectable(device == own, text));
-        if name(response, true, word).clicked() && own != device {
+        if name(response, true, &word).clicked() && own != device {
             actions.push(Action::Connect(Connect::Device(own)));
         }
     }

@@ -3,94 +3,110 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::Connect as Dialog;
+use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissWay};
 use crate::ui::Skin;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
+use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
     echo, leave_supply, margin, network, parity, recording, segments, serial, unfolded,
 };
 
-/// Draws the form.
-pub(crate) fn form_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    dialog: &Dialog,
-    form: &mut BissForm,
-    more: &mut bool,
-    actions: &mut Vec<Action>,
-) {
-    let ways = [
-        (BissWay::Virtual, "connect.virtual"),
-        (BissWay::Pin, "connect.biss_pin"),
-        (BissWay::Bus, "connect.biss_bus"),
-        (BissWay::Replay, "connect.replay"),
-    ];
-    segments(ui, skin, &mut form.way, ways);
-    let words = match form.way {
-        BissWay::Virtual | BissWay::Replay => None,
-        BissWay::Pin => Some("connect.biss_pin_words"),
-        BissWay::Bus => Some("connect.biss_bus_words"),
-    };
-    if let Some(words) = words {
-        paragraph(ui, skin.caption(skin.say(words)));
+/// The connection form of BiSS encoders.
+pub(crate) struct BissConnectForm;
+
+impl TypedConnectForm for BissConnectForm {
+    type Form = BissForm;
+    type Memory = ();
+
+    fn form(dialog: &Dialog) -> &BissForm {
+        &dialog.biss
     }
-    ui.add_space(skin.space.between);
-    match form.way {
-        BissWay::Virtual => simulated(ui, skin, form),
-        BissWay::Pin | BissWay::Bus => {
-            segments(ui, skin, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
-            if form.network {
-                network(ui, skin, &mut form.host, &mut form.tcp_port);
-            } else {
-                serial(ui, skin, dialog, &mut form.port, actions);
+
+    fn edit(form: BissForm) -> Connect {
+        Connect::EditBiss(Box::new(form))
+    }
+
+    fn form_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        dialog: &Dialog,
+        form: &mut BissForm,
+        ((), more): (&mut (), &mut bool),
+        actions: &mut Vec<Action>,
+    ) {
+        let ways = [
+            (BissWay::Virtual, "connect.virtual"),
+            (BissWay::Pin, "connect.biss_pin"),
+            (BissWay::Bus, "connect.biss_bus"),
+            (BissWay::Replay, "connect.replay"),
+        ];
+        segments(ui, skin, &mut form.way, ways);
+        let words = match form.way {
+            BissWay::Virtual | BissWay::Replay => None,
+            BissWay::Pin => Some("connect.biss_pin_words"),
+            BissWay::Bus => Some("connect.biss_bus_words"),
+        };
+        if let Some(words) = words {
+            paragraph(ui, skin.caption(skin.say(words)));
+        }
+        ui.add_space(skin.space.between);
+        match form.way {
+            BissWay::Virtual => simulated(ui, skin, form),
+            BissWay::Pin | BissWay::Bus => {
+                segments(ui, skin, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
+                if form.network {
+                    network(ui, skin, &mut form.host, &mut form.tcp_port);
+                } else {
+                    serial(ui, skin, dialog, &mut form.port, actions);
+                }
+            }
+            BissWay::Replay => {
+                recording(ui, skin, &mut form.file, actions);
+                reached(ui, skin, form);
             }
         }
-        BissWay::Replay => {
-            recording(ui, skin, &mut form.file, actions);
-            reached(ui, skin, form);
-        }
-    }
-    if form.is_on_the_bus() {
-        entry(ui, skin, &skin.say("connect.biss_clock"), |ui| {
-            text_entry(ui, &mut form.clock, 96.0, &skin.say("connect.biss_clock"), "1000000");
-            ui.label(skin.label("Hz"));
-        });
-    }
-    if form.way != BissWay::Replay && unfolded(ui, skin, more) {
-        if !form.is_on_the_bus() {
-            entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
-                text_entry(ui, &mut form.baud, 96.0, &skin.say("settings_card.baud"), "115200");
-                parity(ui, skin, &mut form.parity);
-            });
-            let word = skin.say("connect.biss_order");
-            entry(ui, skin, &word, |ui| {
-                let orders = [
-                    (None, "connect.biss_order_auto"),
-                    (Some(ByteOrder::LowFirst), "connect.biss_order_low"),
-                    (Some(ByteOrder::HighFirst), "connect.biss_order_high"),
-                ];
-                choice(ui, &word, &mut form.order, orders.map(|(order, id)| (order, skin.say(id))));
-            });
-            echo(ui, skin, &mut form.echo);
-        }
-        entry(ui, skin, &skin.say("connect.biss_frame"), |ui| {
-            for (own, word, usual) in [
-                (&mut form.turns, "connect.biss_turns", "16"),
-                (&mut form.steps, "connect.biss_steps", "17"),
-                (&mut form.crc, "connect.biss_crc", "0x43"),
-            ] {
-                let word = skin.say(word);
-                text_entry(ui, own, 48.0, &word, usual);
-                ui.label(skin.label(word));
-            }
-        });
-        paragraph(ui, skin.caption(skin.say("connect.biss_frame_words")));
         if form.is_on_the_bus() {
-            leave_supply(ui, skin, &mut form.leave_supply);
+            entry(ui, skin, &skin.say("connect.biss_clock"), |ui| {
+                text_entry(ui, &mut form.clock, 96.0, &skin.say("connect.biss_clock"), "1000000");
+                ui.label(skin.label("Hz"));
+            });
         }
-        margin(ui, skin, &mut form.margin);
+        if form.way != BissWay::Replay && unfolded(ui, skin, more) {
+            if !form.is_on_the_bus() {
+                entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
+                    text_entry(ui, &mut form.baud, 96.0, &skin.say("settings_card.baud"), "115200");
+                    parity(ui, skin, &mut form.parity);
+                });
+                let word = skin.say("connect.biss_order");
+                entry(ui, skin, &word, |ui| {
+                    let orders = [
+                        (None, "connect.biss_order_auto"),
+                        (Some(ByteOrder::LowFirst), "connect.biss_order_low"),
+                        (Some(ByteOrder::HighFirst), "connect.biss_order_high"),
+                    ];
+                    choice(ui, &word, &mut form.order, orders.map(|(order, id)| (order, skin.say(id))));
+                });
+                echo(ui, skin, &mut form.echo);
+            }
+            entry(ui, skin, &skin.say("connect.biss_frame"), |ui| {
+                for (own, word, usual) in [
+                    (&mut form.turns, "connect.biss_turns", "16"),
+                    (&mut form.steps, "connect.biss_steps", "17"),
+                    (&mut form.crc, "connect.biss_crc", "0x43"),
+                ] {
+                    let word = skin.say(word);
+                    text_entry(ui, own, 48.0, &word, usual);
+                    ui.label(skin.label(word));
+                }
+            });
+            paragraph(ui, skin.caption(skin.say("connect.biss_frame_words")));
+            if form.is_on_the_bus() {
+                leave_supply(ui, skin, &mut form.leave_supply);
+            }
+            margin(ui, skin, &mut form.margin);
+        }
     }
 }
 

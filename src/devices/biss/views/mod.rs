@@ -1,6 +1,6 @@
 //! The BiSS tab: its pages, each about one thing that a person wants of an encoder.
 
-pub(crate) mod connect_form;
+mod connect_form;
 mod data;
 mod encoder;
 mod frame;
@@ -123,6 +123,7 @@ impl TypedDeviceView for BissView {
     type Device = Encoder;
     type Page = Page;
     type Memory = View;
+    type ConnectForm = connect_form::BissConnectForm;
 
     const TAB: Tab = Tab::Biss;
     const HAS_UNDO_KEYS: bool = false;

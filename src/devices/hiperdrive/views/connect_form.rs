@@ -6,51 +6,73 @@ use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{Discovery, HiperdriveForm, HiperdriveWay, VirtualHub};
 use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner, text_entry};
+use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
 use crate::ui::{Skin, icons};
 
-/// Draws the form.
-pub(crate) fn form_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    dialog: &Dialog,
-    form: &mut HiperdriveForm,
-    more: &mut bool,
-    actions: &mut Vec<Action>,
-) {
-    let ways = [
-        (HiperdriveWay::Virtual, "connect.virtual"),
-        (HiperdriveWay::Network, "connect.hd_network"),
-        (HiperdriveWay::Replay, "connect.replay"),
-    ];
-    segments(ui, skin, &mut form.way, ways);
-    ui.add_space(skin.space.between);
-    match form.way {
-        HiperdriveWay::Virtual => simulated(ui, skin, form),
-        HiperdriveWay::Network => {
-            place(ui, skin, "connect.device_address", (&mut form.host, "192.168.1.10"), (&mut form.tcp_port, "44818"));
-            interval(ui, skin, form);
-            ui.add_space(skin.space.inside);
-            discovery(ui, skin, dialog.discovery.as_ref(), actions);
-        }
-        HiperdriveWay::Replay => recording(ui, skin, &mut form.file, actions),
+/// The connection form of HIPERDRIVE drives.
+pub(crate) struct HiperdriveConnectForm;
+
+impl TypedConnectForm for HiperdriveConnectForm {
+    type Form = HiperdriveForm;
+    type Memory = ();
+
+    fn form(dialog: &Dialog) -> &HiperdriveForm {
+        &dialog.hiperdrive
     }
-    if form.way != HiperdriveWay::Replay && unfolded(ui, skin, more) {
-        if form.way == HiperdriveWay::Virtual {
-            interval(ui, skin, form);
+
+    fn edit(form: HiperdriveForm) -> Connect {
+        Connect::EditHiperdrive(Box::new(form))
+    }
+
+    fn form_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        dialog: &Dialog,
+        form: &mut HiperdriveForm,
+        ((), more): (&mut (), &mut bool),
+        actions: &mut Vec<Action>,
+    ) {
+        let ways = [
+            (HiperdriveWay::Virtual, "connect.virtual"),
+            (HiperdriveWay::Network, "connect.hd_network"),
+            (HiperdriveWay::Replay, "connect.replay"),
+        ];
+        segments(ui, skin, &mut form.way, ways);
+        ui.add_space(skin.space.between);
+        match form.way {
+            HiperdriveWay::Virtual => simulated(ui, skin, form),
+            HiperdriveWay::Network => {
+                place(
+                    ui,
+                    skin,
+                    "connect.device_address",
+                    (&mut form.host, "192.168.1.10"),
+                    (&mut form.tcp_port, "44818"),
+                );
+                interval(ui, skin, form);
+                ui.add_space(skin.space.inside);
+                discovery(ui, skin, dialog.discovery.as_ref(), actions);
+            }
+            HiperdriveWay::Replay => recording(ui, skin, &mut form.file, actions),
         }
-        let word = skin.say("connect.byte_order");
-        entry(ui, skin, &word, |ui| {
-            let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
-            choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, skin.say(id))));
-        });
-        let word = skin.say("connect.udp_port");
-        entry(ui, skin, &word, |ui| text_entry(ui, &mut form.udp, 96.0, &word, "2222"));
-        let word = skin.say("connect.reply_time");
-        entry(ui, skin, &word, |ui| {
-            text_entry(ui, &mut form.timeout, 96.0, &word, "1000");
-            ui.label(skin.label("ms"));
-        });
+        if form.way != HiperdriveWay::Replay && unfolded(ui, skin, more) {
+            if form.way == HiperdriveWay::Virtual {
+                interval(ui, skin, form);
+            }
+            let word = skin.say("connect.byte_order");
+            entry(ui, skin, &word, |ui| {
+                let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
+                choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, skin.say(id))));
+            });
+            let word = skin.say("connect.udp_port");
+            entry(ui, skin, &word, |ui| text_entry(ui, &mut form.udp, 96.0, &word, "2222"));
+            let word = skin.say("connect.reply_time");
+            entry(ui, skin, &word, |ui| {
+                text_entry(ui, &mut form.timeout, 96.0, &word, "1000");
+                ui.label(skin.label("ms"));
+            });
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod axis;
 mod bar;
-pub(crate) mod connect_form;
+mod connect_form;
 mod device;
 mod errors;
 mod figures;
@@ -113,6 +113,7 @@ impl TypedDeviceView for HiperdriveView {
     type Device = Unit;
     type Page = Page;
     type Memory = View;
+    type ConnectForm = connect_form::HiperdriveConnectForm;
 
     const TAB: Tab = Tab::Hiperdrive;
     const HAS_UNDO_KEYS: bool = true;

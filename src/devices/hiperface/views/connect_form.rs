@@ -11,6 +11,7 @@ use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{LinkForm, LinkKind, Search};
 use crate::ui::controls::{allowed_button, button, choice, entry, fill, name, paragraph, spinner, text_entry};
+use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{echo, margin, network, parity, recording, serial, unfolded};
 use crate::ui::{Skin, icons};
 
@@ -24,30 +25,45 @@ pub(crate) struct SearchView {
 /// How long to wait for the encoder's supply to be switched off and on.
 const POWER_CYCLE: Duration = Duration::from_secs(30);
 
-/// Draws the form.
-pub(crate) fn form_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    dialog: &Dialog,
-    form: &mut LinkForm,
-    (view, open): (&mut SearchView, &mut bool),
-    actions: &mut Vec<Action>,
-) {
-    kinds(ui, skin, form);
-    ui.add_space(skin.space.between);
-    match form.kind {
-        LinkKind::Virtual => simulated(ui, skin, form),
-        LinkKind::Serial => serial(ui, skin, dialog, &mut form.port, actions),
-        LinkKind::Tcp => network(ui, skin, &mut form.host, &mut form.tcp_port),
-        LinkKind::Replay => recording(ui, skin, &mut form.file, actions),
+/// The connection form of HIPERFACE encoders.
+pub(crate) struct HiperfaceConnectForm;
+
+impl TypedConnectForm for HiperfaceConnectForm {
+    type Form = LinkForm;
+    type Memory = SearchView;
+
+    fn form(dialog: &Dialog) -> &LinkForm {
+        &dialog.form
     }
-    if form.kind != LinkKind::Replay {
-        line(ui, skin, form);
-        more(ui, skin, form, open);
+
+    fn edit(form: LinkForm) -> Connect {
+        Connect::Edit(Box::new(form))
     }
-    if form.kind != LinkKind::Replay {
+
+    fn form_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        dialog: &Dialog,
+        form: &mut LinkForm,
+        (view, open): (&mut SearchView, &mut bool),
+        actions: &mut Vec<Action>,
+    ) {
+        kinds(ui, skin, form);
         ui.add_space(skin.space.between);
-        search(ui, skin, dialog, view, actions);
+        match form.kind {
+            LinkKind::Virtual => simulated(ui, skin, form),
+            LinkKind::Serial => serial(ui, skin, dialog, &mut form.port, actions),
+            LinkKind::Tcp => network(ui, skin, &mut form.host, &mut form.tcp_port),
+            LinkKind::Replay => recording(ui, skin, &mut form.file, actions),
+        }
+        if form.kind != LinkKind::Replay {
+            line(ui, skin, form);
+            more(ui, skin, form, open);
+        }
+        if form.kind != LinkKind::Replay {
+            ui.add_space(skin.space.between);
+            search(ui, skin, dialog, view, actions);
+        }
     }
 }
 

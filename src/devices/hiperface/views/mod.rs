@@ -1,7 +1,7 @@
 //! The HIPERFACE tab: its pages, each about one thing that a person wants of an encoder.
 
 mod commutation;
-pub(crate) mod connect_form;
+mod connect_form;
 mod encoder;
 mod live;
 mod memory;
@@ -90,6 +90,7 @@ impl TypedDeviceView for HiperfaceView {
     type Device = Encoder;
     type Page = Page;
     type Memory = View;
+    type ConnectForm = connect_form::HiperfaceConnectForm;
 
     const TAB: Tab = Tab::Hiperface;
     const HAS_UNDO_KEYS: bool = false;

@@ -3,43 +3,73 @@
 use egui::Ui;
 
 use crate::app::Action;
+use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::devices::interbus::state::{InterbusForm, InterbusWay};
 use crate::ui::Skin;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
+use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
 
-/// Draws the form.
-pub(crate) fn form_ui(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm, more: &mut bool, actions: &mut Vec<Action>) {
-    let ways = [
-        (InterbusWay::Virtual, "connect.virtual"),
-        (InterbusWay::Gateway, "connect.gateway"),
-        (InterbusWay::Replay, "connect.replay"),
-    ];
-    segments(ui, skin, &mut form.way, ways);
-    if form.way == InterbusWay::Gateway {
-        paragraph(ui, skin.caption(skin.say("connect.gateway_words")));
+/// The connection form of INTERBUS encoders.
+pub(crate) struct InterbusConnectForm;
+
+impl TypedConnectForm for InterbusConnectForm {
+    type Form = InterbusForm;
+    type Memory = ();
+
+    fn form(dialog: &Dialog) -> &InterbusForm {
+        &dialog.interbus
     }
-    ui.add_space(skin.space.between);
-    match form.way {
-        InterbusWay::Virtual => simulated(ui, skin, form),
-        InterbusWay::Gateway => {
-            place(ui, skin, "connect.device_address", (&mut form.host, "192.168.1.10"), (&mut form.tcp_port, "502"));
-            registers(ui, skin, form);
-        }
-        InterbusWay::Replay => {
-            recording(ui, skin, &mut form.file, actions);
-            order(ui, skin, form);
-        }
+
+    fn edit(form: InterbusForm) -> Connect {
+        Connect::EditInterbus(Box::new(form))
     }
-    if form.way != InterbusWay::Replay && unfolded(ui, skin, more) {
-        if form.way == InterbusWay::Virtual {
-            registers(ui, skin, form);
+
+    fn form_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        _dialog: &Dialog,
+        form: &mut InterbusForm,
+        ((), more): (&mut (), &mut bool),
+        actions: &mut Vec<Action>,
+    ) {
+        let ways = [
+            (InterbusWay::Virtual, "connect.virtual"),
+            (InterbusWay::Gateway, "connect.gateway"),
+            (InterbusWay::Replay, "connect.replay"),
+        ];
+        segments(ui, skin, &mut form.way, ways);
+        if form.way == InterbusWay::Gateway {
+            paragraph(ui, skin.caption(skin.say("connect.gateway_words")));
         }
-        let word = skin.say("connect.handshake");
-        entry(ui, skin, &word, |ui| {
-            text_entry(ui, &mut form.handshake, 96.0, &word, "2000");
-            ui.label(skin.label("ms"));
-        });
+        ui.add_space(skin.space.between);
+        match form.way {
+            InterbusWay::Virtual => simulated(ui, skin, form),
+            InterbusWay::Gateway => {
+                place(
+                    ui,
+                    skin,
+                    "connect.device_address",
+                    (&mut form.host, "192.168.1.10"),
+                    (&mut form.tcp_port, "502"),
+                );
+                registers(ui, skin, form);
+            }
+            InterbusWay::Replay => {
+                recording(ui, skin, &mut form.file, actions);
+                order(ui, skin, form);
+            }
+        }
+        if form.way != InterbusWay::Replay && unfolded(ui, skin, more) {
+            if form.way == InterbusWay::Virtual {
+                registers(ui, skin, form);
+            }
+            let word = skin.say("connect.handshake");
+            entry(ui, skin, &word, |ui| {
+                text_entry(ui, &mut form.handshake, 96.0, &word, "2000");
+                ui.label(skin.label("ms"));
+            });
+        }
     }
 }
 

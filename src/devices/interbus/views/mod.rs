@@ -1,7 +1,7 @@
 //! The INTERBUS tab: its pages, each about one thing that a person wants of an encoder.
 
 mod cams;
-pub(crate) mod connect_form;
+mod connect_form;
 mod encoder;
 mod lamps;
 mod live;
@@ -92,6 +92,7 @@ impl TypedDeviceView for InterbusView {
     type Device = Encoder;
     type Page = Page;
     type Memory = View;
+    type ConnectForm = connect_form::InterbusConnectForm;
 
     const TAB: Tab = Tab::Interbus;
     const HAS_UNDO_KEYS: bool = true;

@@ -3,52 +3,68 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::Connect as Dialog;
+use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::devices::ssi::state::{SsiForm, SsiWay};
 use crate::ui::Skin;
 use crate::ui::controls::{entry, paragraph, text_entry};
+use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{leave_supply, margin, network, recording, segments, serial, unfolded};
 
-/// Draws the form.
-pub(crate) fn form_ui(
-    ui: &mut Ui,
-    skin: &Skin,
-    dialog: &Dialog,
-    form: &mut SsiForm,
-    more: &mut bool,
-    actions: &mut Vec<Action>,
-) {
-    let ways = [
-        (SsiWay::Virtual, "connect.virtual"),
-        (SsiWay::Adapter, "connect.adapter"),
-        (SsiWay::Replay, "connect.replay"),
-    ];
-    segments(ui, skin, &mut form.way, ways);
-    if form.way == SsiWay::Adapter {
-        paragraph(ui, skin.caption(skin.say("connect.ssi_words")));
+/// The connection form of SSI encoders.
+pub(crate) struct SsiConnectForm;
+
+impl TypedConnectForm for SsiConnectForm {
+    type Form = SsiForm;
+    type Memory = ();
+
+    fn form(dialog: &Dialog) -> &SsiForm {
+        &dialog.ssi
     }
-    ui.add_space(skin.space.between);
-    match form.way {
-        SsiWay::Virtual => simulated(ui, skin, form),
-        SsiWay::Adapter => {
-            segments(ui, skin, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
-            if form.network {
-                network(ui, skin, &mut form.host, &mut form.tcp_port);
-            } else {
-                serial(ui, skin, dialog, &mut form.port, actions);
-            }
+
+    fn edit(form: SsiForm) -> Connect {
+        Connect::EditSsi(Box::new(form))
+    }
+
+    fn form_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        dialog: &Dialog,
+        form: &mut SsiForm,
+        ((), more): (&mut (), &mut bool),
+        actions: &mut Vec<Action>,
+    ) {
+        let ways = [
+            (SsiWay::Virtual, "connect.virtual"),
+            (SsiWay::Adapter, "connect.adapter"),
+            (SsiWay::Replay, "connect.replay"),
+        ];
+        segments(ui, skin, &mut form.way, ways);
+        if form.way == SsiWay::Adapter {
+            paragraph(ui, skin.caption(skin.say("connect.ssi_words")));
         }
-        SsiWay::Replay => recording(ui, skin, &mut form.file, actions),
-    }
-    if form.way != SsiWay::Replay && unfolded(ui, skin, more) {
-        let word = skin.say("connect.voltage");
-        entry(ui, skin, &word, |ui| {
-            text_entry(ui, &mut form.voltage, 96.0, &word, &skin.say("connect.voltage_none"));
-            ui.label(skin.label("V"));
-        });
-        paragraph(ui, skin.caption(skin.say("connect.voltage_words")));
-        leave_supply(ui, skin, &mut form.leave_supply);
-        margin(ui, skin, &mut form.margin);
+        ui.add_space(skin.space.between);
+        match form.way {
+            SsiWay::Virtual => simulated(ui, skin, form),
+            SsiWay::Adapter => {
+                segments(ui, skin, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
+                if form.network {
+                    network(ui, skin, &mut form.host, &mut form.tcp_port);
+                } else {
+                    serial(ui, skin, dialog, &mut form.port, actions);
+                }
+            }
+            SsiWay::Replay => recording(ui, skin, &mut form.file, actions),
+        }
+        if form.way != SsiWay::Replay && unfolded(ui, skin, more) {
+            let word = skin.say("connect.voltage");
+            entry(ui, skin, &word, |ui| {
+                text_entry(ui, &mut form.voltage, 96.0, &word, &skin.say("connect.voltage_none"));
+                ui.label(skin.label("V"));
+            });
+            paragraph(ui, skin.caption(skin.say("connect.voltage_words")));
+            leave_supply(ui, skin, &mut form.leave_supply);
+            margin(ui, skin, &mut form.margin);
+        }
     }
 }
 

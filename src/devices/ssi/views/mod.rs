@@ -1,6 +1,6 @@
 //! The SSI tab: its pages, each about one thing that a person wants of a frame or of an encoder that sends it.
 
-pub(crate) mod connect_form;
+mod connect_form;
 mod encoder;
 mod export;
 mod find;
@@ -87,6 +87,7 @@ impl TypedDeviceView for SsiView {
     type Device = Encoder;
     type Page = Page;
     type Memory = View;
+    type ConnectForm = connect_form::SsiConnectForm;
 
     const TAB: Tab = Tab::Ssi;
     const HAS_UNDO_KEYS: bool = true;

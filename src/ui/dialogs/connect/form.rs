@@ -1,0 +1,58 @@
+//! The form of a kind of device in the connection dialog: typed in the device's folder, object-safe for the dialog. One
+//! adapter stands between the two.
+
+use egui::Ui;
+
+use crate::app::Action;
+use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::ui::Skin;
+
+/// The form of a kind of device, as the device implements it.
+pub trait TypedConnectForm: 'static {
+    /// The link as a form.
+    type Form: Clone + PartialEq;
+    /// The selections that are no part of the link.
+    type Memory: Default;
+
+    /// Returns the form of this kind.
+    fn form(dialog: &Dialog) -> &Self::Form;
+
+    /// Returns the action that takes an edited form.
+    fn edit(form: Self::Form) -> Connect;
+
+    /// Draws the form. `more` is whether the rarely needed entries are unfolded, for all kinds.
+    fn form_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        dialog: &Dialog,
+        form: &mut Self::Form,
+        memory: (&mut Self::Memory, &mut bool),
+        actions: &mut Vec<Action>,
+    );
+}
+
+/// The form of a kind of device, as the dialog uses it, with its selections.
+pub trait ConnectForm {
+    /// Draws the form. `more` is whether the rarely needed entries are unfolded, for all kinds.
+    fn form_ui(&mut self, ui: &mut Ui, skin: &Skin, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
+}
+
+/// Begins the form of a kind of device.
+pub(in crate::ui) fn begun<F: TypedConnectForm>() -> Box<dyn ConnectForm> {
+    Box::new(Begun::<F>(F::Memory::default()))
+}
+
+/// The adapter from [`TypedConnectForm`] to [`ConnectForm`].
+struct Begun<F: TypedConnectForm>(F::Memory);
+
+impl<F: TypedConnectForm> ConnectForm for Begun<F> {
+    fn form_ui(&mut self, ui: &mut Ui, skin: &Skin, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>) {
+        let own = F::form(dialog);
+        let mut form = own.clone();
+        F::form_ui(ui, skin, dialog, &mut form, (&mut self.0, more), actions);
+        if form != *own {
+            // Before whatever else was clicked: that is to see it.
+            actions.insert(0, Action::Connect(F::edit(form)));
+        }
+    }
+}
