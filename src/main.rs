@@ -3,11 +3,11 @@
 use std::process::ExitCode;
 
 use encoder_studio::cli::{self, Asked};
-use encoder_studio::kinds::{FORMATS, TABS};
+use encoder_studio::kinds::{COMMANDS, FORMATS, TABS};
 use encoder_studio::ui;
 
 fn main() -> ExitCode {
-    match cli::run(FORMATS) {
+    match cli::run(FORMATS, COMMANDS) {
         Asked::Command(code) => code,
         Asked::Window(start) => match ui::run(start, FORMATS, TABS) {
             Ok(()) => ExitCode::SUCCESS,

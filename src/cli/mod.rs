@@ -4,9 +4,9 @@
 mod analyse;
 pub(crate) mod args;
 pub(crate) mod check;
+pub(crate) mod commands;
 pub(crate) mod consent;
 pub(crate) mod decode;
-pub(crate) mod kind;
 pub(crate) mod number;
 pub(crate) mod output;
 pub(crate) mod patience;
@@ -17,16 +17,14 @@ pub(crate) mod profiles;
 pub(crate) mod runner;
 pub(crate) mod simulate;
 
-use crate::buses::ethernet_ip::commands as ethernet_ip;
-use crate::devices::hiperdrive::commands as hiperdrive;
-use crate::devices::ssi::commands as ssi;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use args::{Arguments, Command, Common, DeviceKind, OfDrive, Protocol, Words};
+use args::{Arguments, Called, Command, Common};
+use commands::{CommandId, OwnOptions};
 use output::Output;
+
+pub use commands::Commands;
 
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
 use crate::link::LinkUrl;
@@ -74,9 +72,9 @@ pub struct Window {
 }
 
 /// Runs the command that the arguments of this process name; without one the window is asked for. Profiles are read in these
-/// formats.
-pub fn run(formats: Formats) -> Asked {
-    let arguments = match Arguments::try_parse() {
+/// formats; these are the kinds of device that there are commands for.
+pub fn run(formats: Formats, commands: Commands) -> Asked {
+    let arguments = match args::parse_arguments(std::env::args_os(), commands) {
         Ok(arguments) => arguments,
         Err(error) => {
             output::say_usage(&error);
@@ -90,7 +88,7 @@ pub fn run(formats: Formats) -> Asked {
         }
         Some(command) => {
             output::log_to_stderr();
-            Asked::Command(end(dispatch(&common, command, formats)))
+            Asked::Command(end(call(&common, command, &Output::new(common.json, formats, commands))))
         }
         None => window(common, profile),
     }
@@ -138,83 +136,68 @@ fn end(result: Result) -> ExitCode {
     }
 }
 
-fn dispatch(common: &Common, command: Command, formats: Formats) -> Result {
-    let output = Output::new(common.json, formats);
+fn call(common: &Common, called: Called, output: &Output) -> Result {
+    match called {
+        Called::Shared(command) => dispatch(common, command, output),
+        Called::Own(command, matches) => command.run(common, output, &matches),
+    }
+}
+
+fn dispatch(common: &Common, command: Command, output: &Output) -> Result {
+    let device = |name: &str| output.commands().device(name);
+    let no_foreign = |id: CommandId, name: &str, own: &OwnOptions| match output.commands().foreign_option(id, name, own)
+    {
+        Some(why) => Err(Failure::Usage(why)),
+        None => Ok(()),
+    };
     match command {
-        Command::Ports => ports::ports(&output),
-        Command::Find(find) => (kind::of(find.device).find)(common, &output, &find),
-        Command::Identify(on) => (kind::of(on.device).identify)(common, &output),
+        Command::Ports => ports::ports(output),
+        Command::Find(find) => {
+            no_foreign(CommandId::Find, &find.device, &find.own)?;
+            device(&find.device)?.find(common, output, &find)
+        }
+        Command::Identify(on) => device(&on.device)?.identify(common, output),
         Command::Status(status) => {
-            no_layout(status.layout.as_ref(), status.device)?;
-            (kind::of(status.device).status)(common, &output, &status)
+            no_foreign(CommandId::Status, &status.device, &status.own)?;
+            device(&status.device)?.status(common, output, &status)
         }
         Command::Position(position) => {
-            no_layout(position.layout.as_ref(), position.device)?;
-            no_drive(&position.of, position.device)?;
-            (kind::of(position.device).position)(common, &output, &position)
+            no_foreign(CommandId::Position, &position.device, &position.own)?;
+            device(&position.device)?.position(common, output, &position)
         }
         Command::Read(read) => {
-            no_drive(&read.of, read.device)?;
-            (kind::of(read.device).read)(common, &output, &read)
+            no_foreign(CommandId::Read, &read.device, &read.own)?;
+            device(&read.device)?.read(common, output, &read)
         }
         Command::Save(save) => {
-            no_layout(save.layout.as_ref(), save.device)?;
+            no_foreign(CommandId::Save, &save.device, &save.own)?;
             let replaces = consent::replaces(&save.file, save.force)?;
-            let done = (kind::of(save.device).save)(common, &output, &save)?;
-            replaces.said(&output);
+            let done = device(&save.device)?.save(common, output, &save)?;
+            replaces.said(output);
             Ok(done)
         }
         Command::Write(write) => {
-            no_drive(&write.of, write.device)?;
-            (kind::of(write.device).write)(common, &output, &write)
+            no_foreign(CommandId::Write, &write.device, &write.own)?;
+            device(&write.device)?.write(common, output, &write)
         }
-        Command::Move(target) => hiperdrive::drive_to(common, &output, &target),
         Command::Do(act) => {
-            no_drive(&act.of, act.device)?;
-            if act.all && act.device != DeviceKind::Hiperdrive {
-                return Err(args::no_option("--all", kind::of(act.device).name));
-            }
-            (kind::of(act.device).act)(common, &output, &act)
+            no_foreign(CommandId::Do, &act.device, &act.own)?;
+            device(&act.device)?.act(common, output, &act)
         }
         Command::Decode(decode) => {
-            no_words(&decode.words, decode.protocol)?;
-            match decode.protocol.device() {
-                Some(device) => (kind::of(device).decode)(&output, &decode),
-                None => ethernet_ip::decode(&output, &decode.hex),
+            no_foreign(CommandId::Decode, &decode.protocol, &decode.own)?;
+            match output.commands().protocol(&decode.protocol) {
+                Some(protocol) => protocol.decode(output, &decode),
+                None => device(&decode.protocol)?.decode(output, &decode),
             }
         }
-        Command::Analyse(capture) => analyse::analyse(&output, &capture),
-        Command::Ssi(command) => ssi::ssi(&output, &command),
+        Command::Analyse(capture) => analyse::analyse(output, &capture),
         Command::Simulate(simulate) => {
-            no_layout(simulate.layout.as_ref(), simulate.device)?;
-            simulate::simulate(&output, &simulate)
+            no_foreign(CommandId::Simulate, &simulate.device, &simulate.own)?;
+            simulate::simulate(output, &simulate)
         }
-        Command::Diff(diff) => profiles::diff(common, &output, &diff),
-        Command::Verify(verify) => profiles::verify(common, &output, &verify.file),
-        Command::Restore(restore) => profiles::restore(common, &output, &restore),
-    }
-}
-
-/// Other devices tell themselves how what they send is made.
-fn no_layout(layout: Option<&String>, device: DeviceKind) -> Result<()> {
-    match layout {
-        Some(_) if device != DeviceKind::Ssi => Err(usage("--layout is for ssi devices; others tell that themselves")),
-        _ => Ok(()),
-    }
-}
-
-/// Only behind a hub there are several.
-fn no_drive(of: &OfDrive, device: DeviceKind) -> Result<()> {
-    match of.drive {
-        Some(_) if device != DeviceKind::Hiperdrive => Err(args::no_option("--drive", kind::of(device).name)),
-        _ => Ok(()),
-    }
-}
-
-/// What other devices send says itself which way it went.
-fn no_words(words: &Words, protocol: Protocol) -> Result<()> {
-    match words.foreign_to(protocol) {
-        Some((option, of)) => Err(Failure::Usage(format!("{option} is for the words of {of} devices"))),
-        None => Ok(()),
+        Command::Diff(diff) => profiles::diff(common, output, &diff),
+        Command::Verify(verify) => profiles::verify(common, output, &verify.file),
+        Command::Restore(restore) => profiles::restore(common, output, &restore),
     }
 }

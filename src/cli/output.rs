@@ -4,13 +4,14 @@ use std::io::{self, Write};
 
 use serde_json::Value;
 
-use super::Failure;
+use super::{Commands, Failure};
 use crate::profile::Formats;
 
-/// What a command is given: where results go, and the formats of profiles that can be read.
+/// What a command is given: where results go, the formats of profiles that can be read, and the kinds of device.
 pub(crate) struct Output {
     json: bool,
     formats: Formats,
+    commands: Commands,
 }
 
 /// Lines of label and value, aligned.
@@ -30,18 +31,23 @@ impl Lines {
 }
 
 impl Output {
-    pub(super) fn new(json: bool, formats: Formats) -> Self {
-        Output { json, formats }
+    pub(super) fn new(json: bool, formats: Formats, commands: Commands) -> Self {
+        Output { json, formats, commands }
     }
 
     /// The same, with results as text.
     pub(crate) fn as_text(&self) -> Self {
-        Output { json: false, formats: self.formats }
+        Output { json: false, formats: self.formats, commands: self.commands }
     }
 
     /// The formats of profiles that can be read.
     pub(super) fn formats(&self) -> Formats {
         self.formats
+    }
+
+    /// The kinds of device that there are commands for.
+    pub(super) fn commands(&self) -> Commands {
+        self.commands
     }
 
     /// Prints a result in the form that was asked for.

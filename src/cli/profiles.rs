@@ -7,7 +7,6 @@ use jiff::Timestamp;
 use serde_json::{Value as Json, json};
 
 use super::args::{Common, Diff, Restore};
-use super::kind;
 use super::output::{Lines, Output, say};
 use super::plan::{NOTHING, Shown, Spent};
 use super::runner::failed;
@@ -19,21 +18,21 @@ use crate::store::{read_text, write_atomically};
 /// Reads a profile of any kind, to look at it or to compare it.
 pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?;
-    remark(path, &document)?;
+    remark(output, path, &document)?;
     Ok(document.body)
 }
 
 /// Reads a profile that is to be written into a device: all of it has to be known.
 pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error)))?;
-    remark(path, &document)?;
+    remark(output, path, &document)?;
     Ok(document.body)
 }
 
 /// Says what is to be known of it.
-fn remark(path: &Path, document: &Document) -> Result<()> {
+fn remark(output: &Output, path: &Path, document: &Document) -> Result<()> {
     explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal())));
-    if let Some(words) = (kind::of_profile(&document.body)?.remark)(&document.body) {
+    if let Some(words) = output.commands().device(document.body.kind())?.remark(&document.body) {
         say(&format!("{}: {}\n", path.display(), words.terminal()));
     }
     Ok(())
@@ -57,25 +56,25 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
         return Err(Failure::Usage("diff takes a second file or --link URL, one of them".to_owned()));
     }
     let left = load(output, &diff.left)?;
-    let kind = kind::of_profile(&left)?;
+    let kind = output.commands().device(left.kind())?;
     let (right, name) = match &diff.right {
         Some(path) => (load(output, path)?, path.as_path()),
-        None => ((kind.present)(common, output, None)?, Path::new("the device")),
+        None => (kind.present(common, output, None)?, Path::new("the device")),
     };
-    let comparison = (kind.compare)(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
+    let comparison = kind.compare(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
     let missing = comparison.missing();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
 
 pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     let profile = load(output, file)?;
-    let kind = kind::of_profile(&profile)?;
-    let device = (kind.present)(common, output, Some(&profile))?;
+    let kind = output.commands().device(profile.kind())?;
+    let device = kind.present(common, output, Some(&profile))?;
     // What is compared may be of two devices: that is allowed, and has to be known.
-    if let Some(words) = (kind.other_device)(&profile, &device) {
+    if let Some(words) = kind.other_device(&profile, &device) {
         output.remark(&words);
     }
-    let comparison = (kind.compare)(&profile, &device).map_err(|error| failed(&explain::profile(file, &error)))?;
+    let comparison = kind.compare(&profile, &device).map_err(|error| failed(&explain::profile(file, &error)))?;
     // What only the device has is not the profile's business.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
@@ -83,7 +82,7 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
     let profile = load_to_write(output, &restore.file)?;
-    (kind::of_profile(&profile)?.restore)(common, output, restore, profile)
+    output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
 /// What the command line allows of a restore, for devices without data fields.

@@ -47,13 +47,13 @@ pub(crate) trait Simulated: ByteDevice {
 }
 
 pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
-    let kind = super::kind::of(arguments.device);
-    let simulated = (kind.simulated)(output, arguments)?;
+    let kind = output.commands().device(&arguments.device)?;
+    let simulated = kind.simulated(output, arguments)?;
     let ended = Arc::new(AtomicBool::new(false));
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
         .map_err(|error| Failure::Failed(vec![format!("Interrupts cannot be caught: {error}.")]))?;
-    let mut device = Device { kind: kind.name, simulated, clock: Arc::new(RealClock::start()) };
+    let mut device = Device { kind: kind.name(), simulated, clock: Arc::new(RealClock::start()) };
     match (&arguments.pty, &arguments.listen) {
         (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
         (None, Some(address)) => listen(address, &mut device, &ended)?,
@@ -63,14 +63,17 @@ pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
 }
 
 /// The settings of the virtual device, a key with its value each.
-pub(crate) fn settings(arguments: &Simulate) -> Result<Vec<(String, String)>> {
+pub(crate) fn settings(output: &Output, arguments: &Simulate) -> Result<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for setting in &arguments.settings {
         let (name, value) =
             setting.split_once('=').ok_or_else(|| Failure::Usage(format!("{setting:?} is not NAME=VALUE")))?;
         pairs.push((name.to_owned(), value.to_owned()));
     }
-    pairs.extend(arguments.hub.clone().map(|places| ("hub".to_owned(), places)));
+    for option in output.commands().devices().iter().flat_map(|device| device.setting_options()) {
+        let name = option.get_id().as_str();
+        pairs.extend(arguments.own.text(name).map(|value| (name.to_owned(), value.clone())));
+    }
     pairs.extend(arguments.seed.map(|seed| ("seed".to_owned(), seed.to_string())));
     pairs.extend(arguments.fault.clone().map(|fault| ("fault".to_owned(), fault)));
     Ok(pairs)

@@ -19,8 +19,6 @@ pub(crate) const KNOWS_A_DEVICE: &[&str] = &[
     "src/app/studio.rs",
     "src/app/tab.rs",
     "src/cli/args.rs",
-    "src/cli/args/decode.rs",
-    "src/cli/kind.rs",
     "src/cli/mod.rs",
     "src/sim/at_adapter.rs",
 ];
@@ -31,6 +29,5 @@ pub(crate) const KNOWS_A_BUS: &[&str] = &[
     "src/app/explain/detail/tests.rs",
     "src/app/files.rs",
     "src/app/studio.rs",
-    "src/cli/mod.rs",
     "src/sim/at_adapter.rs",
 ];

@@ -2,13 +2,14 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{Consenting, DeviceKind, OfDrive};
+use super::Consenting;
 use crate::cli::Failure;
+use crate::cli::commands::OwnOptions;
 
 #[derive(Args)]
 pub(crate) struct Do {
     /// The kind of device.
-    pub(in crate::cli) device: DeviceKind,
+    pub(in crate::cli) device: String,
     /// What to do.
     pub(crate) action: Action,
     /// What the action takes, as said there.
@@ -17,20 +18,7 @@ pub(crate) struct Do {
     #[command(flatten)]
     pub(crate) consent: Consenting,
     #[command(flatten)]
-    pub(crate) of: OfDrive,
-    /// hiperdrive factory: everything, the address as well (DHCP), and saved.
-    #[arg(long)]
-    pub(crate) all: bool,
-    /// hiperface set-position: exactly this value, also when it breaks the phase to the sine signal.
-    #[arg(long)]
-    pub(crate) exact: bool,
-    /// hiperface synchronise: the encoder is a kit, where its type does not tell.
-    #[arg(long)]
-    pub(crate) kit: bool,
-    /// biss: how long the motor may take to turn, or the shaft to rest, as an action needs it; 30 without a terminal, 300
-    /// on one.
-    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600))]
-    pub(crate) timeout: Option<u16>,
+    pub(crate) own: OwnOptions,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -111,9 +99,4 @@ pub(crate) fn action_name(action: Action) -> String {
 /// An action that is for another kind of device.
 pub(crate) fn no_action(action: Action, kind: &str, known: &str) -> Failure {
     Failure::Usage(format!("{} is not an action of {kind} devices; these are {known}", action_name(action)))
-}
-
-/// An option that is for another kind of device.
-pub(crate) fn no_option(option: &str, kind: &str) -> Failure {
-    Failure::Usage(format!("{option} is not for {kind} devices"))
 }

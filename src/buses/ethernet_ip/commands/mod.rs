@@ -10,6 +10,8 @@ use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, IoPacket, Item, Items, RealTimeFormat, SocketAddress,
 };
 use crate::cli::Result;
+use crate::cli::args::Decode;
+use crate::cli::commands::ProtocolDecoder;
 use crate::cli::decode::{Explained, frames, show};
 use crate::cli::output::{Output, count};
 
@@ -35,7 +37,28 @@ pub(crate) enum Device {
 
 const NEITHER: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
 
-pub(crate) fn decode(output: &Output, words: &[String]) -> Result {
+/// EtherNet/IP of any device.
+pub(crate) struct EthernetIpDecoder;
+
+impl ProtocolDecoder for EthernetIpDecoder {
+    fn name(&self) -> &'static str {
+        "ethernet-ip"
+    }
+
+    fn about(&self) -> &'static str {
+        "EtherNet/IP of any device"
+    }
+
+    fn help(&self) -> &'static str {
+        "frames of a TCP stream, one or several behind each other, cyclic packets (UDP), CIP messages alone"
+    }
+
+    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
+        decode(output, &arguments.hex)
+    }
+}
+
+fn decode(output: &Output, words: &[String]) -> Result {
     let explain = |bytes: &Vec<u8>| {
         let said = explain(bytes, Device::Any).unwrap_or_else(|| Err(NEITHER.to_owned()));
         let (meaning, more) = match said {

@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use serde_json::json;
 
+use super::args::DoOptions;
 use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
 use crate::app::{Text, explain};
-use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::args::{Action, Common, Do, action_name, no_action};
 use crate::cli::check;
 use crate::cli::consent::{answer, ask, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
@@ -28,9 +29,6 @@ const PERSON: Duration = Duration::from_secs(300);
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
-    if let Some((_, option)) = [(act.exact, "--exact"), (act.kit, "--kit")].into_iter().find(|(given, _)| *given) {
-        return Err(no_option(option, KIND));
-    }
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.action, words.as_slice()) {
         (Action::Check, []) => check_device(common, output),
@@ -120,7 +118,8 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let prepared = prepare(&mut runner, change)?;
     let operations = operations(&prepared.plan);
     let usual = if can_ask() { PERSON } else { super::PATIENCE };
-    let patience = act.timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
+    let DoOptions { timeout } = act.own.read()?;
+    let patience = timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
     let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
     let name = action_name(act.action);
     let done = show_done(output, &name, &operations, &spent, &results(&outcomes), &results_text(&outcomes))?;

@@ -1,6 +1,7 @@
 //! The commands for BiSS encoders.
 
 mod act;
+mod args;
 mod decode;
 mod inspect;
 mod plan;
@@ -11,16 +12,21 @@ mod write;
 
 use std::time::Duration;
 
+use clap::Arg;
+
+use self::args::DoOptions;
+use crate::app::Text;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol as ubicom;
-use crate::cli::args::Simulate;
-use crate::cli::kind::{Kind, lacking};
+use crate::cli::args::{Common, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::commands::{CommandId, DeviceCommands, options_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::biss::profile::{ItemError, RegisterRange};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::sim;
+use crate::profile::{Body, Comparison, ProfileError};
 use crate::sim::{AT_ADAPTER, ConfigError};
 use crate::units::{CharacterFormat, Moment};
 
@@ -28,27 +34,107 @@ use crate::units::{CharacterFormat, Moment};
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// What can be done with BiSS encoders.
-pub(crate) const COMMANDS: Kind = Kind {
-    name: KIND,
-    find: |_, _, _| lacking("find", KIND),
-    identify: inspect::identify,
-    status: |common, output, _| inspect::status(common, output),
-    position: inspect::position,
-    read: |common, output, read| inspect::read(common, output, &read.item),
-    save: profiles::save,
-    write: write::write,
-    act: act::act,
-    decode: |output, arguments| decode::decode(output, &arguments.hex),
-    restore: profiles::restore,
-    simulated,
-    present: profiles::present,
-    compare: profiles::compare,
-    remark: profiles::remark,
-    other_device: profiles::other_device,
-};
+pub(crate) struct BissCommands;
 
-fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
-    let settings = settings(arguments)?;
+impl DeviceCommands for BissCommands {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn about(&self) -> &'static str {
+        "POSITAL kit encoder, or another with BiSS C; over UBICOM (serial:, tcp:) or an adapter (bridge:)"
+    }
+
+    fn help(&self, command: CommandId) -> Option<String> {
+        let help = match command {
+            CommandId::Read => {
+                "0x66 (a direct register, 0x40 to 0x7F), 0x24:0x10 (bank 24h, offset 10h); with +COUNT a run of them, as \
+                 0x24:0x10+4"
+            }
+            CommandId::Write => {
+                "0x24:0x10 (bank 24h, offset 10h), 0x24:0x10+4 (a run of four), 0x40 to 0x7F (direct). Registers that a \
+                 procedure writes (filter, preset, calibration) are changed with \"do biss …\"."
+            }
+            CommandId::Restore => {
+                "another type is another profile ID, manufacturer or device ID, or another number of bits of turns or steps"
+            }
+            CommandId::Decode => {
+                "UBICOM frames, bridge packets (up to their 00), position frames of the kit encoder (41 bits right-justified: \
+                 16 turns, 17 steps, error, warning, CRC-6; one word of 11 hex digits or with 0x), and position words as \
+                 \"position\" prints them (0x024698000, or raw=610893824 from JSON or a table)"
+            }
+            CommandId::Simulate => "the line is UBICOM; --set firmware=1.2.0 and others",
+            _ => return None,
+        };
+        Some(help.to_owned())
+    }
+
+    fn options(&self, command: CommandId) -> Vec<Arg> {
+        match command {
+            CommandId::Do => options_of::<DoOptions>(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn identify(&self, common: &Common, output: &Output) -> Result {
+        inspect::identify(common, output)
+    }
+
+    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
+        inspect::status(common, output)
+    }
+
+    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
+        inspect::position(common, output, position)
+    }
+
+    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
+        inspect::read(common, output, &read.item)
+    }
+
+    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
+        profiles::save(common, output, save)
+    }
+
+    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
+        write::write(common, output, write)
+    }
+
+    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
+        act::act(common, output, act)
+    }
+
+    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
+        decode::decode(output, &arguments.hex)
+    }
+
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        profiles::restore(common, output, restore, profile)
+    }
+
+    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        simulated(output, arguments)
+    }
+
+    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+        profiles::present(common, output, profile)
+    }
+
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        profiles::compare(left, right)
+    }
+
+    fn remark(&self, profile: &Body) -> Option<Text> {
+        profiles::remark(profile)
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        profiles::other_device(profile, device)
+    }
+}
+
+fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+    let settings = settings(output, arguments)?;
     let known = bridge::keys(&AT_ADAPTER);
     let needs_adapter = |name: &str| known.contains(&name) && !sim::Config::KEYS.contains(&name);
     if let Some((name, _)) = settings.iter().find(|(name, _)| needs_adapter(name)).filter(|_| !arguments.bridge) {

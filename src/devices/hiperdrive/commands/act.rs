@@ -1,9 +1,10 @@
 //! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
 
+use super::args::{DoOptions, OfDrive};
 use super::plan::{commit, operations, prepare, said};
 use super::run::{Runner, drive};
 use crate::app::Text;
-use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::args::{Action, Common, Do, action_name, no_action};
 use crate::cli::check;
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
@@ -22,23 +23,20 @@ const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let of_drive = matches!(act.action, Action::Acknowledge | Action::SetPosition);
-    let foreign = [(act.exact, "--exact"), (act.kit, "--kit"), (act.timeout.is_some(), "--timeout")];
-    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
-        return Err(no_option(option, KIND));
-    }
-    let mine = [(act.of.drive.is_some() && !of_drive, "--drive"), (act.all && act.action != Action::Factory, "--all")];
+    let DoOptions { of, all } = act.own.read()?;
+    let mine = [(of.drive.is_some() && !of_drive, "--drive"), (all && act.action != Action::Factory, "--all")];
     if let Some((_, option)) = mine.into_iter().find(|(given, _)| *given) {
         return Err(Failure::Usage(format!("{option} is not for {}", action_name(act.action))));
     }
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.action, words.as_slice()) {
         (Action::Check, []) => return check_device(common, output),
-        (Action::Acknowledge, []) => Change::Do(Service::Acknowledge(drive(&act.of))),
+        (Action::Acknowledge, []) => Change::Do(Service::Acknowledge(drive(&of))),
         (Action::Save, []) => Change::Do(Service::Save),
         (Action::Recall, []) => Change::Do(Service::Recall),
-        (Action::Factory, []) => Change::Do(if act.all { Service::FactoryAll } else { Service::Factory }),
+        (Action::Factory, []) => Change::Do(if all { Service::FactoryAll } else { Service::Factory }),
         (Action::PresenceTest, []) => Change::Do(Service::Reset),
-        (Action::SetPosition, [position]) => set_position(act, position)?,
+        (Action::SetPosition, [position]) => set_position(&of, position)?,
         (Action::SetPosition, _) => return Err(takes("one position")),
         (
             Action::Check
@@ -60,9 +58,9 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     let found = if act.action == Action::PresenceTest { drives(&mut runner)? } else { Vec::new() };
     match act.action {
-        Action::Factory if !act.all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
+        Action::Factory if !all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
         Action::Acknowledge if operations.is_empty() => {
-            output.remark(&Text::new("hd_cli.no_fault").with("drive", drive(&act.of).get()).terminal());
+            output.remark(&Text::new("hd_cli.no_fault").with("drive", drive(&of).get()).terminal());
         }
         _ => {}
     }
@@ -72,9 +70,9 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     match act.action {
         Action::PresenceTest => present(&before, &found)?,
         Action::Acknowledge if !operations.is_empty() => {
-            let again = prepare(&mut runner, output, Change::Do(Service::Acknowledge(drive(&act.of))))?;
+            let again = prepare(&mut runner, output, Change::Do(Service::Acknowledge(drive(&of))))?;
             if !again.plan.is_empty() {
-                return Err(failed(&Text::new("hd_cli.still_faulty").with("drive", drive(&act.of).get())));
+                return Err(failed(&Text::new("hd_cli.still_faulty").with("drive", drive(&of).get())));
             }
         }
         _ => {}
@@ -101,13 +99,13 @@ fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     }
 }
 
-fn set_position(act: &Do, text: &str) -> Result<Change> {
+fn set_position(of: &OfDrive, text: &str) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
     let position = i32::try_from(number).map_err(|_| {
         let said = Text::new("hd_cli.position_range").with("value", text);
         failed(&said.with("low", i32::MIN).with("high", i32::MAX))
     })?;
-    Ok(Change::SetPosition { drive: drive(&act.of), position, save: true })
+    Ok(Change::SetPosition { drive: drive(of), position, save: true })
 }
 
 fn check_device(common: &Common, output: &Output) -> Result {

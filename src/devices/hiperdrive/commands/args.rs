@@ -1,16 +1,52 @@
-//! What these drives have on the command line that no other device has: `move`, and the order of the bytes in `decode`.
+//! What these drives have on the command line that no other device has: `move`, and options of the shared commands.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 
-use crate::cli::args::{DeviceKind, OfDrive};
-use crate::devices::hiperdrive::protocol::ByteOrder;
+use crate::cli::args::DirectionOption;
+use crate::devices::hiperdrive::protocol::{ByteOrder, KIND};
+
+/// A drive of a hub: only behind one there are several.
+#[derive(Args)]
+pub(super) struct OfDrive {
+    /// hiperdrive: which drive of a hub, 1 to 8; without it the first, or the one that a parameter's number names.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub(super) drive: Option<u8>,
+}
+
+/// Options of `do`.
+#[derive(Args)]
+pub(super) struct DoOptions {
+    #[command(flatten)]
+    pub(super) of: OfDrive,
+    /// hiperdrive factory: everything, the address as well (DHCP), and saved.
+    #[arg(long)]
+    pub(super) all: bool,
+}
+
+/// Options of `decode`.
+#[derive(Args)]
+pub(super) struct WordOptions {
+    #[command(flatten)]
+    pub(super) way: DirectionOption,
+    /// hiperdrive: which byte of a number comes first in process data; little where it is left out.
+    #[arg(long, value_enum)]
+    pub(super) order: Option<Order>,
+}
+
+/// The option of `simulate` that stands for a setting.
+#[derive(Args)]
+pub(super) struct HubOption {
+    /// hiperdrive: a hub with so many places for drives instead of an adapter.
+    #[arg(long, value_name = "PLACES", value_parser = ["4", "8"])]
+    hub: Option<String>,
+}
 
 #[derive(Args)]
 pub(crate) struct Move {
     /// The kind of device: the others do not move.
-    #[arg(value_parser = PossibleValuesParser::new(["hiperdrive"]).map(|_| DeviceKind::Hiperdrive))]
-    pub(crate) device: DeviceKind,
+    #[arg(value_parser = PossibleValuesParser::new([KIND]))]
+    pub(crate) device: String,
     /// Where to, in steps as the drive is scaled.
     #[arg(allow_negative_numbers = true)]
     pub(crate) target: String,

@@ -2,6 +2,7 @@
 
 use serde_json::{Map, json};
 
+use super::args::WordOptions;
 use super::image;
 use super::meaning::{self, Known, Reading, parameter_words};
 use crate::bits::{hex, hex_compact};
@@ -13,8 +14,8 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::protocol::{KIND, Layout};
 
 pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
-    let options = &arguments.words;
-    let known = Known { direction: options.direction, order: options.order.map(Into::into).unwrap_or_default() };
+    let options: WordOptions = arguments.own.read()?;
+    let known = Known { direction: options.way.direction, order: options.order.map(Into::into).unwrap_or_default() };
     let explained: Vec<Explained> =
         captured(&arguments.hex)?.iter().map(|captured| explain(captured, &known)).collect();
     show(output, &explained)

@@ -7,20 +7,15 @@ use serde_json::{Value as Json, json};
 
 use crate::app::explain;
 use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
-use crate::cli::args::{Common, Find, no_option};
+use crate::cli::args::Common;
 use crate::cli::output::Output;
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperdrive::procedures::{Found, discover};
-use crate::devices::hiperdrive::protocol::KIND;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::link::{Cancel, Clock, LinkUrl, RealClock, Scheme, UdpShout, Wire};
 
-pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
-    let foreign = [(find.one_encoder, "--one-encoder"), (find.power_cycle.is_some(), "--power-cycle")];
-    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
-        return Err(no_option(option, KIND));
-    }
+pub(super) fn find(common: &Common, output: &Output) -> Result {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let shout = match &common.link {
         None => UdpShout::to_all(EXPLICIT_PORT, clock.clone()),

@@ -252,7 +252,7 @@ fn nominal_text(text: &str, unit: &str) -> String {
 }
 
 pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
-    let item = item(&read.item, &read.of)?;
+    let item = item(&read.item, &read.own.read()?)?;
     let mut runner = Runner::open(common)?;
     let value = value(&mut runner, item.0)?;
     let unit = item.0.row().map_or("", |row| row.unit);

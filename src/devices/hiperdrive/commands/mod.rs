@@ -15,38 +15,150 @@ mod run;
 mod simulate;
 mod write;
 
+use clap::{Arg, ArgMatches, Args};
+
+use self::args::{DoOptions, HubOption, Move, OfDrive, WordOptions};
 use crate::app::Text;
-use crate::cli::args::OfDrive;
-use crate::cli::kind::Kind;
+use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse};
+use crate::cli::output::Output;
+use crate::cli::simulate::Simulated;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::profile::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{KIND, PARAMETERS};
-
-pub(crate) use args::{Move, Order};
-pub(crate) use r#move::drive_to;
+use crate::profile::{Body, Comparison, ProfileError};
 
 /// What can be done with drives.
-pub(crate) const COMMANDS: Kind = Kind {
-    name: KIND,
-    find: find::find,
-    identify: inspect::identify,
-    status: |common, output, _| inspect::status(common, output),
-    position: position::position,
-    read: inspect::read,
-    save: profiles::save,
-    write: write::write,
-    act: act::act,
-    decode: decode::decode,
-    restore: profiles::restore,
-    simulated: simulate::simulated,
-    present: profiles::present,
-    compare: profiles::compare,
-    remark: |_| None,
-    other_device: profiles::other_device,
-};
+pub(crate) struct HiperdriveCommands;
+
+impl DeviceCommands for HiperdriveCommands {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn about(&self) -> &'static str {
+        "HIPERDRIVE with EtherNet/IP (enip:), one behind an adapter or up to eight behind a hub"
+    }
+
+    fn help(&self, command: CommandId) -> Option<String> {
+        let help = match command {
+            CommandId::Find => "every adapter and hub in the network",
+            CommandId::Read => {
+                let items = "a parameter's number: 17, 158; of another drive of a hub 158 with --drive 2, or 258";
+                return Some(format!("{items}.\n\n{}", listed_parameters()));
+            }
+            CommandId::Write => {
+                "a parameter that can be written, as read has it; it is saved where it can be. 101 to 104 move a drive and are \
+                 never written; 47 and 198 are \"do hiperdrive save\", \"set-position\" and others."
+            }
+            CommandId::Restore => {
+                "another type is an adapter, a hub with four or with eight places instead of another one, or another variant of \
+                 drive at a place"
+            }
+            CommandId::Decode => {
+                "control and status words, 4 hex digits each (0439); process data as they are sent (8, 16, 32, 40, 64 or 72 \
+                 bytes); parameter words (8 bytes); EtherNet/IP packets with the parameters that they are about"
+            }
+            CommandId::Simulate => "--listen is over TCP and over UDP",
+            _ => return None,
+        };
+        Some(help.to_owned())
+    }
+
+    fn options(&self, command: CommandId) -> Vec<Arg> {
+        match command {
+            CommandId::Position | CommandId::Read | CommandId::Write => options_of::<OfDrive>(),
+            CommandId::Do => options_of::<DoOptions>(),
+            CommandId::Decode => options_of::<WordOptions>(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn setting_options(&self) -> Vec<Arg> {
+        options_of::<HubOption>()
+    }
+
+    fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
+        &[&MoveCommand]
+    }
+
+    fn is_searchable(&self) -> bool {
+        true
+    }
+
+    fn find(&self, common: &Common, output: &Output, _: &Find) -> Result {
+        find::find(common, output)
+    }
+
+    fn identify(&self, common: &Common, output: &Output) -> Result {
+        inspect::identify(common, output)
+    }
+
+    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
+        inspect::status(common, output)
+    }
+
+    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
+        position::position(common, output, position)
+    }
+
+    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
+        inspect::read(common, output, read)
+    }
+
+    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
+        profiles::save(common, output, save)
+    }
+
+    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
+        write::write(common, output, write)
+    }
+
+    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
+        act::act(common, output, act)
+    }
+
+    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
+        decode::decode(output, arguments)
+    }
+
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        profiles::restore(common, output, restore, profile)
+    }
+
+    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        simulate::simulated(output, arguments)
+    }
+
+    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+        profiles::present(common, output, profile)
+    }
+
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        profiles::compare(left, right)
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        profiles::other_device(profile, device)
+    }
+}
+
+/// `move`: a drive goes to a position.
+struct MoveCommand;
+
+impl OwnCommand for MoveCommand {
+    fn command(&self) -> clap::Command {
+        Move::augment_args(clap::Command::new("move"))
+            .about("hiperdrive: a drive goes to a position. Ctrl-C stops it; it is off afterwards")
+    }
+
+    fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result {
+        r#move::drive_to(common, output, &parse(matches)?)
+    }
+}
 
 /// All parameters with their numbers, a line each: for the help, since a number alone says nothing.
-pub(crate) fn listed_parameters() -> String {
+fn listed_parameters() -> String {
     let mut text = "\
 Parameters of HIPERDRIVE, of the device below 100, of drive 1 from 101 on (drive 2 from 201 on, and so on to drive 8):
 "

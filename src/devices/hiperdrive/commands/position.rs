@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::state::explain as explained;
 /// The scale is read once, since a position is nothing without it; from then on 105 to 107 alone.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    let drive = drive(&position.of);
+    let drive = drive(&position.own.read()?);
     let (numerator, denominator) = (part(&mut runner, 154, drive)?, part(&mut runner, 156, drive)?);
     let scale = numerator.zip(denominator).and_then(|(one, other)| PositionScale::new(one, other).ok());
     if position.csv {

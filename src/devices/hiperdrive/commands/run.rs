@@ -3,9 +3,10 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use super::args::OfDrive;
 use crate::app::Text;
 use crate::cli::Result;
-use crate::cli::args::{Code, OfDrive};
+use crate::cli::args::Code;
 use crate::cli::output::say;
 use crate::cli::patience::Pace;
 use crate::cli::runner::{self, Runs, unexpected};

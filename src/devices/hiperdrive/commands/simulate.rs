@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::sim::{Config, Target};
 use crate::sim::DatagramDevice;
 use crate::units::{CharacterFormat, Moment};
 
-pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
         let what = "HIPERDRIVE is reached over EtherNet/IP: use --listen HOST:PORT instead of --pty";
         return Err(Failure::Usage(what.to_owned()));
@@ -18,7 +18,8 @@ pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simu
     if arguments.bridge {
         return Err(Failure::Usage("--bridge is for biss: hiperdrive is reached over EtherNet/IP".to_owned()));
     }
-    let config = Config::from_pairs(&settings(arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
+    let config =
+        Config::from_pairs(&settings(output, arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(Target::new(&config)))
 }
 

@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::protocol::{Access, Travel};
 use crate::devices::hiperdrive::state::explain as words;
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
-    let item = item(&write.item, &write.of)?;
+    let item = item(&write.item, &write.own.read()?)?;
     let change = change(item, &write.value)?;
     require_consent(&write.consent)?;
     // A number says little of what it does.

@@ -2,9 +2,10 @@
 
 use serde_json::json;
 
+use super::args::DoOptions;
 use super::inspect::codes_text;
 use super::write::{change_and_show, settings};
-use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option, parse_code};
+use crate::cli::args::{Action, Common, Do, action_name, no_action, parse_code};
 use crate::cli::check;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
@@ -21,9 +22,6 @@ const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, re
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
-    if act.timeout.is_some() {
-        return Err(no_option("--timeout", KIND));
-    }
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
     let change = match (act.action, words.as_slice()) {
         (Action::Reset, []) => return reset(common, output),
@@ -60,7 +58,8 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
 fn set_position(act: &Do, text: &str, synchronise: bool) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
     let wanted = u32::try_from(number).map_err(|_| out_of_range("position", text, 0, u32::MAX.into()))?;
-    Ok(Change::SetPosition { wanted, exact: act.exact, synchronise, kit: act.kit })
+    let DoOptions { exact, kit } = act.own.read()?;
+    Ok(Change::SetPosition { wanted, exact, synchronise, kit })
 }
 
 fn change_code(number: &str, new: &str) -> Result<Change> {

@@ -1,6 +1,7 @@
 //! The commands for HIPERFACE encoders.
 
 mod act;
+mod args;
 mod decode;
 mod inspect;
 mod profiles;
@@ -8,41 +9,126 @@ mod run;
 mod table;
 mod write;
 
-use crate::cli::args::Simulate;
-use crate::cli::kind::Kind;
+use clap::Arg;
+
+use self::args::{DoOptions, FindOptions};
+use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::commands::{CommandId, DeviceCommands, options_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{KIND, LineSettings};
 use crate::devices::hiperface::sim::{Bus, Config};
+use crate::profile::{Body, Comparison, ProfileError};
 use crate::units::{CharacterFormat, Moment};
 
 /// What can be done with HIPERFACE encoders.
-pub(crate) const COMMANDS: Kind = Kind {
-    name: KIND,
-    find: inspect::find,
-    identify: inspect::identify,
-    status: |common, output, _| inspect::status(common, output),
-    position: inspect::position,
-    read: |common, output, read| inspect::read(common, output, &read.item),
-    save: profiles::save,
-    write: write::write,
-    act: act::act,
-    decode: |output, arguments| decode::decode(output, &arguments.hex),
-    restore: profiles::restore,
-    simulated,
-    present: profiles::present,
-    compare: profiles::compare,
-    remark: |_| None,
-    other_device: profiles::other_device,
-};
+pub(crate) struct HiperfaceCommands;
 
-fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+impl DeviceCommands for HiperfaceCommands {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn about(&self) -> &'static str {
+        "HIPERFACE motor-feedback encoder"
+    }
+
+    fn help(&self, command: CommandId) -> Option<String> {
+        let help = match command {
+            CommandId::Find => "every address, speed and parity that answers",
+            CommandId::Status => "the whole error queue",
+            CommandId::Read => {
+                "field:N, field:N@ADDR+COUNT (without +COUNT the rest of the field), status:N, analogue:CH, counter, address, \
+                 settings"
+            }
+            CommandId::Write => {
+                "field:N, field:N@ADDR+COUNT (without +COUNT as many bytes as are given), status:N, counter (to 0), address, \
+                 settings"
+            }
+            CommandId::Restore => "another type is another type byte",
+            CommandId::Simulate => "--set model=sel37 and others",
+            _ => return None,
+        };
+        Some(help.to_owned())
+    }
+
+    fn options(&self, command: CommandId) -> Vec<Arg> {
+        match command {
+            CommandId::Find => options_of::<FindOptions>(),
+            CommandId::Do => options_of::<DoOptions>(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn is_searchable(&self) -> bool {
+        true
+    }
+
+    fn find(&self, common: &Common, output: &Output, find: &Find) -> Result {
+        inspect::find(common, output, &find.own.read()?)
+    }
+
+    fn identify(&self, common: &Common, output: &Output) -> Result {
+        inspect::identify(common, output)
+    }
+
+    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
+        inspect::status(common, output)
+    }
+
+    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
+        inspect::position(common, output, position)
+    }
+
+    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
+        inspect::read(common, output, &read.item)
+    }
+
+    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
+        profiles::save(common, output, save)
+    }
+
+    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
+        write::write(common, output, write)
+    }
+
+    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
+        act::act(common, output, act)
+    }
+
+    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
+        decode::decode(output, &arguments.hex)
+    }
+
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        profiles::restore(common, output, restore, profile)
+    }
+
+    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        simulated(output, arguments)
+    }
+
+    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+        profiles::present(common, output, profile)
+    }
+
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        profiles::compare(left, right)
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        profiles::other_device(profile, device)
+    }
+}
+
+fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.bridge {
         return Err(Failure::Usage("--bridge is for biss: hiperface has a serial line of its own".to_owned()));
     }
-    let config = Config::from_pairs(&settings(arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
+    let config =
+        Config::from_pairs(&settings(output, arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(Bus::new(&config)))
 }
 

@@ -8,7 +8,7 @@ use super::plan::{commit, operations, prepare};
 use super::run::Runner;
 use super::value::value;
 use crate::app::Text;
-use crate::cli::args::{Action, Common, Do, action_name, no_action, no_option};
+use crate::cli::args::{Action, Common, Do, action_name, no_action};
 use crate::cli::check;
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
@@ -22,10 +22,6 @@ use crate::devices::interbus::state::explain as words;
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
-    let foreign = [(act.exact, "--exact"), (act.kit, "--kit"), (act.timeout.is_some(), "--timeout")];
-    if let Some((_, option)) = foreign.into_iter().find(|(given, _)| *given) {
-        return Err(no_option(option, KIND));
-    }
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
     match (act.action, words.as_slice()) {
         (Action::Check, []) => check_device(common, output),

@@ -1,8 +1,25 @@
-//! What an INTERBUS encoder has on the command line that no other device has: the modes that `decode` asks for.
+//! Options of `decode` that only words of INTERBUS encoders have.
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 
+use crate::cli::args::DirectionOption;
 use crate::devices::interbus::protocol::Mode;
+
+/// What tells the meaning of a word, which may have several.
+#[derive(Args)]
+pub(super) struct WordOptions {
+    #[command(flatten)]
+    pub(super) way: DirectionOption,
+    /// interbus: the mode that the encoder was in; with --direction out, a word that is not legal in it is an error.
+    #[arg(long, value_enum)]
+    pub(super) mode: Option<WordMode>,
+    /// interbus: what was read out, by name (temperature, operating-time …) or number (0x5D: chip register 5).
+    #[arg(long = "read-out", value_name = "NAME|N")]
+    pub(super) read_out: Option<String>,
+    /// interbus: shift_iw, how far the position is shifted under the window of a cam output word.
+    #[arg(long, value_name = "0..25", value_parser = clap::value_parser!(u8).range(0..=25))]
+    pub(super) shift: Option<u8>,
+}
 
 /// The modes of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

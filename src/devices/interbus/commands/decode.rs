@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
+use super::args::WordOptions;
 use super::meaning::{self, Known, Said};
 use crate::cli::args::{Decode, Direction};
 use crate::cli::decode::{Explained, show};
@@ -11,7 +12,8 @@ use crate::cli::{Failure, Result};
 use crate::devices::interbus::protocol::{KIND, READ_OUTS, ReadOut, Single, WindowShift};
 
 pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
-    let options = &arguments.words;
+    let options: WordOptions = arguments.own.read()?;
+    let direction = options.way.direction;
     let known = Known {
         mode: options.mode.map(Into::into),
         read_out: options.read_out.as_deref().map(read_out).transpose()?,
@@ -19,11 +21,11 @@ pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     };
     let words: Vec<Captured> = arguments.hex.iter().map(|word| captured(word)).collect::<Result<_>>()?;
     if let (Some(Captured::K1(word)), Some(Direction::Out)) =
-        (words.iter().find(|word| matches!(word, Captured::K1(_))), options.direction)
+        (words.iter().find(|word| matches!(word, Captured::K1(_))), direction)
     {
         return Err(Failure::Usage(format!("{word:04X} has 4 digits: K1 encoders take no words, only K3 ones do")));
     }
-    let explained: Vec<Explained> = words.iter().map(|word| explain(*word, options.direction, &known)).collect();
+    let explained: Vec<Explained> = words.iter().map(|word| explain(*word, direction, &known)).collect();
     show(output, &explained)
 }
 

@@ -13,37 +13,122 @@ mod simulate;
 mod value;
 mod write;
 
+use clap::Arg;
+
+use self::args::WordOptions;
 use crate::app::Text;
-use crate::cli::args::{Common, Consenting};
+use crate::cli::args::{Common, Consenting, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::commands::{CommandId, DeviceCommands, options_of};
 use crate::cli::consent::{ask, can_ask};
-use crate::cli::kind::{Kind, lacking};
 use crate::cli::output::Output;
+use crate::cli::simulate::Simulated;
 use crate::cli::{Failure, Result};
 use crate::devices::interbus::profile::{Item, ItemError};
 use crate::devices::interbus::protocol::KIND;
 use crate::link::Scheme;
-
-pub(crate) use args::WordMode;
+use crate::profile::{Body, Comparison, ProfileError};
 
 /// What can be done with INTERBUS encoders.
-pub(crate) const COMMANDS: Kind = Kind {
-    name: KIND,
-    find: |_, _, _| lacking("find", KIND),
-    identify: inspect::identify,
-    status: |common, output, _| inspect::status(common, output),
-    position: position::position,
-    read: |common, output, read| inspect::read(common, output, &read.item),
-    save: profiles::save,
-    write: write::write,
-    act: act::act,
-    decode: decode::decode,
-    restore: profiles::restore,
-    simulated: simulate::simulated,
-    present: profiles::present,
-    compare: profiles::compare,
-    remark: |_| None,
-    other_device: profiles::other_device,
-};
+pub(crate) struct InterbusCommands;
+
+/// What reading cam programs does to a machine.
+const SWITCHES: &str = "cam programs are selected one after the other to be read, which switches its live outputs. On a \
+                        terminal it asks first whether the machine stands still; without one it says so and goes on.";
+
+impl DeviceCommands for InterbusCommands {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn about(&self) -> &'static str {
+        "INTERBUS encoder (K3) behind a Modbus/TCP gateway (modbus:); words of K1 and K2 are explained offline (decode)"
+    }
+
+    fn note(&self) -> Option<&'static str> {
+        Some("Reading an INTERBUS encoder replaces its position for a moment.")
+    }
+
+    fn help(&self, command: CommandId) -> Option<String> {
+        let help = match command {
+            CommandId::Read => {
+                let items = "steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
+                             cam-mask:P, temperature, operating-time";
+                return Some(format!("{items}; {SWITCHES}"));
+            }
+            CommandId::Save | CommandId::Diff | CommandId::Verify => SWITCHES,
+            CommandId::Write => {
+                "what read has but for what is measured; cw or ccw for the direction, START..STOP for a cam; a preset is stored \
+                 and not fired"
+            }
+            CommandId::Restore => "another type is single turn instead of multiturn, or steps counted less one",
+            CommandId::Decode => {
+                "words of the process data, 8 hex digits each (a K2 word as a K3 position), or 4 for a K1 encoder. All that a \
+                 word may mean is told; --direction and --mode say which it is."
+            }
+            _ => return None,
+        };
+        Some(help.to_owned())
+    }
+
+    fn options(&self, command: CommandId) -> Vec<Arg> {
+        match command {
+            CommandId::Decode => options_of::<WordOptions>(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn identify(&self, common: &Common, output: &Output) -> Result {
+        inspect::identify(common, output)
+    }
+
+    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
+        inspect::status(common, output)
+    }
+
+    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
+        position::position(common, output, position)
+    }
+
+    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
+        inspect::read(common, output, &read.item)
+    }
+
+    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
+        profiles::save(common, output, save)
+    }
+
+    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
+        write::write(common, output, write)
+    }
+
+    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
+        act::act(common, output, act)
+    }
+
+    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
+        decode::decode(output, arguments)
+    }
+
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        profiles::restore(common, output, restore, profile)
+    }
+
+    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        simulate::simulated(output, arguments)
+    }
+
+    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+        profiles::present(common, output, profile)
+    }
+
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        profiles::compare(left, right)
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        profiles::other_device(profile, device)
+    }
+}
 
 /// The item that a user names. One of a program or a cam that there is not is understood, and out of range.
 fn item(text: &str) -> Result<Item> {

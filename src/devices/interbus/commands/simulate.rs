@@ -9,7 +9,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::interbus::sim::{Config, Gateway};
 use crate::units::{CharacterFormat, Moment};
 
-pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
         let what =
             "an INTERBUS encoder is reached through a Modbus/TCP gateway: use --listen HOST:PORT instead of --pty";
@@ -19,7 +19,8 @@ pub(super) fn simulated(_: &Output, arguments: &Simulate) -> Result<Box<dyn Simu
         let what = "--bridge is for biss: interbus is reached through a Modbus/TCP gateway";
         return Err(Failure::Usage(what.to_owned()));
     }
-    let config = Config::from_pairs(&settings(arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
+    let config =
+        Config::from_pairs(&settings(output, arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(Gateway::new(&config)))
 }
 

@@ -1,4 +1,4 @@
-//! What can be written behind `ssi`.
+//! What can be written behind `ssi`, and the option of the shared commands that only SSI encoders have.
 
 use std::path::PathBuf;
 
@@ -104,6 +104,13 @@ pub(crate) struct SsiExport {
     /// The file to write; without it, it is printed.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
+}
+
+/// The layout, where a command can do without.
+#[derive(Args)]
+pub(super) struct LayoutOption {
+    #[arg(long, value_name = "FILE|SPEC")]
+    pub(super) layout: Option<String>,
 }
 
 #[derive(Args)]

@@ -2,12 +2,12 @@
 
 use serde_json::{Value as Json, json};
 
-use super::args::SsiLayout;
+use super::args::{LayoutOption, SsiLayout};
 use super::frames::{Told, name};
 use super::layout::{Chosen, choose};
 use super::run::{begin, words};
 use crate::analysis::Time;
-use crate::cli::args::{Common, Position, Status};
+use crate::cli::args::{Common, Position};
 use crate::cli::output::{Lines, Output, count, say};
 use crate::cli::positions::readings;
 use crate::cli::runner::Ended;
@@ -18,8 +18,8 @@ use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
 /// The layout, which nobody but the user knows.
-fn layout(output: &Output, command: &str, spec: Option<&String>) -> Result<Chosen> {
-    let Some(spec) = spec.cloned() else {
+fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<Chosen> {
+    let Some(spec) = given.layout.clone() else {
         let why = "ssi needs --layout FILE|SPEC: an SSI encoder cannot tell how its frame is made";
         return Err(Failure::Usage(format!("{command} {why}")));
     };
@@ -27,7 +27,7 @@ fn layout(output: &Output, command: &str, spec: Option<&String>) -> Result<Chose
 }
 
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
-    let chosen = layout(output, "position", position.layout.as_ref())?;
+    let chosen = layout(output, "position", &position.own.read()?)?;
     let mut runner = begin(common, output, &chosen)?;
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,millimetres,valid\n")?;
@@ -141,8 +141,8 @@ fn row(at: Moment, told: &Told<'_>) -> String {
     )
 }
 
-pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Result {
-    let chosen = layout(output, "status", status.layout.as_ref())?;
+pub(super) fn status(common: &Common, output: &Output, given: &LayoutOption) -> Result {
+    let chosen = layout(output, "status", given)?;
     let mut runner = begin(common, output, &chosen)?;
     let words = words(runner.run(SsiJob::Read)?)?;
     let Some((_, word)) = words.timed().next() else {

@@ -9,60 +9,141 @@ mod live;
 mod profiles;
 mod run;
 
+use clap::{Arg, ArgMatches, Subcommand};
+
+use self::args::{LayoutOption, Ssi, SsiLayout};
 use crate::buses::bridge::sim::{Adapter, Attachable};
-use crate::cli::args::Simulate;
-use crate::cli::kind::Kind;
+use crate::cli::args::{Common, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::KIND;
 use crate::devices::ssi::sim::{AtAdapter, Encoder};
+use crate::profile::{Body, Comparison, ProfileError};
 use crate::sim::AT_ADAPTER;
 
-pub(crate) use args::Ssi;
-use args::SsiLayout;
-
 /// What can be done with SSI encoders. They send their position and have no memory.
-pub(crate) const COMMANDS: Kind = Kind {
-    name: KIND,
-    find: |_, _, _| lacking("find", "connect it to an adapter of its own"),
-    identify: |_, _| lacking("identify", "its type label says who it is"),
-    status: live::status,
-    position: live::position,
-    read: |_, _, _| lacking("read", "there are no registers in it"),
-    save: profiles::save,
-    write: |_, _, _| lacking("write", SET),
-    act: |_, _, _| lacking("do", SET),
-    decode: |_, _| lacking("decode", "use ssi decode --layout FILE|SPEC FRAME"),
-    restore: |_, _, _, _| lacking("restore", SET),
-    simulated,
-    present: |_, _, _| refuse("reading a profile from a link", "compare two files with diff FILE FILE"),
-    compare: profiles::compare,
-    remark: |_| None,
-    other_device: |_, _| None,
-};
+pub(crate) struct SsiCommands;
+
+impl DeviceCommands for SsiCommands {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn about(&self) -> &'static str {
+        "SSI encoder; it sends its position and nothing else: --layout says how its frame is made"
+    }
+
+    fn note(&self) -> Option<&'static str> {
+        Some(
+            "An SSI encoder sends its position and nothing else: --layout says how its frame is made, and ssi explains frames \
+             offline.",
+        )
+    }
+
+    fn options(&self, command: CommandId) -> Vec<Arg> {
+        let help = match command {
+            CommandId::Status | CommandId::Position => "ssi: how its frame is made",
+            CommandId::Save => "ssi: the layout to save",
+            CommandId::Simulate => "ssi: the encoder behind the adapter, without it atm60,code=gray",
+            _ => return Vec::new(),
+        };
+        let help = format!("{help}; a profile or a family with its settings (help ssi decode says which)");
+        options_of::<LayoutOption>().into_iter().map(|option| option.help(help.clone())).collect()
+    }
+
+    fn refused_option(&self, option: &str) -> Option<String> {
+        Some(format!("{option} is for {KIND} devices; others tell that themselves"))
+    }
+
+    fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
+        &[&SsiCommand]
+    }
+
+    fn identify(&self, _: &Common, _: &Output) -> Result {
+        refuse("identify", "its type label says who it is")
+    }
+
+    fn status(&self, common: &Common, output: &Output, status: &Status) -> Result {
+        live::status(common, output, &status.own.read()?)
+    }
+
+    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
+        live::position(common, output, position)
+    }
+
+    fn read(&self, _: &Common, _: &Output, _: &Read) -> Result {
+        refuse("read", "there are no registers in it")
+    }
+
+    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
+        profiles::save(common, output, save)
+    }
+
+    fn write(&self, _: &Common, _: &Output, _: &Write) -> Result {
+        refuse("write", SET)
+    }
+
+    fn act(&self, _: &Common, _: &Output, _: &Do) -> Result {
+        refuse("do", SET)
+    }
+
+    fn decode(&self, _: &Output, _: &Decode) -> Result {
+        refuse("decode", "use ssi decode --layout FILE|SPEC FRAME")
+    }
+
+    fn restore(&self, _: &Common, _: &Output, _: &Restore, _: Body) -> Result {
+        refuse("restore", SET)
+    }
+
+    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        simulated(output, arguments)
+    }
+
+    fn present(&self, _: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {
+        refuse("reading a profile from a link", "compare two files with diff FILE FILE")
+    }
+
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        profiles::compare(left, right)
+    }
+}
 
 /// Who sets an encoder up.
 const SET: &str = "it is set with its maker's own tool";
 
-pub(crate) fn ssi(output: &Output, command: &Ssi) -> Result {
-    match command {
-        Ssi::Decode(arguments) => frames::decode(output, arguments),
-        Ssi::Encode(arguments) => frames::encode(output, arguments),
-        Ssi::Find(arguments) => find::find(output, arguments),
-        Ssi::Export(arguments) => export::export(output, arguments),
+/// `ssi`: frames without an encoder.
+struct SsiCommand;
+
+impl OwnCommand for SsiCommand {
+    fn command(&self) -> clap::Command {
+        Ssi::augment_subcommands(clap::Command::new(KIND))
+            .about("Frames of SSI encoders: what they say, how they are made, decoders for other programs")
+            .subcommand_required(true)
+            .arg_required_else_help(true)
+    }
+
+    fn run(&self, _: &Common, output: &Output, matches: &ArgMatches) -> Result {
+        match parse(matches)? {
+            Ssi::Decode(arguments) => frames::decode(output, &arguments),
+            Ssi::Encode(arguments) => frames::encode(output, &arguments),
+            Ssi::Find(arguments) => find::find(output, &arguments),
+            Ssi::Export(arguments) => export::export(output, &arguments),
+        }
     }
 }
 
 /// The adapter before a virtual encoder that sends the frames of `--layout`.
 fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
-    let settings = settings(arguments)?;
-    let encoder = match &arguments.layout {
+    let settings = settings(output, arguments)?;
+    let LayoutOption { layout } = arguments.own.read()?;
+    let encoder = match layout {
         Some(_) if settings.iter().any(|(name, _)| name == "ssi") => {
             return Err(Failure::Usage("--layout and --set ssi= say the same: give one of them".to_owned()));
         }
         Some(spec) => {
-            let chosen = layout::choose(&output.as_text(), &SsiLayout { spec: spec.clone() })?;
+            let chosen = layout::choose(&output.as_text(), &SsiLayout { spec })?;
             let (direction, preset) = (chosen.profile.direction, chosen.profile.preset);
             AtAdapter::sending(Encoder { layout: chosen.layout, direction, preset })
         }
@@ -75,11 +156,7 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
     Ok(Box::new(adapter))
 }
 
-/// A command that SSI encoders do not have, and what there is instead.
-fn lacking(command: &str, instead: &str) -> Result {
-    refuse(command, instead)
-}
-
+/// Refuses a command that SSI encoders do not have, and says what there is instead.
 fn refuse<T>(command: &str, instead: &str) -> Result<T> {
     Err(Failure::Usage(format!(
         "{command} is not for {KIND} devices, which send a position and nothing else: {instead}"

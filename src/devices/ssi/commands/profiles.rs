@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::SsiLayout;
+use super::args::{LayoutOption, SsiLayout};
 use super::layout::choose;
 use crate::app::explain;
 use crate::cli::args::{Common, Save};
@@ -16,7 +16,7 @@ use crate::profile::{Body, Comparison, Document, ProfileError};
 use crate::store::write_atomically;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
-    let Some(spec) = save.layout.clone() else {
+    let LayoutOption { layout: Some(spec) } = save.own.read()? else {
         let why = "save ssi needs --layout FILE|SPEC: an SSI encoder cannot tell how its frame is made";
         return Err(Failure::Usage(why.to_owned()));
     };

@@ -1,0 +1,115 @@
+//! The command line as clap is to parse it: what all kinds of device have, and what the list of them adds.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Subcommand};
+
+use super::{Command, Common, Front};
+use crate::cli::commands::{CommandId, Commands, DeviceCommands, OwnCommand};
+
+/// The place in the help of an option that a kind of device adds.
+const BEHIND_THE_SHARED: usize = 200;
+
+/// The arguments of a process.
+pub(in crate::cli) struct Arguments {
+    pub(in crate::cli) common: Common,
+    pub(in crate::cli) profile: Option<PathBuf>,
+    pub(in crate::cli) command: Option<Called>,
+}
+
+/// The command that is called.
+pub(in crate::cli) enum Called {
+    Shared(Command),
+    Own(&'static dyn OwnCommand, ArgMatches),
+}
+
+/// Parses the arguments of a process, the first of which is its name.
+pub(in crate::cli) fn parse_arguments(
+    words: impl IntoIterator<Item = OsString>,
+    commands: Commands,
+) -> Result<Arguments, clap::Error> {
+    let mut command = command(commands);
+    let matches = command.try_get_matches_from_mut(words)?;
+    read(&matches, commands).map_err(|error| error.format(&mut command))
+}
+
+fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Error> {
+    let Front { common, profile } = Front::from_arg_matches(matches)?;
+    let own = matches.subcommand().and_then(|(name, own)| {
+        let command = commands.own().find(|command| command.command().get_name() == name)?;
+        Some(Called::Own(command, own.clone()))
+    });
+    let command = match own {
+        Some(own) => Some(own),
+        None if matches.subcommand_name().is_some() => Some(Called::Shared(Command::from_arg_matches(matches)?)),
+        None => None,
+    };
+    Ok(Arguments { common, profile, command })
+}
+
+/// The whole command line.
+pub(super) fn command(commands: Commands) -> clap::Command {
+    let shared = Command::augment_subcommands(Front::command()).after_help(summary(commands));
+    let extended = CommandId::ALL
+        .into_iter()
+        .fold(shared, |all, id| all.mut_subcommand(id.name(), |command| extended(command, id, commands)));
+    extended.subcommands(commands.own().map(|own| own.command()))
+}
+
+/// A shared command with what the kinds of device add to it.
+fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::Command {
+    let mut command = command;
+    // In place: `mut_arg` would put it behind the other arguments.
+    command = command.mut_args(|argument| match argument.get_id().as_str() {
+        "device" | "protocol" => argument.value_parser(names(id, commands)),
+        _ => argument,
+    });
+    for device in commands.devices() {
+        let own = device.options(id).into_iter();
+        let settings = device.setting_options().into_iter().filter(|_| id == CommandId::Simulate);
+        for option in own.chain(settings) {
+            // Several kinds of device may have it.
+            if command.get_arguments().all(|other| other.get_id() != option.get_id()) {
+                command = command.arg(option.display_order(BEHIND_THE_SHARED));
+            }
+        }
+    }
+    let of_devices = commands.devices().iter().filter_map(|device| Some((device.name(), device.help(id)?)));
+    let protocols = commands.protocols().iter().filter(|_| id == CommandId::Decode);
+    let of_protocols = protocols.map(|protocol| (protocol.name(), protocol.help().to_owned()));
+    let help: Vec<String> =
+        of_devices.chain(of_protocols).map(|(name, help)| format!("{name}: {}", help.trim_end())).collect();
+    if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
+}
+
+/// The kinds of device that a command takes, and the protocols where it takes them.
+fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
+    let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
+    let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.about()));
+    let protocols = commands.protocols().iter().filter(|_| id == CommandId::Decode);
+    let protocols = protocols.map(|protocol| PossibleValue::new(protocol.name()).help(protocol.about()));
+    PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
+}
+
+/// Which commands are for which kinds of device.
+fn summary(commands: Commands) -> String {
+    let devices = commands.devices();
+    let list = |is: &dyn Fn(&dyn DeviceCommands) -> bool| {
+        let names: Vec<&str> = devices.iter().filter(|device| is(**device)).map(|device| device.name()).collect();
+        match names.split_last() {
+            Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+            _ => names.concat(),
+        }
+    };
+    let all = list(&|_| true);
+    let searchable = list(&|device| device.is_searchable());
+    let notes: String = devices.iter().filter_map(|device| device.note()).map(|note| format!("{note}\n")).collect();
+    let example = devices.first().map(|device| device.name()).unwrap_or_default();
+    format!(
+        "Kinds of device: {all}.\ndiff, verify and restore find the kind in the profile. find is for {searchable}. do has \
+         other actions for each kind (help do).\n{notes}\nWithout hardware: --link sim:, as in\n\n  encoder-studio identify \
+         {example} --link sim:\n\nAn address or a register is hexadecimal with 0x in front, else decimal."
+    )
+}

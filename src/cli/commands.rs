@@ -1,0 +1,325 @@
+//! What devices, buses and Signals add to the command line. The list of them is a value that `kinds.rs` hands over: nothing
+//! here names one.
+
+use clap::{Arg, ArgMatches, FromArgMatches};
+
+use super::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
+use super::output::Output;
+use super::simulate::Simulated;
+use super::{Failure, Result};
+use crate::app::Text;
+use crate::profile::{Body, Comparison, ProfileError};
+
+/// The commands that a kind of device may take part in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CommandId {
+    Find,
+    Identify,
+    Status,
+    Position,
+    Read,
+    Save,
+    Diff,
+    Verify,
+    Restore,
+    Write,
+    Do,
+    Decode,
+    Simulate,
+}
+
+impl CommandId {
+    pub(super) const ALL: [CommandId; 13] = [
+        CommandId::Find,
+        CommandId::Identify,
+        CommandId::Status,
+        CommandId::Position,
+        CommandId::Read,
+        CommandId::Save,
+        CommandId::Diff,
+        CommandId::Verify,
+        CommandId::Restore,
+        CommandId::Write,
+        CommandId::Do,
+        CommandId::Decode,
+        CommandId::Simulate,
+    ];
+
+    /// As it is written.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            CommandId::Find => "find",
+            CommandId::Identify => "identify",
+            CommandId::Status => "status",
+            CommandId::Position => "position",
+            CommandId::Read => "read",
+            CommandId::Save => "save",
+            CommandId::Diff => "diff",
+            CommandId::Verify => "verify",
+            CommandId::Restore => "restore",
+            CommandId::Write => "write",
+            CommandId::Do => "do",
+            CommandId::Decode => "decode",
+            CommandId::Simulate => "simulate",
+        }
+    }
+}
+
+/// A kind of device on the command line. A command that it does not implement is refused as wrong usage.
+pub(crate) trait DeviceCommands: Sync {
+    /// The kind as it is written on the command line and in profiles.
+    fn name(&self) -> &'static str;
+
+    /// One sentence on the kind, for the help.
+    fn about(&self) -> &'static str;
+
+    /// What the help of the program says of the kind beside that; whole sentences.
+    fn note(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// What the help of a command says of the kind: items, values, forms.
+    fn help(&self, _command: CommandId) -> Option<String> {
+        None
+    }
+
+    /// Options that the kind adds to a command. An option that several kinds add is the same option.
+    fn options(&self, _command: CommandId) -> Vec<Arg> {
+        Vec::new()
+    }
+
+    /// Options of `simulate` that stand for `--set` of the same name.
+    fn setting_options(&self) -> Vec<Arg> {
+        Vec::new()
+    }
+
+    /// Why an option of this kind is refused for another one, where there is more to say than that.
+    fn refused_option(&self, _option: &str) -> Option<String> {
+        None
+    }
+
+    /// Commands that only this kind has.
+    fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
+        &[]
+    }
+
+    /// Whether `find` looks for devices of this kind.
+    fn is_searchable(&self) -> bool {
+        false
+    }
+
+    fn find(&self, _common: &Common, _output: &Output, _find: &Find) -> Result {
+        lacking(CommandId::Find, self.name())
+    }
+
+    fn identify(&self, _common: &Common, _output: &Output) -> Result {
+        lacking(CommandId::Identify, self.name())
+    }
+
+    fn status(&self, _common: &Common, _output: &Output, _status: &Status) -> Result {
+        lacking(CommandId::Status, self.name())
+    }
+
+    fn position(&self, _common: &Common, _output: &Output, _position: &Position) -> Result {
+        lacking(CommandId::Position, self.name())
+    }
+
+    fn read(&self, _common: &Common, _output: &Output, _read: &Read) -> Result {
+        lacking(CommandId::Read, self.name())
+    }
+
+    fn save(&self, _common: &Common, _output: &Output, _save: &Save) -> Result {
+        lacking(CommandId::Save, self.name())
+    }
+
+    fn write(&self, _common: &Common, _output: &Output, _write: &Write) -> Result {
+        lacking(CommandId::Write, self.name())
+    }
+
+    fn act(&self, _common: &Common, _output: &Output, _act: &Do) -> Result {
+        lacking(CommandId::Do, self.name())
+    }
+
+    fn decode(&self, _output: &Output, _decode: &Decode) -> Result {
+        lacking(CommandId::Decode, self.name())
+    }
+
+    fn restore(&self, _common: &Common, _output: &Output, _restore: &Restore, _profile: Body) -> Result {
+        lacking(CommandId::Restore, self.name())
+    }
+
+    /// Builds the virtual device that is to be served.
+    fn simulated(&self, _output: &Output, _simulate: &Simulate) -> Result<Box<dyn Simulated>> {
+        lacking(CommandId::Simulate, self.name())
+    }
+
+    /// Reads the device for a comparison: all of it, or at least what a profile says something about.
+    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;
+
+    /// Compares two profiles.
+    ///
+    /// # Errors
+    /// One of them is of another kind.
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError>;
+
+    /// What is to be known of a profile, whatever is done with it.
+    fn remark(&self, _profile: &Body) -> Option<Text> {
+        None
+    }
+
+    /// That two profiles are not of the same device.
+    fn other_device(&self, _profile: &Body, _device: &Body) -> Option<String> {
+        None
+    }
+}
+
+/// Refuses a command that a kind of device does not have.
+fn lacking<T>(command: CommandId, kind: &str) -> Result<T> {
+    Err(Failure::Usage(format!("{} is not for {kind} devices", command.name())))
+}
+
+/// A command that a kind of device, or a part of the program beside the devices, has for itself.
+pub(crate) trait OwnCommand: Sync {
+    /// Its name, options and help.
+    fn command(&self) -> clap::Command;
+
+    fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result;
+}
+
+/// A protocol that several kinds of device may speak, whose captured bytes `decode` explains.
+pub(crate) trait ProtocolDecoder: Sync {
+    /// As it is written on the command line.
+    fn name(&self) -> &'static str;
+
+    /// One sentence on the protocol, for the help.
+    fn about(&self) -> &'static str;
+
+    /// What the help of `decode` says of the bytes.
+    fn help(&self) -> &'static str;
+
+    fn decode(&self, output: &Output, decode: &Decode) -> Result;
+}
+
+/// The parts of the command line: kinds of device, protocols beside them, and further commands.
+#[derive(Clone, Copy)]
+pub struct Commands {
+    devices: &'static [&'static dyn DeviceCommands],
+    protocols: &'static [&'static dyn ProtocolDecoder],
+    further: &'static [&'static dyn OwnCommand],
+}
+
+impl std::fmt::Debug for Commands {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.devices.iter().map(|device| device.name())).finish()
+    }
+}
+
+impl Commands {
+    pub(crate) const fn new(
+        devices: &'static [&'static dyn DeviceCommands],
+        protocols: &'static [&'static dyn ProtocolDecoder],
+        further: &'static [&'static dyn OwnCommand],
+    ) -> Self {
+        Commands { devices, protocols, further }
+    }
+
+    pub(super) fn devices(self) -> &'static [&'static dyn DeviceCommands] {
+        self.devices
+    }
+
+    pub(super) fn protocols(self) -> &'static [&'static dyn ProtocolDecoder] {
+        self.protocols
+    }
+
+    /// The commands that are not in the core.
+    pub(super) fn own(self) -> impl Iterator<Item = &'static dyn OwnCommand> {
+        let of_devices = self.devices.iter().flat_map(|device| device.own_commands());
+        of_devices.chain(self.further).copied()
+    }
+
+    /// The protocol of a name.
+    pub(super) fn protocol(self, name: &str) -> Option<&'static dyn ProtocolDecoder> {
+        self.protocols.iter().copied().find(|protocol| protocol.name() == name)
+    }
+
+    /// The kind of device of a name.
+    ///
+    /// # Errors
+    /// There is none.
+    pub(super) fn device(self, name: &str) -> Result<&'static dyn DeviceCommands> {
+        let named = self.devices.iter().copied().find(|device| device.name() == name);
+        named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
+    }
+
+    /// An option that was given to a command, and that the chosen kind of device or protocol does not have, in words.
+    pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &OwnOptions) -> Option<String> {
+        let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
+            device.options(command).iter().any(|option| option.get_id() == id)
+        };
+        let foreign = self.devices.iter().flat_map(|device| device.options(command)).find(|option| {
+            let is_own = self.devices.iter().any(|device| device.name() == chosen && has(&device, option.get_id()));
+            !is_own && given.has(option.get_id().as_str())
+        })?;
+        let owners: Vec<_> = self.devices.iter().filter(|device| has(device, foreign.get_id())).collect();
+        let option = format!("--{}", foreign.get_long().unwrap_or_default());
+        if command == CommandId::Decode {
+            let names: Vec<&str> = owners.iter().map(|device| device.name()).collect();
+            return Some(format!("{option} is for the words of {} devices", names.join(" and ")));
+        }
+        let own = owners.iter().find_map(|device| device.refused_option(&option));
+        Some(own.unwrap_or_else(|| format!("{option} is not for {chosen} devices")))
+    }
+}
+
+/// The options that kinds of device add to a command, as they were given.
+#[derive(Clone)]
+pub(crate) struct OwnOptions(ArgMatches);
+
+impl OwnOptions {
+    /// Reads the options that a kind of device has added.
+    pub(crate) fn read<O: FromArgMatches>(&self) -> Result<O> {
+        parse(&self.0)
+    }
+
+    /// Whether an option was given; those that have a default are not.
+    pub(super) fn has(&self, id: &str) -> bool {
+        self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
+    }
+
+    /// The text of an option that takes one.
+    pub(super) fn text(&self, id: &str) -> Option<&String> {
+        self.0.get_one(id)
+    }
+}
+
+/// Reads what was given to a command.
+pub(crate) fn parse<O: FromArgMatches>(matches: &ArgMatches) -> Result<O> {
+    O::from_arg_matches(matches).map_err(|error| Failure::Usage(error.to_string()))
+}
+
+/// The options of a derived structure.
+pub(crate) fn options_of<O: clap::Args>() -> Vec<Arg> {
+    O::augment_args(clap::Command::new("options")).get_arguments().cloned().collect()
+}
+
+/// They are added when the list is known.
+impl clap::Args for OwnOptions {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        command
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        command
+    }
+}
+
+impl FromArgMatches for OwnOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
+        Ok(OwnOptions(matches.clone()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
+        *self = OwnOptions(matches.clone());
+        Ok(())
+    }
+}
