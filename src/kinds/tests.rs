@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::FORMATS;
+use super::{FORMATS, TABS};
 use crate::profile::{Document, ProfileError};
 
 mod rewrite;
@@ -115,4 +115,21 @@ fn a_kind_that_is_not_known_is_told_with_those_that_are() {
     let known = "\"hiperface\", \"biss\", \"ssi\", \"interbus\" and \"hiperdrive\"";
     assert_eq!(error.to_string(), format!("device \"sse\"; this program knows {known}"));
     assert!(matches!(error, ProfileError::Device { found, .. } if found == "sse"));
+}
+
+#[test]
+fn the_tabs_stand_in_the_order_of_the_navigation() {
+    let buses: Vec<_> = TABS.tabs().map(crate::app::Tab::bus).collect();
+    assert_eq!(
+        buses,
+        [Some("HIPERFACE"), Some("BiSS"), Some("SSI"), Some("INTERBUS"), Some("HIPERDRIVE"), None],
+        "devices, then Signals"
+    );
+    for tab in TABS.tabs() {
+        let mut words = TABS.page_words(tab);
+        let count = words.len();
+        words.sort_unstable();
+        words.dedup();
+        assert!(count > 0 && words.len() == count, "{tab:?}: {words:?}");
+    }
 }

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Skin, workspace};
-use crate::app::{Action, AnyDevice, Rgb, Studio, Tab, Text};
+use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio, Tab, Text};
 
 /// A page of a tab, as the navigation and the help show it. `word` and `help` name texts of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,9 +43,9 @@ pub(crate) fn place_of<P: TabPage>(page: P) -> usize {
 }
 
 /// The view of a kind of device, as the device implements it.
-pub trait TypedDeviceView: Sync + 'static {
+pub(crate) trait TypedDeviceView: Sync + 'static {
     /// The state of the device.
-    type Device: 'static;
+    type Device: DeviceModel;
     /// The pages of the tab.
     type Page: TabPage;
     /// The text buffers and selections of one session; they are dropped when another device answers.
@@ -53,13 +53,8 @@ pub trait TypedDeviceView: Sync + 'static {
     /// The form in the connection dialog.
     type ConnectForm: TypedConnectForm;
 
-    /// The tab that shows the device.
-    const TAB: Tab;
     /// Whether the keys of undo and redo act on the edits of the device: not where an editor has steps of its own.
     const HAS_UNDO_KEYS: bool;
-
-    /// Returns the state of the device; `None` for another kind.
-    fn device(any: &AnyDevice) -> Option<&Self::Device>;
 
     /// Returns what tells one device from another of its kind; `None` where that is unknown or makes no difference.
     fn serial_number(_device: &Self::Device) -> Option<&str> {
@@ -165,7 +160,7 @@ pub trait SessionView {
 
 impl<V: TypedDeviceView> DeviceView for V {
     fn tab(&self) -> Tab {
-        V::TAB
+        V::Device::TAB
     }
 
     fn pages(&self) -> Vec<PageInfo> {
@@ -177,11 +172,11 @@ impl<V: TypedDeviceView> DeviceView for V {
     }
 
     fn motion(&self, device: &AnyDevice) -> Option<Text> {
-        V::device(device).and_then(V::motion)
+        device.get::<V::Device>().and_then(V::motion)
     }
 
     fn value_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, ink: Rgb) {
-        if let Some(device) = V::device(device) {
+        if let Some(device) = device.get::<V::Device>() {
             V::value_ui(ui, skin, device, ink);
         }
     }
@@ -233,23 +228,23 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
     }
 
     fn is_edited(&self, device: &AnyDevice, page: usize) -> bool {
-        let (device, page) = (V::device(device), V::Page::ALL.get(page));
+        let (device, page) = (device.get::<V::Device>(), V::Page::ALL.get(page));
         device.zip(page).is_some_and(|(device, page)| V::is_edited(device, *page))
     }
 
     fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>) {
-        let Some(device) = V::device(shared.1) else { return };
+        let Some(device) = shared.1.get::<V::Device>() else { return };
         self.follow(device);
         V::page_ui(ui, skin, shared, device, (self.page, &mut self.memory), actions);
     }
 
     fn running_ui(&self, ui: &mut Ui, skin: &Skin, any: &AnyDevice, actions: &mut Vec<Action>) {
-        let Some(device) = V::device(any) else { return };
+        let Some(device) = any.get::<V::Device>() else { return };
         V::running_ui(ui, skin, any, device, self.page, actions);
     }
 
     fn watch_menu(&mut self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
-        let Some(device) = V::device(device) else { return };
+        let Some(device) = device.get::<V::Device>() else { return };
         self.follow(device);
         V::watch_menu(ui, skin, device, &mut self.memory, actions);
     }

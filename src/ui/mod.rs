@@ -27,8 +27,8 @@ mod window;
 pub(crate) mod wires;
 pub(crate) mod workspace;
 
-pub use device_view::{DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView};
-pub use dialogs::connect::{ConnectForm, TypedConnectForm};
+pub use device_view::{DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView};
+pub use dialogs::connect::ConnectForm;
 pub use run::run;
 pub use skin::{Skin, install_fonts};
 pub use views::Views;

@@ -16,7 +16,8 @@ use crate::ui::controls::{
 };
 use crate::ui::{Skin, TabViews, icons};
 
-pub use form::{ConnectForm, TypedConnectForm};
+pub use form::ConnectForm;
+pub(crate) use form::TypedConnectForm;
 
 /// What the dialog remembers.
 #[derive(Default)]

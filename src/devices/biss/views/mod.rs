@@ -14,7 +14,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::biss::state::{Action as Biss, Encoder};
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{TabPage, TypedDeviceView};
@@ -125,12 +125,7 @@ impl TypedDeviceView for BissView {
     type Memory = View;
     type ConnectForm = connect_form::BissConnectForm;
 
-    const TAB: Tab = Tab::Biss;
     const HAS_UNDO_KEYS: bool = false;
-
-    fn device(any: &AnyDevice) -> Option<&Encoder> {
-        any.get()
-    }
 
     fn serial_number(encoder: &Encoder) -> Option<&str> {
         encoder.serial_number()

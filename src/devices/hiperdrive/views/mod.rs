@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 
 use egui::{ScrollArea, Ui};
 
-use crate::app::{Action, AnyDevice, Rgb, Studio, Tab, Text};
+use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::Unit;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
@@ -115,12 +115,7 @@ impl TypedDeviceView for HiperdriveView {
     type Memory = View;
     type ConnectForm = connect_form::HiperdriveConnectForm;
 
-    const TAB: Tab = Tab::Hiperdrive;
     const HAS_UNDO_KEYS: bool = true;
-
-    fn device(any: &AnyDevice) -> Option<&Unit> {
-        any.get()
-    }
 
     fn serial_number(unit: &Unit) -> Option<&str> {
         unit.serial_number()

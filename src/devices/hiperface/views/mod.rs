@@ -11,7 +11,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::hiperface::state::Encoder;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page};
@@ -92,12 +92,7 @@ impl TypedDeviceView for HiperfaceView {
     type Memory = View;
     type ConnectForm = connect_form::HiperfaceConnectForm;
 
-    const TAB: Tab = Tab::Hiperface;
     const HAS_UNDO_KEYS: bool = false;
-
-    fn device(any: &AnyDevice) -> Option<&Encoder> {
-        any.get()
-    }
 
     fn serial_number(encoder: &Encoder) -> Option<&str> {
         encoder.identity.as_ref().map(|identity| identity.serial.serial_number.as_str())

@@ -14,7 +14,7 @@ mod widgets;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::interbus::state::Encoder;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, foot, icons, page};
@@ -94,12 +94,7 @@ impl TypedDeviceView for InterbusView {
     type Memory = View;
     type ConnectForm = connect_form::InterbusConnectForm;
 
-    const TAB: Tab = Tab::Interbus;
     const HAS_UNDO_KEYS: bool = true;
-
-    fn device(any: &AnyDevice) -> Option<&Encoder> {
-        any.get()
-    }
 
     fn serial_number(encoder: &Encoder) -> Option<&str> {
         encoder.serial_number()

@@ -14,7 +14,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Rgb, Studio, Tab};
+use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::ssi::state::Encoder;
 use crate::ui::controls::button;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
@@ -89,12 +89,7 @@ impl TypedDeviceView for SsiView {
     type Memory = View;
     type ConnectForm = connect_form::SsiConnectForm;
 
-    const TAB: Tab = Tab::Ssi;
     const HAS_UNDO_KEYS: bool = true;
-
-    fn device(any: &AnyDevice) -> Option<&Encoder> {
-        any.get()
-    }
 
     fn is_edited(encoder: &Encoder, page: Page) -> bool {
         page == Page::Frame && encoder.is_dirty()

@@ -8,7 +8,7 @@ use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::ui::Skin;
 
 /// The form of a kind of device, as the device implements it.
-pub trait TypedConnectForm: 'static {
+pub(crate) trait TypedConnectForm: 'static {
     /// The link as a form.
     type Form: Clone + PartialEq;
     /// The selections that are no part of the link.
