@@ -186,8 +186,7 @@ impl<V: TypedDeviceView> DeviceView for V {
     }
 
     fn session(&self) -> Box<dyn SessionView> {
-        let (page, memory) = (V::Page::default(), V::Memory::default());
-        Box::new(Session::<V> { page, serial_number: None, memory })
+        Box::new(Session::<V> { page: V::Page::default(), memory: Memory::default() })
     }
 
     fn empty_ui(&self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
@@ -198,21 +197,26 @@ impl<V: TypedDeviceView> DeviceView for V {
 /// The adapter from [`TypedDeviceView`] to [`SessionView`].
 struct Session<V: TypedDeviceView> {
     page: V::Page,
-    /// The device that the memory is about.
-    serial_number: Option<String>,
-    memory: V::Memory,
+    memory: Memory<V::Memory>,
 }
 
-impl<V: TypedDeviceView> Session<V> {
-    /// Drops what was typed and selected for another device.
-    fn follow(&mut self, device: &V::Device) {
-        let Some(own) = V::serial_number(device) else { return };
-        if self.serial_number.as_deref() == Some(own) {
-            return;
+/// The memory of a session's view, and the device that it is about.
+#[derive(Default)]
+struct Memory<M> {
+    serial_number: Option<String>,
+    own: M,
+}
+
+impl<M: Default> Memory<M> {
+    /// Returns the memory for this device, without what was typed and selected for another.
+    fn of(&mut self, serial_number: Option<&str>) -> &mut M {
+        if let Some(own) = serial_number
+            && self.serial_number.as_deref() != Some(own)
+            && self.serial_number.replace(own.to_owned()).is_some()
+        {
+            self.own = M::default();
         }
-        if self.serial_number.replace(own.to_owned()).is_some() {
-            self.memory = V::Memory::default();
-        }
+        &mut self.own
     }
 }
 
@@ -234,8 +238,8 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
 
     fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>) {
         let Some(device) = shared.1.get::<V::Device>() else { return };
-        self.follow(device);
-        V::page_ui(ui, skin, shared, device, (self.page, &mut self.memory), actions);
+        let memory = self.memory.of(V::serial_number(device));
+        V::page_ui(ui, skin, shared, device, (self.page, memory), actions);
     }
 
     fn running_ui(&self, ui: &mut Ui, skin: &Skin, any: &AnyDevice, actions: &mut Vec<Action>) {
@@ -245,8 +249,7 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
 
     fn watch_menu(&mut self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
         let Some(device) = device.get::<V::Device>() else { return };
-        self.follow(device);
-        V::watch_menu(ui, skin, device, &mut self.memory, actions);
+        V::watch_menu(ui, skin, device, self.memory.of(V::serial_number(device)), actions);
     }
 }
 
@@ -330,5 +333,20 @@ impl TabViews {
     /// Returns the view of a tab without devices.
     fn tool(self, tab: Tab) -> Option<&'static dyn ToolView> {
         self.tools.iter().copied().find(|view| view.tab() == tab)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_dropped_when_another_device_answers() {
+        let mut memory = Memory::<String>::default();
+        memory.of(None).push_str("48");
+        assert_eq!(memory.of(Some("00123")), "48", "the first device that is known");
+        assert_eq!(memory.of(None), "48", "read again");
+        assert_eq!(memory.of(Some("00123")), "48");
+        assert_eq!(memory.of(Some("00124")), "");
     }
 }
