@@ -18,6 +18,7 @@ use crate::devices::ssi::commands::SsiCommands;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::views::SsiView;
 use crate::profile::{Formats, Profile};
+use crate::signals::commands::AnalyseCommand;
 use crate::signals::views::SignalsView;
 use crate::ui::TabViews;
 
@@ -38,7 +39,7 @@ pub const TABS: TabViews =
 pub const COMMANDS: Commands = Commands::new(
     &[&HiperfaceCommands, &BissCommands, &SsiCommands, &InterbusCommands, &HiperdriveCommands],
     &[&EthernetIpDecoder],
-    &[],
+    &[&AnalyseCommand],
 );
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! What can be written on the command line, whatever the kind of device.
 
 mod act;
-mod analyse;
 mod build;
 mod decode;
 
@@ -10,8 +9,7 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 
-pub(crate) use act::{Action, Do, action_name, no_action};
-pub(super) use analyse::Analyse;
+pub(crate) use act::Do;
 pub(super) use build::{Arguments, Called, parse_arguments};
 pub(crate) use decode::{Decode, Direction, DirectionOption};
 
@@ -81,8 +79,6 @@ pub(super) enum Command {
     Do(Do),
     /// Explain captured bytes, offline.
     Decode(Decode),
-    /// Quality of a recorded sine/cosine signal: amplitude, offsets, gain, phase, position error.
-    Analyse(Analyse),
     /// Be a device, on a pseudo-terminal or a TCP port.
     Simulate(Simulate),
 }

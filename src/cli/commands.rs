@@ -1,7 +1,8 @@
 //! What devices, buses and Signals add to the command line. The list of them is a value that `kinds.rs` hands over: nothing
 //! here names one.
 
-use clap::{Arg, ArgMatches, FromArgMatches};
+use clap::builder::PossibleValue;
+use clap::{Arg, ArgMatches, FromArgMatches, ValueEnum};
 
 use super::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 use super::output::Output;
@@ -85,6 +86,16 @@ pub(crate) trait DeviceCommands: Sync {
 
     /// Options that the kind adds to a command. An option that several kinds add is the same option.
     fn options(&self, _command: CommandId) -> Vec<Arg> {
+        Vec::new()
+    }
+
+    /// The actions of `do`, with their help. An action that several kinds have is the same word.
+    fn actions(&self) -> Vec<PossibleValue> {
+        Vec::new()
+    }
+
+    /// The actions of `do` that run several others: they are listed behind those.
+    fn combined_actions(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
 
@@ -300,6 +311,11 @@ pub(crate) fn parse<O: FromArgMatches>(matches: &ArgMatches) -> Result<O> {
 /// The options of a derived structure.
 pub(crate) fn options_of<O: clap::Args>() -> Vec<Arg> {
     O::augment_args(clap::Command::new("options")).get_arguments().cloned().collect()
+}
+
+/// The values of a derived enumeration.
+pub(crate) fn values_of<V: ValueEnum>() -> Vec<PossibleValue> {
+    V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }
 
 /// They are added when the list is known.

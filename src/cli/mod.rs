@@ -1,7 +1,6 @@
 //! The command line: the same jobs without a window. It parses, asks for consent and prints; the work is done by the
 //! worker.
 
-mod analyse;
 pub(crate) mod args;
 pub(crate) mod check;
 pub(crate) mod commands;
@@ -191,7 +190,6 @@ fn dispatch(common: &Common, command: Command, output: &Output) -> Result {
                 None => device(&decode.protocol)?.decode(output, &decode),
             }
         }
-        Command::Analyse(capture) => analyse::analyse(output, &capture),
         Command::Simulate(simulate) => {
             no_foreign(CommandId::Simulate, &simulate.device, &simulate.own)?;
             simulate::simulate(output, &simulate)

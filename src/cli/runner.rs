@@ -320,7 +320,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
 }
 
 /// Progress on a terminal; silence elsewhere.
-pub(super) struct Bar(ProgressBar);
+pub(crate) struct Bar(ProgressBar);
 
 impl Default for Bar {
     fn default() -> Self {
@@ -334,7 +334,7 @@ impl Default for Bar {
 }
 
 impl Bar {
-    pub(super) fn show(&self, done: u64, total: u64, what: &impl ToString) {
+    pub(crate) fn show(&self, done: u64, total: u64, what: &impl ToString) {
         self.0.set_length(total);
         self.0.set_position(done);
         self.0.set_message(what.to_string());

@@ -64,6 +64,7 @@ fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::
     // In place: `mut_arg` would put it behind the other arguments.
     command = command.mut_args(|argument| match argument.get_id().as_str() {
         "device" | "protocol" => argument.value_parser(names(id, commands)),
+        "action" => argument.value_parser(actions(commands)),
         _ => argument,
     });
     for device in commands.devices() {
@@ -91,6 +92,25 @@ fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let protocols = commands.protocols().iter().filter(|_| id == CommandId::Decode);
     let protocols = protocols.map(|protocol| PossibleValue::new(protocol.name()).help(protocol.about()));
     PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
+}
+
+/// The actions of all kinds of device, each with what it is for the kinds that have it.
+fn actions(commands: Commands) -> PossibleValuesParser {
+    let single = commands.devices().iter().map(|device| (device.name(), device.actions()));
+    let combined = commands.devices().iter().map(|device| (device.name(), device.combined_actions()));
+    let mut actions: Vec<(PossibleValue, Vec<String>)> = Vec::new();
+    for (kind, of_kind) in single.chain(combined) {
+        for action in of_kind {
+            let help = action.get_help().map(ToString::to_string).unwrap_or_default();
+            let help = format!("{kind}: {help}");
+            match actions.iter_mut().find(|(known, _)| known.get_name() == action.get_name()) {
+                Some((_, helps)) => helps.push(help),
+                None => actions.push((action, vec![help])),
+            }
+        }
+    }
+    let values = actions.into_iter().map(|(action, helps)| action.help(helps.join("; ")));
+    PossibleValuesParser::new(values.collect::<Vec<_>>())
 }
 
 /// Which commands are for which kinds of device.

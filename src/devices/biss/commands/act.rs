@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::args::DoOptions;
+use super::args::{BissAction, DoOptions};
 use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
 use crate::app::{Text, explain};
-use crate::cli::args::{Action, Common, Do, action_name, no_action};
+use crate::cli::args::{Common, Do};
 use crate::cli::check;
 use crate::cli::consent::{answer, ask, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
@@ -27,21 +27,23 @@ use crate::devices::biss::state::explain as words;
 /// How long a person may take to turn the motor as it is needed.
 const PERSON: Duration = Duration::from_secs(300);
 
+const ACTIONS: &str = "check, calibrate, wiegand-test, filter, preset, lead-back and mounting";
+
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
-    match (act.action, words.as_slice()) {
-        (Action::Check, []) => check_device(common, output),
-        (Action::LeadBack, []) => lead_back(common, output, act),
-        (Action::Calibrate, []) => {
+    match (act.action_of(KIND, ACTIONS)?, words.as_slice()) {
+        (BissAction::Check, []) => check_device(common, output),
+        (BissAction::LeadBack, []) => lead_back(common, output, act),
+        (BissAction::Calibrate, []) => {
             guided(common, output, act, MountingRun { calibrate: true, ..MountingRun::default() })
         }
-        (Action::WiegandTest, [] | ["save"]) => {
+        (BissAction::WiegandTest, [] | ["save"]) => {
             let run = MountingRun { wiegand: Some(!words.is_empty()), ..MountingRun::default() };
             guided(common, output, act, run)
         }
-        (Action::Mounting, words) => guided(common, output, act, mounting(output, words)?),
-        (Action::Filter, [name]) => {
+        (BissAction::Mounting, words) => guided(common, output, act, mounting(output, words)?),
+        (BissAction::Filter, [name]) => {
             let filter = match *name {
                 "balanced" => Filter::Balanced,
                 "dynamic" => Filter::Dynamic,
@@ -49,16 +51,13 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             };
             change(common, output, act, |_| Ok(Change::SelectFilter(filter)))
         }
-        (Action::Preset, words) => {
+        (BissAction::Preset, words) => {
             let wish = Wish::read(words)?;
             change(common, output, act, |runner| wish.change(runner))
         }
-        (Action::Check | Action::LeadBack | Action::Calibrate, _) => Err(takes("no argument")),
-        (Action::WiegandTest, _) => Err(takes("nothing or \"save\"")),
-        (Action::Filter, _) => Err(takes("balanced or dynamic")),
-        (other, _) => {
-            Err(no_action(other, KIND, "check, calibrate, wiegand-test, filter, preset, lead-back and mounting"))
-        }
+        (BissAction::Check | BissAction::LeadBack | BissAction::Calibrate, _) => Err(takes("no argument")),
+        (BissAction::WiegandTest, _) => Err(takes("nothing or \"save\"")),
+        (BissAction::Filter, _) => Err(takes("balanced or dynamic")),
     }
 }
 
@@ -121,7 +120,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let DoOptions { timeout } = act.own.read()?;
     let patience = timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
     let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
-    let name = action_name(act.action);
+    let name = act.action.clone();
     let done = show_done(output, &name, &operations, &spent, &results(&outcomes), &results_text(&outcomes))?;
     if outcomes.iter().all(passes) {
         Ok(done)

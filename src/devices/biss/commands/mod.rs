@@ -12,14 +12,15 @@ mod write;
 
 use std::time::Duration;
 
-use clap::Arg;
+use clap::builder::PossibleValue;
+use clap::{Arg, ValueEnum};
 
-use self::args::DoOptions;
+use self::args::{BissAction, DoOptions};
 use crate::app::Text;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol as ubicom;
 use crate::cli::args::{Common, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
-use crate::cli::commands::{CommandId, DeviceCommands, options_of};
+use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -74,6 +75,14 @@ impl DeviceCommands for BissCommands {
             CommandId::Do => options_of::<DoOptions>(),
             _ => Vec::new(),
         }
+    }
+
+    fn actions(&self) -> Vec<PossibleValue> {
+        values_of::<BissAction>().into_iter().filter(|action| !is_combined(action)).collect()
+    }
+
+    fn combined_actions(&self) -> Vec<PossibleValue> {
+        values_of::<BissAction>().into_iter().filter(is_combined).collect()
     }
 
     fn identify(&self, common: &Common, output: &Output) -> Result {
@@ -131,6 +140,11 @@ impl DeviceCommands for BissCommands {
     fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
         profiles::other_device(profile, device)
     }
+}
+
+/// Whether an action runs several others.
+fn is_combined(action: &PossibleValue) -> bool {
+    BissAction::Mounting.to_possible_value().as_ref() == Some(action)
 }
 
 fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {

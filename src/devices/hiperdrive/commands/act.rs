@@ -1,10 +1,10 @@
 //! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
 
-use super::args::{DoOptions, OfDrive};
+use super::args::{DoOptions, HiperdriveAction, OfDrive};
 use super::plan::{commit, operations, prepare, said};
 use super::run::{Runner, drive};
 use crate::app::Text;
-use crate::cli::args::{Action, Common, Do, action_name, no_action};
+use crate::cli::args::{Common, Do};
 use crate::cli::check;
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
@@ -22,32 +22,36 @@ const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test 
 
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
-    let of_drive = matches!(act.action, Action::Acknowledge | Action::SetPosition);
+    let action = act.action_of(KIND, ACTIONS);
+    let of_drive = matches!(action, Ok(HiperdriveAction::Acknowledge | HiperdriveAction::SetPosition));
     let DoOptions { of, all } = act.own.read()?;
-    let mine = [(of.drive.is_some() && !of_drive, "--drive"), (all && act.action != Action::Factory, "--all")];
+    let mine = [
+        (of.drive.is_some() && !of_drive, "--drive"),
+        (all && !matches!(action, Ok(HiperdriveAction::Factory)), "--all"),
+    ];
     if let Some((_, option)) = mine.into_iter().find(|(given, _)| *given) {
-        return Err(Failure::Usage(format!("{option} is not for {}", action_name(act.action))));
+        return Err(Failure::Usage(format!("{option} is not for {}", act.action)));
     }
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
-    let change = match (act.action, words.as_slice()) {
-        (Action::Check, []) => return check_device(common, output),
-        (Action::Acknowledge, []) => Change::Do(Service::Acknowledge(drive(&of))),
-        (Action::Save, []) => Change::Do(Service::Save),
-        (Action::Recall, []) => Change::Do(Service::Recall),
-        (Action::Factory, []) => Change::Do(if all { Service::FactoryAll } else { Service::Factory }),
-        (Action::PresenceTest, []) => Change::Do(Service::Reset),
-        (Action::SetPosition, [position]) => set_position(&of, position)?,
-        (Action::SetPosition, _) => return Err(takes("one position")),
+    let action = action?;
+    let change = match (action, words.as_slice()) {
+        (HiperdriveAction::Check, []) => return check_device(common, output),
+        (HiperdriveAction::Acknowledge, []) => Change::Do(Service::Acknowledge(drive(&of))),
+        (HiperdriveAction::Save, []) => Change::Do(Service::Save),
+        (HiperdriveAction::Recall, []) => Change::Do(Service::Recall),
+        (HiperdriveAction::Factory, []) => Change::Do(if all { Service::FactoryAll } else { Service::Factory }),
+        (HiperdriveAction::PresenceTest, []) => Change::Do(Service::Reset),
+        (HiperdriveAction::SetPosition, [position]) => set_position(&of, position)?,
+        (HiperdriveAction::SetPosition, _) => return Err(takes("one position")),
         (
-            Action::Check
-            | Action::Acknowledge
-            | Action::Save
-            | Action::Recall
-            | Action::Factory
-            | Action::PresenceTest,
+            HiperdriveAction::Check
+            | HiperdriveAction::Acknowledge
+            | HiperdriveAction::Save
+            | HiperdriveAction::Recall
+            | HiperdriveAction::Factory
+            | HiperdriveAction::PresenceTest,
             _,
         ) => return Err(takes("no argument")),
-        (other, _) => return Err(no_action(other, KIND, ACTIONS)),
     };
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
@@ -56,20 +60,20 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let said = said(&prepared.plan);
     let before: Vec<DriveNumber> = prepared.identity.drives.iter().map(|own| own.number).collect();
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
-    let found = if act.action == Action::PresenceTest { drives(&mut runner)? } else { Vec::new() };
-    match act.action {
-        Action::Factory if !all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
-        Action::Acknowledge if operations.is_empty() => {
+    let found = if action == HiperdriveAction::PresenceTest { drives(&mut runner)? } else { Vec::new() };
+    match action {
+        HiperdriveAction::Factory if !all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
+        HiperdriveAction::Acknowledge if operations.is_empty() => {
             output.remark(&Text::new("hd_cli.no_fault").with("drive", drive(&of).get()).terminal());
         }
         _ => {}
     }
     let told: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
-    let done = show_done(output, &action_name(act.action), &operations, &spent, &[], &format!("{said}{told}"))?;
+    let done = show_done(output, &act.action, &operations, &spent, &[], &format!("{said}{told}"))?;
     // What was done may have been in vain.
-    match act.action {
-        Action::PresenceTest => present(&before, &found)?,
-        Action::Acknowledge if !operations.is_empty() => {
+    match action {
+        HiperdriveAction::PresenceTest => present(&before, &found)?,
+        HiperdriveAction::Acknowledge if !operations.is_empty() => {
             let again = prepare(&mut runner, output, Change::Do(Service::Acknowledge(drive(&of))))?;
             if !again.plan.is_empty() {
                 return Err(failed(&Text::new("hd_cli.still_faulty").with("drive", drive(&of).get())));

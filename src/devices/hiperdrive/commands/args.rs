@@ -83,3 +83,23 @@ impl From<Order> for ByteOrder {
         }
     }
 }
+
+/// The actions of drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum HiperdriveAction {
+    /// device, supply, address, and of each drive request, line, errors, range, with a verdict a line
+    Check,
+    // Brackets in what rustdoc reads would be links.
+    #[value(help = "POSITION [--drive N], what the drive's place becomes, rounded to 64 steps and saved")]
+    SetPosition,
+    /// the fault of a drive (--drive N)
+    Acknowledge,
+    /// what was written and is not saved yet (47 = 1)
+    Save,
+    /// the device's own parameters from the factory, not saved (47 = -1); with --all everything, saved (47 = -3)
+    Factory,
+    /// the device's own parameters as saved last, not those of its drives (47 = -2)
+    Recall,
+    /// which drives are there; resets them (47 = -4)
+    PresenceTest,
+}

@@ -15,12 +15,13 @@ mod run;
 mod simulate;
 mod write;
 
+use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, Args};
 
-use self::args::{DoOptions, HubOption, Move, OfDrive, WordOptions};
+use self::args::{DoOptions, HiperdriveAction, HubOption, Move, OfDrive, WordOptions};
 use crate::app::Text;
 use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
-use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse};
+use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::Simulated;
 use crate::cli::{Failure, Result};
@@ -72,6 +73,10 @@ impl DeviceCommands for HiperdriveCommands {
             CommandId::Decode => options_of::<WordOptions>(),
             _ => Vec::new(),
         }
+    }
+
+    fn actions(&self) -> Vec<PossibleValue> {
+        values_of::<HiperdriveAction>()
     }
 
     fn setting_options(&self) -> Vec<Arg> {

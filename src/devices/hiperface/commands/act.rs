@@ -2,10 +2,10 @@
 
 use serde_json::json;
 
-use super::args::DoOptions;
+use super::args::{DoOptions, HiperfaceAction};
 use super::inspect::codes_text;
 use super::write::{change_and_show, settings};
-use crate::cli::args::{Action, Common, Do, action_name, no_action, parse_code};
+use crate::cli::args::{Common, Do, parse_code};
 use crate::cli::check;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
@@ -23,36 +23,43 @@ const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, re
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let usage = |form: &str| Failure::Usage(format!("the action takes {form}"));
-    let change = match (act.action, words.as_slice()) {
-        (Action::Reset, []) => return reset(common, output),
-        (Action::Check, []) => return check_device(common, output, false),
-        (Action::Check, ["restart"]) => return check_device(common, output, true),
-        (Action::ConfigureForNow, [value]) => return configure_for_now(common, output, value),
-        (Action::SetPosition, [wanted]) => set_position(act, wanted, false)?,
-        (Action::Synchronise, [wanted]) => set_position(act, wanted, true)?,
-        (Action::CreateField, [number, rest @ ..]) if !rest.is_empty() => {
+    let change = match (act.action_of::<HiperfaceAction>(KIND, ACTIONS)?, words.as_slice()) {
+        (HiperfaceAction::Reset, []) => return reset(common, output),
+        (HiperfaceAction::Check, []) => return check_device(common, output, false),
+        (HiperfaceAction::Check, ["restart"]) => return check_device(common, output, true),
+        (HiperfaceAction::ConfigureForNow, [value]) => return configure_for_now(common, output, value),
+        (HiperfaceAction::SetPosition, [wanted]) => set_position(act, wanted, false)?,
+        (HiperfaceAction::Synchronise, [wanted]) => set_position(act, wanted, true)?,
+        (HiperfaceAction::CreateField, [number, rest @ ..]) if !rest.is_empty() => {
             Change::CreateField { number: field(number)?, status: new_status(rest)? }
         }
-        (Action::ResizeField, [number, bytes]) => Change::ResizeField { number: field(number)?, size: size(bytes)? },
-        (Action::LockField, [number]) => Change::LockField { number: field(number)?, lock: true },
-        (Action::UnlockField, [number]) => Change::LockField { number: field(number)?, lock: false },
-        (Action::DeleteField, [number]) => Change::DeleteField { number: field(number)? },
-        (Action::ChangeCode, [number, new]) => change_code(number, new)?,
-        (Action::IncrementCounter, []) => Change::IncrementCounter,
-        (Action::ClearCounter, []) => Change::ClearCounter,
-        (Action::Reset | Action::IncrementCounter | Action::ClearCounter, _) => return Err(usage("no argument")),
-        (Action::Check, _) => return Err(usage("nothing or \"restart\"")),
-        (Action::ConfigureForNow, _) => return Err(usage("one settings byte, as in 0xE5")),
-        (Action::SetPosition | Action::Synchronise, _) => return Err(usage("one position")),
-        (Action::CreateField, _) => {
+        (HiperfaceAction::ResizeField, [number, bytes]) => {
+            Change::ResizeField { number: field(number)?, size: size(bytes)? }
+        }
+        (HiperfaceAction::LockField, [number]) => Change::LockField { number: field(number)?, lock: true },
+        (HiperfaceAction::UnlockField, [number]) => Change::LockField { number: field(number)?, lock: false },
+        (HiperfaceAction::DeleteField, [number]) => Change::DeleteField { number: field(number)? },
+        (HiperfaceAction::ChangeCode, [number, new]) => change_code(number, new)?,
+        (HiperfaceAction::IncrementCounter, []) => Change::IncrementCounter,
+        (HiperfaceAction::ClearCounter, []) => Change::ClearCounter,
+        (HiperfaceAction::Reset | HiperfaceAction::IncrementCounter | HiperfaceAction::ClearCounter, _) => {
+            return Err(usage("no argument"));
+        }
+        (HiperfaceAction::Check, _) => return Err(usage("nothing or \"restart\"")),
+        (HiperfaceAction::ConfigureForNow, _) => return Err(usage("one settings byte, as in 0xE5")),
+        (HiperfaceAction::SetPosition | HiperfaceAction::Synchronise, _) => return Err(usage("one position")),
+        (HiperfaceAction::CreateField, _) => {
             return Err(usage("NUMBER SIZE or NUMBER STATUS, then code=N, ce=0 or 1, we=0 or 1"));
         }
-        (Action::ResizeField, _) => return Err(usage("NUMBER SIZE")),
-        (Action::LockField | Action::UnlockField | Action::DeleteField, _) => return Err(usage("one field number")),
-        (Action::ChangeCode, _) => return Err(usage("NUMBER HEX; the present code is given with --code NUMBER=HEX")),
-        (other, _) => return Err(no_action(other, KIND, ACTIONS)),
+        (HiperfaceAction::ResizeField, _) => return Err(usage("NUMBER SIZE")),
+        (HiperfaceAction::LockField | HiperfaceAction::UnlockField | HiperfaceAction::DeleteField, _) => {
+            return Err(usage("one field number"));
+        }
+        (HiperfaceAction::ChangeCode, _) => {
+            return Err(usage("NUMBER HEX; the present code is given with --code NUMBER=HEX"));
+        }
     };
-    change_and_show(common, output, change, &act.consent, &action_name(act.action))
+    change_and_show(common, output, change, &act.consent, &act.action)
 }
 
 fn set_position(act: &Do, text: &str, synchronise: bool) -> Result<Change> {

@@ -10,10 +10,11 @@ mod table;
 mod write;
 
 use clap::Arg;
+use clap::builder::PossibleValue;
 
-use self::args::{DoOptions, FindOptions};
+use self::args::{DoOptions, FindOptions, HiperfaceAction};
 use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
-use crate::cli::commands::{CommandId, DeviceCommands, options_of};
+use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -60,6 +61,10 @@ impl DeviceCommands for HiperfaceCommands {
             CommandId::Do => options_of::<DoOptions>(),
             _ => Vec::new(),
         }
+    }
+
+    fn actions(&self) -> Vec<PossibleValue> {
+        values_of::<HiperfaceAction>()
     }
 
     fn is_searchable(&self) -> bool {

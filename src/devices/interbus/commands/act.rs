@@ -3,12 +3,13 @@
 use serde_json::json;
 
 use super::Disturbs;
+use super::args::InterbusAction;
 use super::inspect::mode;
 use super::plan::{commit, operations, prepare};
 use super::run::Runner;
 use super::value::value;
 use crate::app::Text;
-use crate::cli::args::{Action, Common, Do, action_name, no_action};
+use crate::cli::args::{Common, Do};
 use crate::cli::check;
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
@@ -20,24 +21,27 @@ use crate::devices::interbus::profile::{Item, ItemValue};
 use crate::devices::interbus::protocol::{KIND, Reply};
 use crate::devices::interbus::state::explain as words;
 
+const ACTIONS: &str = "check, preset, default and lead-back";
+
 pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let words: Vec<&str> = act.arguments.iter().map(String::as_str).collect();
     let takes = |form: &str| Failure::Usage(format!("the action takes {form}"));
-    match (act.action, words.as_slice()) {
-        (Action::Check, []) => check_device(common, output),
-        (Action::LeadBack, []) => lead_back(common, output),
-        (Action::Default, []) => {
+    match (act.action_of(KIND, ACTIONS)?, words.as_slice()) {
+        (InterbusAction::Check, []) => check_device(common, output),
+        (InterbusAction::LeadBack, []) => lead_back(common, output),
+        (InterbusAction::Default, []) => {
             output.remark(&Text::new("ib_disturbs.default").terminal());
             change(common, output, act, |_| Ok(Change::Default))
         }
-        (Action::Preset, []) => change(common, output, act, |runner| Ok(Change::Preset { value: preset(runner)? })),
-        (Action::Preset, [number]) => match value(Item::Preset, number)? {
+        (InterbusAction::Preset, []) => {
+            change(common, output, act, |runner| Ok(Change::Preset { value: preset(runner)? }))
+        }
+        (InterbusAction::Preset, [number]) => match value(Item::Preset, number)? {
             ItemValue::Number(value) => change(common, output, act, |_| Ok(Change::Preset { value })),
             _ => Err(takes("a position")),
         },
-        (Action::Preset, _) => Err(takes("nothing or a position")),
-        (Action::Check | Action::LeadBack | Action::Default, _) => Err(takes("no argument")),
-        (other, _) => Err(no_action(other, KIND, "check, preset, default and lead-back")),
+        (InterbusAction::Preset, _) => Err(takes("nothing or a position")),
+        (InterbusAction::Check | InterbusAction::LeadBack | InterbusAction::Default, _) => Err(takes("no argument")),
     }
 }
 
@@ -88,5 +92,5 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let prepared = prepare(&mut runner, output, change)?;
     let operations = operations(&prepared.plan);
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
-    show_done(output, &action_name(act.action), &operations, &spent, &[], "")
+    show_done(output, &act.action, &operations, &spent, &[], "")
 }

@@ -47,3 +47,19 @@ impl From<WordMode> for Mode {
         }
     }
 }
+
+/// The actions of INTERBUS encoders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum InterbusAction {
+    /// gateway, word order, handshake, identity with a verdict a line
+    Check,
+    // Brackets in what rustdoc reads would be links.
+    #[value(
+        help = "[POSITION]: store a value, then make the place that value, at standstill; without a value the stored one"
+    )]
+    Preset,
+    /// out of a parameterisation that was left, to run
+    LeadBack,
+    /// back to what was delivered; experimental, since only the manual's appendix has it
+    Default,
+}

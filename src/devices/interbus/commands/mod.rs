@@ -14,11 +14,12 @@ mod value;
 mod write;
 
 use clap::Arg;
+use clap::builder::PossibleValue;
 
-use self::args::WordOptions;
+use self::args::{InterbusAction, WordOptions};
 use crate::app::Text;
 use crate::cli::args::{Common, Consenting, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
-use crate::cli::commands::{CommandId, DeviceCommands, options_of};
+use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::consent::{ask, can_ask};
 use crate::cli::output::Output;
 use crate::cli::simulate::Simulated;
@@ -75,6 +76,10 @@ impl DeviceCommands for InterbusCommands {
             CommandId::Decode => options_of::<WordOptions>(),
             _ => Vec::new(),
         }
+    }
+
+    fn actions(&self) -> Vec<PossibleValue> {
+        values_of::<InterbusAction>()
     }
 
     fn identify(&self, common: &Common, output: &Output) -> Result {

@@ -1,13 +1,13 @@
 //! `analyse`: the quality of a recorded sine/cosine signal, offline.
 
+mod args;
+
 use std::sync::atomic::AtomicBool;
 
+use clap::{ArgMatches, Args};
 use serde_json::{Value as Json, json};
 
-use super::args::Analyse;
-use super::output::{Lines, Output};
-use super::runner::{Bar, failed};
-use super::{Done, Failure, Result};
+use self::args::Analyse;
 use crate::analysis::analysis::Analysis;
 use crate::analysis::capture::{Capture, Layout, Wishes};
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
@@ -15,9 +15,28 @@ use crate::analysis::position_error::{Basis, Samples, harmonics};
 use crate::analysis::quality::Family;
 use crate::analysis::revolution::Revolution;
 use crate::app::{Text, explain};
+use crate::cli::args::Common;
+use crate::cli::commands::{OwnCommand, parse};
+use crate::cli::output::{Lines, Output};
+use crate::cli::runner::{Bar, failed};
+use crate::cli::{Done, Failure, Result};
 use crate::store::read_capture;
 
-pub(super) fn analyse(output: &Output, arguments: &Analyse) -> Result {
+/// `analyse`: a recorded signal.
+pub(crate) struct AnalyseCommand;
+
+impl OwnCommand for AnalyseCommand {
+    fn command(&self) -> clap::Command {
+        Analyse::augment_args(clap::Command::new("analyse"))
+            .about("Quality of a recorded sine/cosine signal: amplitude, offsets, gain, phase, position error")
+    }
+
+    fn run(&self, _: &Common, output: &Output, matches: &ArgMatches) -> Result {
+        analyse(output, &parse(matches)?)
+    }
+}
+
+fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let path = &arguments.file;
     let wishes = Wishes { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..Wishes::default() };
     let bar = Bar::default();

@@ -8,29 +8,29 @@ use crate::analysis::capture::Columns;
 use crate::analysis::quality::Family;
 
 #[derive(Args)]
-pub(in crate::cli) struct Analyse {
+pub(super) struct Analyse {
     /// A table of time, sine and cosine in seconds and volts; delimiter, decimal sign, header and units are found out.
     #[arg(value_name = "FILE.csv")]
-    pub(in crate::cli) file: PathBuf,
+    pub(super) file: PathBuf,
     /// Numbers of the columns, from 1: time, sine, cosine; or time, SIN, REFSIN, COS, REFCOS. Then, where there are such
     /// columns, reference=N (mechanical degrees) and absolute=N (steps of 1/32 period).
     #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
-    pub(in crate::cli) columns: Option<Columns>,
+    pub(super) columns: Option<Columns>,
     /// Volts in one unit of the sine and cosine columns.
     #[arg(long, value_name = "X", value_parser = parse_factor, allow_negative_numbers = true)]
-    pub(in crate::cli) volts_per_unit: Option<f64>,
+    pub(super) volts_per_unit: Option<f64>,
     /// The encoders by whose limits the signal is judged.
     #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
-    pub(in crate::cli) limits: Limits,
+    pub(super) limits: Limits,
     /// Signal periods in a revolution: for the speed, for what repeats with the revolution, and with a reference for DNL
     /// and INL.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
-    pub(in crate::cli) periods: Option<u32>,
+    pub(super) periods: Option<u32>,
 }
 
 /// Families of encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Limits {
+pub(super) enum Limits {
     /// 0.9 … 1.1 V peak to peak, references at 2.0 … 3.0 V.
     Hiperface,
     /// 0.8 … 1.2 V peak to peak, references at 2.25 … 2.75 V.
@@ -40,7 +40,7 @@ pub(in crate::cli) enum Limits {
 }
 
 impl Limits {
-    pub(in crate::cli) fn family(self) -> Family {
+    pub(super) fn family(self) -> Family {
         match self {
             Limits::Hiperface => Family::Hiperface,
             Limits::AfsAfm60 => Family::AfsAfm60,
