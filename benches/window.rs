@@ -6,6 +6,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic, missing_docs)]
 
+use encoder_studio::app::DeviceCommand;
 use std::io::Write as _;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -80,7 +81,6 @@ const STREAMED: Duration = Duration::from_secs(15);
 /// when the adapter streams 20 000 frames a second.
 fn stream() {
     use encoder_studio::app::{Action, Look, Studio, Tab, World};
-    use encoder_studio::devices::biss::state::Action as Biss;
     use encoder_studio::kinds::{FORMATS, TABS};
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
@@ -96,8 +96,8 @@ fn stream() {
             let studio = self.window.studio();
             let ready = studio.biss().filter(|own| own.session.is_ready() && own.survey.is_some());
             if let (None, Some(encoder)) = (self.began, ready) {
-                let poll = Biss::Poll(Some(Duration::from_micros(50)));
-                studio.mailbox().send(Action::Biss(encoder.session.id, poll));
+                let poll = DeviceCommand::Poll(Some(Duration::from_micros(50)));
+                studio.mailbox().send(Action::Command(encoder.session.id, poll));
                 self.began = Some(Instant::now());
             }
             let begun = Instant::now();

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::connect;
+use super::devices::DeviceCommand;
 use super::diverged::{Diverged, Resolve};
 use super::keep::{SettingsRead, SettingsWritten};
+use super::payload::Payload;
 use super::recorder::{self, Exported};
 use super::review::Permit;
 use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
@@ -14,14 +16,10 @@ use super::tab::Tab;
 use super::{Language, Picture, Settings, Text, Theme};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::protocol::Descriptions;
-use crate::devices::biss::state as biss;
 use crate::devices::hiperdrive::jobs::Hiperdrive;
-use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;
-use crate::devices::hiperface::state as hiperface;
 use crate::devices::interbus::jobs::Interbus;
-use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::protocol::Families;
 use crate::devices::ssi::state as ssi;
@@ -101,16 +99,10 @@ pub enum Action {
     PictureCut,
     /// The review of a write, about one session.
     Review(SessionId, ReviewAction),
-    /// Something in the HIPERFACE tab, about one session, whichever is shown by then.
-    Hiperface(SessionId, hiperface::Action),
-    /// Something in the BiSS tab, about one session.
-    Biss(SessionId, biss::Action),
-    /// Something in the SSI tab, about one session.
-    Ssi(SessionId, ssi::Action),
-    /// Something in the INTERBUS tab, about one session.
-    Interbus(SessionId, interbus::Action),
-    /// Something in the HIPERDRIVE tab, about one session.
-    Hiperdrive(SessionId, hiperdrive::Action),
+    /// Something that every kind of device can be asked for, about one session, whichever is shown by then.
+    Command(SessionId, DeviceCommand),
+    /// Something that one kind of device can be asked for; see [`Action::device`].
+    Device(SessionId, Payload),
     /// A layout of an SSI encoder that is in no file yet.
     NewLayout,
     /// Something in the Signals tab.
@@ -221,10 +213,8 @@ pub enum Done {
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
     },
-    /// In the SSI tab, for one session.
-    Ssi(SessionId, ssi::Done),
-    /// In the INTERBUS tab, for one session.
-    Interbus(SessionId, interbus::Done),
+    /// A task of one kind of device, for one session; see [`Done::device`].
+    Device(SessionId, Payload),
     /// In the Signals tab.
     Signals(signals::Done),
 }

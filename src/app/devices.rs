@@ -1,14 +1,14 @@
 //! The devices on the desk, of whatever kind: what the studio asks of each of them.
 
+mod command;
 mod model;
 mod open_device;
 mod shown;
-mod wish;
 
-pub(crate) use model::{DeviceMemory, DeviceModel, MotionControl};
+pub use command::DeviceCommand;
+pub(crate) use model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
 pub use open_device::{AnyDevice, OpenDevice};
 pub(super) use shown::Shown;
-pub use wish::Wish;
 
 use super::action::Known;
 use super::services::Services;

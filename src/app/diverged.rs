@@ -6,7 +6,7 @@ use super::documents::read_error;
 use super::question::{Question, Then};
 use super::session::{Found, Guard, ProfileFile, Saving, Source};
 use super::studio::{SessionId, Studio};
-use super::{Text, Wish};
+use super::{DeviceCommand, Text};
 use crate::profile::{Change, Changed, Document, Formats, ProfileError, divergence};
 
 /// One profile in two versions.
@@ -171,7 +171,7 @@ impl Studio {
                 self.save(id, path);
             }
             Source::Link(_) | Source::New { .. } => {
-                let ask = device.wish(Wish::AskSave);
+                let ask = device.command(DeviceCommand::AskSave);
                 self.act(ask);
             }
         }

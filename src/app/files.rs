@@ -60,20 +60,20 @@ impl Studio {
             FileQuestion::OpenCapture => self.act(Action::Signals(signals::Action::Open(path))),
             FileQuestion::Recording => self.act(Action::Connect(connect::Action::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
-            FileQuestion::OpenFrames { session } => self.act(Action::Ssi(session, ssi::Action::FindIn(path))),
-            FileQuestion::Frames { session, .. } => self.act(Action::Ssi(session, ssi::Action::SaveFrames(path))),
+            FileQuestion::OpenFrames { session } => self.act(Action::device(session, ssi::Action::FindIn(path))),
+            FileQuestion::Frames { session, .. } => self.act(Action::device(session, ssi::Action::SaveFrames(path))),
             FileQuestion::Export { session, format, .. } => {
-                self.act(Action::Ssi(session, ssi::Action::Export(format, path)));
+                self.act(Action::device(session, ssi::Action::Export(format, path)));
             }
             FileQuestion::OpenCams { session } => {
-                self.act(Action::Interbus(session, interbus::Action::OpenTable(path)));
+                self.act(Action::device(session, interbus::Action::OpenTable(path)));
             }
             FileQuestion::Cams { session, decimal_comma, .. } => {
-                self.act(Action::Interbus(session, interbus::Action::SaveTable { path, decimal_comma }));
+                self.act(Action::device(session, interbus::Action::SaveTable { path, decimal_comma }));
             }
             FileQuestion::AxisReport { session, .. } => {
                 let save = hiperdrive::axis::Action::SaveReport(path, self.settings.language);
-                self.act(Action::Hiperdrive(session, hiperdrive::Action::Axis(save)));
+                self.act(Action::device(session, hiperdrive::Action::Axis(save)));
             }
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {

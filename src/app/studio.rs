@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::action::{Action, Done, FileQuestion, Waited};
 use super::connect::Connect;
+use super::devices::DeviceModel;
 use super::devices::{AnyDevice, Shown};
 use super::diverged::Diverged;
 use super::documents::{is_capture, read_document};
@@ -14,9 +15,11 @@ use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
-use crate::devices::biss::jobs::Change;
 use crate::devices::biss::state as biss;
-use crate::devices::hiperface::state::{self as hiperface, Encoder};
+use crate::devices::hiperdrive::state as hiperdrive;
+use crate::devices::hiperface::state::Encoder;
+use crate::devices::interbus::state as interbus;
+use crate::devices::ssi::state as ssi;
 use crate::link::LinkUrl;
 use crate::signals::state::{self as signals, Signals};
 
@@ -136,11 +139,8 @@ impl Studio {
             Action::AskPicture(picture) => self.ask_picture(picture),
             Action::PictureCut => self.tell_picture_cut(),
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
-            Action::Hiperface(id, action) => self.act_hiperface(id, action),
-            Action::Biss(id, action) => self.act_biss(id, action),
-            Action::Ssi(id, action) => self.act_ssi(id, action),
-            Action::Interbus(id, action) => self.act_interbus(id, action),
-            Action::Hiperdrive(id, action) => self.act_hiperdrive(id, action),
+            Action::Command(id, command) => self.command(id, command),
+            Action::Device(id, action) => self.act_device(id, action),
             Action::Signals(action) => self.act_signals(action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
@@ -279,59 +279,16 @@ impl Studio {
         self.next_id
     }
 
-    pub(super) fn act_hiperface(&mut self, id: SessionId, action: hiperface::Action) {
-        match action {
-            hiperface::Action::Reconnect => self.reconnect(id),
-            hiperface::Action::WriteInto(_) if self.is_only_looked_at(id) => {}
-            hiperface::Action::WriteInto(target) => {
-                let profile = self.device(id).and_then(|device| device.get::<Encoder>()?.wanted_profile());
-                let Some(profile) = profile else { return };
-                self.show(Tab::Hiperface, target);
-                self.with_hiperface(target, |encoder, services| encoder.plan_restore(profile, services));
-            }
-            action => self.with_hiperface(id, |encoder, services| encoder.act(action, services)),
-        }
-    }
-
     pub(crate) fn with_device(&mut self, id: SessionId, act: impl FnOnce(&mut AnyDevice, &mut Services)) {
         if let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) {
             act(device.as_mut(), &mut self.services);
         }
     }
 
-    fn act_biss(&mut self, id: SessionId, action: biss::Action) {
-        match action {
-            biss::Action::Reconnect => self.reconnect(id),
-            biss::Action::WriteInto(_) if self.is_only_looked_at(id) => {}
-            biss::Action::PlanMounting { data: Some(data), .. } if self.is_only_looked_at(data) => {}
-            biss::Action::WriteInto(target) => {
-                let profile = self.device(id).and_then(|device| device.get::<biss::Encoder>()?.wanted_profile());
-                let Some(profile) = profile else { return };
-                self.show(Tab::Biss, target);
-                self.with_biss(target, |encoder, services| encoder.plan_restore(profile, services));
-            }
-            biss::Action::PlanMounting { mut run, motor, data } => {
-                let profile = data.and_then(|id| self.device(id)?.get::<biss::Encoder>()?.wanted_profile());
-                run.data = profile.map(Box::new);
-                let change = Change::Guided { run: *run, motor };
-                self.with_biss(id, |encoder, services| encoder.act(biss::Action::Plan(Box::new(change)), services));
-            }
-            action => self.with_biss(id, |encoder, services| encoder.act(action, services)),
-        }
-    }
-
-    fn with_biss(&mut self, id: SessionId, act: impl FnOnce(&mut biss::Encoder, &mut Services)) {
+    fn with_model<M: DeviceModel>(&mut self, id: SessionId, act: impl FnOnce(&mut M, &mut Services)) {
         self.with_device(id, |device, services| {
-            if let Some(encoder) = device.get_mut::<biss::Encoder>() {
-                act(encoder, services);
-            }
-        });
-    }
-
-    fn with_hiperface(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
-        self.with_device(id, |device, services| {
-            if let Some(encoder) = device.get_mut::<Encoder>() {
-                act(encoder, services);
+            if let Some(model) = device.get_mut() {
+                act(model, services);
             }
         });
     }
@@ -339,23 +296,22 @@ impl Studio {
     fn done(&mut self, done: Done) {
         match done {
             Done::OpenedBiss(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_biss(id, |encoder, services| encoder.connect(opened, services));
+                studio.with_model::<biss::Encoder>(id, |encoder, services| encoder.connect(opened, services));
             }),
             Done::OpenedSsi(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_ssi(id, |encoder, services| encoder.connect(opened, services));
+                studio.with_model::<ssi::Encoder>(id, |encoder, services| encoder.connect(opened, services));
             }),
             Done::OpenedInterbus(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_interbus(id, |encoder, services| encoder.connect(opened, services));
+                studio.with_model::<interbus::Encoder>(id, |encoder, services| encoder.connect(opened, services));
             }),
             Done::OpenedHiperdrive(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_hiperdrive(id, |unit, services| unit.connect(opened, services));
+                studio.with_model::<hiperdrive::Unit>(id, |unit, services| unit.connect(opened, services));
             }),
             Done::FoundDrives(number, found) => self.found_drives(number, found),
-            Done::Interbus(id, done) => self.with_interbus(id, |encoder, services| encoder.done(done, services)),
+            Done::Device(id, done) => self.device_done(id, done),
             Done::Families(families, broken) => self.take_families(families, &broken),
-            Done::Ssi(id, done) => self.with_ssi(id, |encoder, services| encoder.done(done, services)),
             Done::OpenedHiperface(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_hiperface(id, |encoder, services| encoder.connect(opened, services));
+                studio.with_model::<Encoder>(id, |encoder, services| encoder.connect(opened, services));
             }),
             Done::OpenedForSearch { number, result } => {
                 let search = self.connect.as_mut().and_then(|connect| connect.search.as_mut());

@@ -7,7 +7,7 @@ use jiff::tz::TimeZone;
 use super::controls::{button, card, empty, enabled_button, paragraph};
 use super::{Skin, icons};
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Wish};
+use crate::app::{Action, AnyDevice, DeviceCommand};
 use crate::store::{Entry, Outcome};
 
 /// Draws the page.
@@ -35,7 +35,7 @@ fn profile(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
                 actions.push(Action::Save(device.id()));
             }
             if enabled_button(ui, savable, "", &skin.say("profile_card.save_as")).clicked() {
-                actions.push(device.wish(Wish::AskSave));
+                actions.push(device.command(DeviceCommand::AskSave));
             }
             if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
@@ -67,7 +67,7 @@ fn backups(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Actio
                         &skin.say("backups_card.restore"),
                     );
                     if restore.clicked() {
-                        actions.push(device.wish(Wish::Restore(backup.path.clone())));
+                        actions.push(device.command(DeviceCommand::Restore(backup.path.clone())));
                     }
                     if button(ui, icons::FILE_TEXT, &skin.say("backups_card.look")).clicked() {
                         actions.push(Action::Open(backup.path.clone()));

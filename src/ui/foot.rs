@@ -6,7 +6,7 @@ use egui::{RichText, Ui, WidgetInfo};
 use super::controls::{enabled_button, icon_button, name, primary};
 use super::{Skin, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, Studio, Text, Wish};
+use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
 /// Width below which not all buttons of a profile, or those of a device and the count of edits, have room for their words.
 const NARROW: f32 = 660.0;
@@ -33,15 +33,15 @@ pub(crate) fn foot_ui(
     let width = ui.available_width();
     ui.horizontal(|ui| {
         if icon_button(ui, device.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
-            actions.push(device.wish(Wish::Undo));
+            actions.push(device.command(DeviceCommand::Undo));
         }
         if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
-            actions.push(device.wish(Wish::Redo));
+            actions.push(device.command(DeviceCommand::Redo));
         }
         let narrow = width < NARROW;
         let revert = if narrow { icon_button } else { enabled_button };
         if revert(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
-            actions.push(device.wish(Wish::RevertAll));
+            actions.push(device.command(DeviceCommand::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if *device.phase() == Phase::Offline {
@@ -53,7 +53,7 @@ pub(crate) fn foot_ui(
                 let word = skin.say("memory.review");
                 let write = primary(ui, skin, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
                 if write.on_hover_text(skin.say("memory.review_hint")).clicked() {
-                    actions.push(device.wish(Wish::Review));
+                    actions.push(device.command(DeviceCommand::Review));
                 }
             }
             if dirty {
@@ -95,7 +95,7 @@ fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, act
         let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {
             for target in &targets {
                 if ui.add_enabled(target.is_ready(), egui::Button::new(target.name())).clicked() {
-                    actions.push(device.wish(Wish::WriteInto(target.id())));
+                    actions.push(device.command(DeviceCommand::WriteInto(target.id())));
                     ui.close();
                 }
             }

@@ -12,7 +12,7 @@ use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
 use super::{Skin, Views, header, review, stopping};
-use crate::app::{Action, AnyDevice, Look, Severity, Studio, Wish};
+use crate::app::{Action, AnyDevice, DeviceCommand, Look, Severity, Studio};
 
 /// The window.
 pub struct Window {
@@ -234,17 +234,17 @@ impl Window {
         let tabs = TAB_KEYS.into_iter().zip(self.views.tabs.tabs());
         keys.extend(tabs.map(|(key, tab)| (Modifiers::COMMAND, key, Action::ShowTab(tab))));
         if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
-            keys.push((Modifiers::NONE, Key::F5, device.wish(Wish::Read)));
+            keys.push((Modifiers::NONE, Key::F5, device.command(DeviceCommand::Read)));
             // The one with more keys first: it would be taken for the other.
-            keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::S, device.wish(Wish::AskSave)));
+            keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::S, device.command(DeviceCommand::AskSave)));
             keys.push((Modifiers::COMMAND, Key::S, Action::Save(device.id())));
-            keys.push((Modifiers::COMMAND, Key::Enter, device.wish(Wish::Review)));
+            keys.push((Modifiers::COMMAND, Key::Enter, device.command(DeviceCommand::Review)));
             // A text that is typed has steps of its own, and so has the hex editor. A boundary that was just moved has none.
             let view = self.views.tabs.device(device.tab());
             if view.is_some_and(DeviceView::has_undo_keys) && !ctx.text_edit_focused() {
-                keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.wish(Wish::Redo)));
-                keys.push((Modifiers::COMMAND, Key::Z, device.wish(Wish::Undo)));
-                keys.push((Modifiers::COMMAND, Key::Y, device.wish(Wish::Redo)));
+                keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.command(DeviceCommand::Redo)));
+                keys.push((Modifiers::COMMAND, Key::Z, device.command(DeviceCommand::Undo)));
+                keys.push((Modifiers::COMMAND, Key::Y, device.command(DeviceCommand::Redo)));
             }
         }
         for (modifiers, key, action) in keys {

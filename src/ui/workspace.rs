@@ -10,7 +10,7 @@ use super::views::shown_in;
 use super::{Skin, Views, icons};
 use crate::app::connect;
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Studio, Wish};
+use crate::app::{Action, AnyDevice, DeviceCommand, Studio};
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -127,10 +127,10 @@ fn lost(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>)
                 )
                 .clicked()
             {
-                actions.push(device.wish(Wish::Read));
+                actions.push(device.command(DeviceCommand::Read));
             }
             if !silent && button(ui, icons::ARROW_CLOCKWISE, &skin.say("shell.reconnect")).clicked() {
-                actions.push(device.wish(Wish::Reconnect));
+                actions.push(device.command(DeviceCommand::Reconnect));
             }
             if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
                 actions.push(Action::Connect(connect::Action::Open));

@@ -1,6 +1,8 @@
 //! A BiSS encoder in the window: the virtual kit encoder, over its pin and over the virtual adapter.
 
+use crate::biss_support::command;
 use egui_kittest::kittest::Queryable;
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity, Tab};
@@ -131,7 +133,7 @@ fn a_register_is_watched_beside_the_position() {
     let description = encoder(&desk).description.clone().unwrap();
     let temperature = description.with_role(Role::Temperature).unwrap().clone();
     ask(&mut desk, Biss::Watch(Box::new(temperature), true));
-    ask(&mut desk, Biss::Poll(Some(std::time::Duration::from_millis(5))));
+    command(&mut desk, DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     desk.until("samples come", |studio| {
         let record = &studio.biss().unwrap().record;
         let watched = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
@@ -142,7 +144,7 @@ fn a_register_is_watched_beside_the_position() {
     let line = recorder.lines().iter().find(|line| line.heading.contains("temperature")).unwrap();
     let history = recorder.history(line).unwrap();
     assert_eq!(history.sample(line.column(), history.all().start).unwrap().value.to_f64(), 30.0);
-    ask(&mut desk, Biss::Poll(None));
+    command(&mut desk, DeviceCommand::Poll(None));
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! A BiSS encoder that is another one all at once, and a wire that two want.
 
+use crate::biss_support::command;
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::Severity;
 use encoder_studio::app::session::Phase;
 use encoder_studio::devices::biss::state::Action as Biss;
@@ -24,7 +26,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     connect(&mut desk, &served.link());
     edit(&mut desk);
     served.exchange("serial=2");
-    ask(&mut desk, Biss::Review);
+    command(&mut desk, DeviceCommand::Review);
     desk.until("the other one is read", |studio| {
         is_read(studio) && studio.biss().unwrap().serial_number() == Some("2")
     });
@@ -33,7 +35,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     assert_eq!(desk.told(Severity::Warning), ["session.other_encoder"]);
     // They are still those of the first.
     served.exchange("serial=1");
-    ask(&mut desk, Biss::Read);
+    command(&mut desk, DeviceCommand::Read);
     desk.until("the first one is back", |studio| {
         is_read(studio) && studio.biss().unwrap().serial_number() == Some("1") && studio.biss().unwrap().is_dirty()
     });
@@ -50,7 +52,7 @@ fn a_wire_belongs_to_the_encoder_or_to_the_scope() {
     assert!(why(&encoder(&desk).session.phase));
     desk.until("it samples", |studio| studio.signals.source().streaming().is_some());
     assert!(desk.studio.signals.source().adapter_problem().is_none());
-    ask(&mut desk, Biss::Reconnect);
+    command(&mut desk, DeviceCommand::Reconnect);
     let source = desk.studio.signals.source();
     assert!(!source.is_running());
     assert_eq!(source.adapter_problem().map(|text| text.id()), Some("adapter.let_go"));

@@ -1,5 +1,6 @@
 //! The position of a BiSS encoder as its adapter streams it: 20 000 frames a second, shown without loss.
 
+use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::analysis::history::Flags;
@@ -15,7 +16,7 @@ const LINK: &str = "sim:?bridge=on&clock=2000000&rpm=300";
 const FAST: Duration = Duration::from_micros(50);
 
 fn poll(studio: &Studio, interval: Option<Duration>) -> Action {
-    Action::Biss(studio.biss().unwrap().session.id, Biss::Poll(interval))
+    Action::Command(studio.biss().unwrap().session.id, DeviceCommand::Poll(interval))
 }
 
 /// Positions by their times, and which of them do not join the one before.
@@ -65,7 +66,7 @@ fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
     desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let before = desk.studio.biss().unwrap().record.positions();
     let id = desk.studio.biss().unwrap().session.id;
-    desk.act(Action::Biss(id, Biss::ReadStatus));
+    desk.act(Action::device(id, Biss::ReadStatus));
     desk.until("it goes on", |studio| {
         studio.biss().is_some_and(|own| own.session.is_ready() && own.record.positions() > before + 2_000)
     });

@@ -1,5 +1,6 @@
 //! A desk with a BiSS encoder on it.
 
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::{Action, Studio, Tab};
 use encoder_studio::devices::biss::protocol::RegisterAddress;
 use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
@@ -34,7 +35,12 @@ pub(crate) fn encoder(desk: &Desk) -> &Encoder {
     desk.studio.biss().expect("a BiSS encoder is shown")
 }
 
+pub(crate) fn command(desk: &mut Desk, command: DeviceCommand) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Command(id, command));
+}
+
 pub(crate) fn ask(desk: &mut Desk, action: Biss) {
     let id = encoder(desk).session.id;
-    desk.act(Action::Biss(id, action));
+    desk.act(Action::device(id, action));
 }

@@ -1,5 +1,7 @@
 //! Writing into a BiSS encoder from the window: edits with their review, and procedures that a person leads.
 
+use crate::biss_support::command;
+use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab};
@@ -55,7 +57,7 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         for (place, byte) in [("0x24:0x00", 0x11), ("0x24:0x10", 0x22), ("0x24:0x3F", 0x33)] {
             ask(&mut desk, Biss::Put { start: at(place), bytes: vec![byte] });
         }
-        ask(&mut desk, Biss::Review);
+        command(&mut desk, DeviceCommand::Review);
         until_planned(&mut desk);
         let prepared = encoder(&desk).review.as_ref().unwrap().prepared().unwrap();
         let [Op::StoreData { registers, .. }] = prepared.plan.ops.as_slice() else { panic!("{:?}", prepared.plan.ops) };
@@ -176,8 +178,8 @@ fn the_live_position_says_that_it_waits_for_a_job() {
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
     screen.until("the encoder is read", is_read);
     let id = screen.studio().biss().unwrap().session.id;
-    screen.act(Action::Biss(id, Biss::Poll(Some(Duration::from_millis(50)))));
-    screen.act(Action::Biss(id, Biss::Plan(Box::new(calibration()))));
+    screen.act(Action::Command(id, DeviceCommand::Poll(Some(Duration::from_millis(50)))));
+    screen.act(Action::device(id, Biss::Plan(Box::new(calibration()))));
     let plan = |studio: &Studio| Some(studio.biss()?.review.as_ref()?.prepared()?.plan.id());
     screen.until("the plan is there", |studio| is_read(studio) && plan(studio).is_some());
     let own = plan(screen.studio()).unwrap();
@@ -213,7 +215,7 @@ fn the_position_is_preset_where_the_shaft_stands() {
     until_asked(&mut desk, Task::StandAtPlace, true);
     ask(&mut desk, Biss::Answer(Task::StandAtPlace, Answer::Go));
     desk.until("it is over", |studio| is_read(studio) && !studio.biss().unwrap().guide.as_ref().unwrap().is_running());
-    ask(&mut desk, Biss::ReadPosition);
+    command(&mut desk, DeviceCommand::ReadPosition);
     desk.until("it is read", |studio| {
         let last = studio.biss().and_then(|own| own.record.last());
         is_read(studio) && last.is_some_and(|own| (own.turns, own.steps) == (7, 0x8000))

@@ -1,6 +1,7 @@
 //! The window waits for nothing: a link that hangs, a disk that does not answer or does not take anything, events that
 //! nobody reads.
 
+use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -27,8 +28,9 @@ fn a_link_that_hangs_holds_nobody_up() {
     desk.settle();
     assert_eq!(*desk.phase(), Phase::Opening);
     let hanging = desk.encoder().session.id;
-    for action in [Hiperface::Read, Hiperface::Review, Hiperface::Poll(Some(Duration::ZERO)), Hiperface::Reconnect] {
-        desk.ask(action);
+    let poll = DeviceCommand::Poll(Some(Duration::ZERO));
+    for command in [DeviceCommand::Read, DeviceCommand::Review, poll, DeviceCommand::Reconnect] {
+        desk.command(command);
     }
     desk.open(&format!("serial:{PORT}"));
     desk.until_read();
@@ -55,7 +57,7 @@ fn opening_can_be_cancelled_and_what_comes_late_is_dropped() {
         desk.settle();
         assert!(matches!(desk.phase(), Phase::Lost(_)));
         assert_eq!(desk.wire().sent(), 0);
-        desk.ask(Hiperface::Reconnect);
+        desk.command(DeviceCommand::Reconnect);
         desk.until_read();
     }
 }
@@ -91,10 +93,10 @@ fn a_disk_that_does_not_answer_holds_nobody_up() {
     pipe(&profile);
     pipe(&types);
     desk.act(Action::Open(profile.clone()));
-    desk.ask(Hiperface::Restore(profile));
+    desk.command(DeviceCommand::Restore(profile));
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface/multiturn-skm36.ron");
     desk.act(Action::Open(shipped));
-    desk.ask(Hiperface::Read);
+    desk.command(DeviceCommand::Read);
     desk.until_ready();
     desk.put(0, 0, b"X");
     desk.write();
@@ -157,7 +159,7 @@ fn a_folder_that_cannot_be_written_is_told() {
 /// Why an edit is not written.
 fn refused(desk: &mut Desk) -> &'static str {
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.write_as_shown();
     desk.until("it is refused", |studio| {
@@ -182,7 +184,7 @@ fn without_a_logbook_it_is_written_only_by_a_permit_and_with_a_warning() {
     let mut desk = Desk::begun("");
     fs::create_dir_all(desk.outside.store().logbook_path()).unwrap();
     assert_eq!((refused(&mut desk), desk.wire().wear()), ("write.uncounted", 0));
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     let sheet = desk.review().sheet(0);
     assert_eq!((sheet.force_wear, sheet.is_uncounted), (Some(false), true));
@@ -207,7 +209,7 @@ fn without_polling(condition: impl Fn() -> bool) {
 fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
     let mut desk = Desk::begun("rpm=60");
     let wire = desk.wire();
-    desk.ask(Hiperface::Poll(Some(Duration::ZERO)));
+    desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
     without_polling(|| wire.count(0x42) > 6_000);
     desk.studio.poll();
     let record = &desk.encoder().record;

@@ -1,5 +1,6 @@
 //! Escape stops first and closes then; closing with something to lose asks once.
 
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::{Action, JobEnd};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
@@ -11,7 +12,7 @@ use crate::support::Desk;
 fn with_nothing_to_lose_it_closes() {
     let mut desk = Desk::begun("");
     assert!(!desk.studio.may_close());
-    desk.ask(Hiperface::Poll(Some(std::time::Duration::from_millis(5))));
+    desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     desk.act(Action::Close);
     assert!(desk.studio.question.is_none());
     desk.until("it may close", |studio| studio.may_close());
@@ -22,7 +23,7 @@ fn a_write_ends_at_a_safe_point_before_it_closes() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.put(0, 2, b"Y");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
     desk.write_as_shown();
@@ -50,7 +51,7 @@ fn a_write_ends_at_a_safe_point_before_it_closes() {
 fn escape_stops_first_then_closes_the_dialog_then_the_review() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
@@ -74,7 +75,7 @@ fn a_plan_that_is_being_made_ends_with_its_review() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.wire().hold_at(0x56, 1);
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.wire().wait_until_held();
     desk.ask(Hiperface::CloseReview);
     assert!(desk.encoder().review.is_none());
@@ -88,7 +89,7 @@ fn a_plan_that_is_being_made_ends_with_its_review() {
 fn a_review_that_writes_stays_until_it_is_over() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
     desk.write_as_shown();

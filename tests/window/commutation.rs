@@ -2,6 +2,7 @@
 //! the way. Numbers are those of section 5 of the sine/cosine reference, or reckoned apart.
 
 use encoder_studio::analysis::quality::Verdict;
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Severity};
 use encoder_studio::devices::hiperface::jobs::Change;
@@ -102,7 +103,7 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
     let mut desk = Desk::begun(AT_REST);
     desk.prepare();
     // Polled meanwhile: the readings come in between.
-    desk.ask(Hiperface::Poll(Some(std::time::Duration::ZERO)));
+    desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
     desk.read(Slot::OneSide);
     let reading = *desk.encoder().commutation.reading(Slot::OneSide).unwrap();
     // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V: φ = 0.749 223 64, and the middle of step 24 is 0.525 steps on.
@@ -112,7 +113,7 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
     assert_eq!(desk.offset(), Err("commutation.one_side_only"));
     desk.read(Slot::OtherSide);
     assert!(desk.studio.is_live(), "polling goes on");
-    desk.ask(Hiperface::Poll(None));
+    desk.command(DeviceCommand::Poll(None));
     // frac(4 · 100.749 223 64 / 128) = 53.428 766° = 25FE 68F7h.
     assert_eq!(desk.offset(), Ok(0x25FE_68F7));
     // A quarter of an electrical turn is eight periods.
@@ -223,7 +224,7 @@ fn the_second_vector_tells_what_is_wrong() {
         let stored = !desk.edits().is_empty();
         assert_eq!(stored, verdict == Verdict::Ok, "what does not fit is not stored");
         assert_eq!(desk.why_not(), (!stored).then_some("commutation.second_refuses"));
-        desk.ask(Hiperface::RevertAll);
+        desk.command(DeviceCommand::RevertAll);
     }
     // With the other counting direction, exchanged is right.
     desk.edit(|form| (form.pole_pairs, form.reversed) = ("4".to_owned(), true));
@@ -346,7 +347,7 @@ fn readings_outlive_a_lost_cable_and_not_another_encoder() {
     desk.assist(Assistant::Read(Slot::OtherSide));
     assert_eq!(desk.why_not(), Some("commutation.not_ready"));
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     desk.read(Slot::OtherSide);
     assert_eq!(desk.offset(), Ok(0x25FE_68F7));
@@ -354,7 +355,7 @@ fn readings_outlive_a_lost_cable_and_not_another_encoder() {
     desk.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
     desk.wire().plug();
     desk.wire().exchange("serial=ZZ1");
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert_eq!(desk.encoder().commutation.form, Form::default(), "nothing of it is for this one");
     assert!(desk.encoder().commutation.reading(Slot::OneSide).is_none());
@@ -380,7 +381,7 @@ fn an_offset_goes_into_a_profile_as_a_value_of_the_mounting() {
     desk.edit(|form| form.storage = Storage::Number);
     desk.assist(Assistant::Store);
     assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[8..12], [0x53, 0x05, 0x1E, 0xB8]);
-    desk.ask(Hiperface::RevertAll);
+    desk.command(DeviceCommand::RevertAll);
     desk.edit(|form| (form.storage, form.address, form.pole_pairs) = (Storage::Record, "0".into(), "256".into()));
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("commutation.too_many_pairs"));

@@ -1,5 +1,6 @@
 //! The connection dialog: a form that refuses what cannot be, and the search for an encoder whose settings nobody knows.
 
+use encoder_studio::app::DeviceCommand;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -8,7 +9,6 @@ use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, FileQuestion, Language, Tab};
 use encoder_studio::devices::biss::state::{BissForm, BissWay};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::devices::hiperface::state::{LinkForm, LinkKind, Search};
 use encoder_studio::units::{Baud, Parity};
 
@@ -45,13 +45,13 @@ fn a_drive_on_the_line_is_asked_for_before_the_first_byte() {
         desk.settle();
         let Phase::Lost(why) = desk.phase() else { panic!("{:?}", desk.phase()) };
         assert_eq!(why.id(), "session.maybe_drive");
-        desk.ask(Hiperface::Poll(Some(Duration::ZERO)));
-        desk.ask(Hiperface::Read);
+        desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
+        desk.command(DeviceCommand::Read);
         desk.settle();
         assert_eq!(desk.wire().sent(), 0, "{link}");
         // Another connection is another question.
         let id = desk.encoder().session.id;
-        desk.studio.act(Action::Hiperface(id, Hiperface::Reconnect));
+        desk.studio.act(Action::Command(id, DeviceCommand::Reconnect));
         assert!(asks_for_drive(&desk.studio));
         desk.studio.act(Action::Confirm);
         desk.until_read();
@@ -304,7 +304,7 @@ fn closing_the_dialog_ends_its_search() {
 fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     let mut desk = Desk::at_port("");
     let link = format!("serial:{PORT}");
-    desk.ask(Hiperface::Poll(Some(std::time::Duration::from_millis(2))));
+    desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(2))));
     desk.connect(Connect::Open);
     desk.connect(Connect::Use(link.clone()));
     desk.connect(Connect::Search(FindOptions::default()));
@@ -318,7 +318,7 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     assert_eq!(desk.studio.devices().len(), 1);
 
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
     desk.write_as_shown();

@@ -1,5 +1,6 @@
 //! Edits outlive a crash: they are on disk as they are made, and come back with their encoder or profile.
 
+use encoder_studio::app::DeviceCommand;
 use std::fs;
 
 use encoder_studio::app::session::Phase;
@@ -16,9 +17,9 @@ fn edits_taken_back_are_no_draft() {
     let path = desk.outside.path(DRAFT);
     desk.put(0, 0, b"X");
     desk.until("the draft is kept", |_| path.exists());
-    desk.ask(Hiperface::RevertAll);
+    desk.command(DeviceCommand::RevertAll);
     desk.until("the draft is gone", |_| !path.exists());
-    desk.ask(Hiperface::Undo);
+    desk.command(DeviceCommand::Undo);
     desk.until("the draft is kept", |_| path.exists());
 }
 
@@ -134,7 +135,7 @@ fn an_encoder_of_another_type_with_the_same_number_is_another() {
     desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
     desk.wire().exchange("model=sks36&serial=GB0450179");
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until("it is another", |studio| {
         studio.hiperface().unwrap().identity.as_ref().is_some_and(|own| own.name == "SKS36")
     });
@@ -162,7 +163,7 @@ fn without_a_serial_number_there_is_no_draft_which_is_said_once() {
             desk.wire().exchange(query);
         }
         desk.wire().plug();
-        desk.ask(Hiperface::Reconnect);
+        desk.command(DeviceCommand::Reconnect);
         desk.until_read();
     };
     replug(&mut desk, None);

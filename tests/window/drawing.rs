@@ -1,6 +1,7 @@
 //! How often the window is drawn while nothing changes (issue 22.32): by the clock of the pictures alone, each at the time
 //! for which the one before it has asked.
 
+use encoder_studio::app::DeviceCommand;
 use std::sync::atomic::Ordering;
 
 use egui::ViewportId;
@@ -37,7 +38,7 @@ const SITUATIONS: [Situation; 8] = [
     }),
     ("a review", |screen| {
         let id = screen.studio().shown().unwrap().id();
-        screen.act(Action::Hiperface(id, Hiperface::Review));
+        screen.act(Action::Command(id, DeviceCommand::Review));
         screen.until("the review is open", |studio| studio.shown().unwrap().is_reviewing());
     }),
 ];

@@ -6,7 +6,7 @@ use std::path::Path;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, AnyDevice, JobEnd, Language, ReviewAction, Severity, Studio, Tab, Wish};
+use encoder_studio::app::{Action, AnyDevice, DeviceCommand, JobEnd, Language, ReviewAction, Severity, Studio, Tab};
 use encoder_studio::devices::biss::profile::BissProfile;
 use encoder_studio::devices::biss::state::Action as Biss;
 use encoder_studio::devices::hiperdrive::profile::HiperdriveProfile;
@@ -66,7 +66,7 @@ impl Case {
         until_ready(desk);
         self.stands(desk);
         if self.tab == Tab::Interbus {
-            wish(desk, Wish::Read);
+            wish(desk, DeviceCommand::Read);
             desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
             until_ready(desk);
         }
@@ -74,7 +74,7 @@ impl Case {
 
     /// Connects again, which tells nothing of whether the machine still stands.
     fn reconnect(&self, desk: &mut Desk) {
-        wish(desk, Wish::Reconnect);
+        wish(desk, DeviceCommand::Reconnect);
         until_ready(desk);
         self.stands(desk);
     }
@@ -83,7 +83,7 @@ impl Case {
     fn stands(&self, desk: &mut Desk) {
         if self.tab == Tab::Interbus {
             let id = shown(&desk.studio).unwrap().id();
-            desk.act(Action::Interbus(id, Interbus::Stopped(true)));
+            desk.act(Action::device(id, Interbus::Stopped(true)));
         }
     }
 
@@ -107,15 +107,15 @@ impl Case {
             Tab::Biss => {
                 let start = "0x24:0x00".parse().unwrap();
                 if desk.studio.biss().unwrap().memory.read(start).is_none() {
-                    desk.act(Action::Biss(id, Biss::ReadBank(Some(0x24))));
+                    desk.act(Action::device(id, Biss::ReadBank(Some(0x24))));
                     until_ready(desk);
                 }
-                desk.act(Action::Biss(id, Biss::Put { start, bytes: bytes.to_vec() }));
+                desk.act(Action::device(id, Biss::Put { start, bytes: bytes.to_vec() }));
             }
             Tab::Interbus => {
                 let edits = [Edit::Preset, Edit::ZeroShift].into_iter().zip(bytes);
                 for (edit, byte) in edits {
-                    desk.act(Action::Interbus(id, Interbus::Edit(Box::new(edit(u32::from(*byte))))));
+                    desk.act(Action::device(id, Interbus::Edit(Box::new(edit(u32::from(*byte))))));
                 }
             }
             Tab::Hiperdrive => {
@@ -123,10 +123,10 @@ impl Case {
                 let edits = [24, 26].into_iter().filter_map(ParameterNumber::new).zip(bytes);
                 for (number, byte) in edits {
                     let edit = Box::new(Set::Set(number, i64::from(*byte)));
-                    desk.act(Action::Hiperdrive(id, Hiperdrive::Edit(edit)));
+                    desk.act(Action::device(id, Hiperdrive::Edit(edit)));
                 }
             }
-            _ => desk.act(Action::Hiperface(id, Hiperface::Put { field: 0, address: 0, bytes: bytes.to_vec() })),
+            _ => desk.act(Action::device(id, Hiperface::Put { field: 0, address: 0, bytes: bytes.to_vec() })),
         }
         assert_eq!(shown(&desk.studio).unwrap().edits(), bytes.len());
     }
@@ -146,12 +146,12 @@ impl Case {
             Tab::Biss => {
                 let description = desk.studio.biss().unwrap().description.clone().unwrap();
                 for area in description.areas() {
-                    desk.act(Action::Biss(id, Biss::ReadArea(area.first)));
+                    desk.act(Action::device(id, Biss::ReadArea(area.first)));
                     until_ready(desk);
                 }
             }
             Tab::Interbus => {
-                desk.act(Action::Interbus(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
+                desk.act(Action::device(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
                 until_ready(desk);
             }
             _ => {}
@@ -161,12 +161,12 @@ impl Case {
     fn ask_to_save(&self, desk: &mut Desk, path: &Path) {
         let id = shown(&desk.studio).unwrap().id();
         let path_of = || path.to_path_buf();
-        wish(desk, Wish::AskSave);
+        wish(desk, DeviceCommand::AskSave);
         desk.act(match self.tab {
-            Tab::Biss => Action::Biss(id, Biss::Save(path_of())),
-            Tab::Interbus => Action::Interbus(id, Interbus::Save(path_of())),
-            Tab::Hiperdrive => Action::Hiperdrive(id, Hiperdrive::Save(path_of())),
-            _ => Action::Hiperface(id, Hiperface::Save(path_of())),
+            Tab::Biss => Action::device(id, Biss::Save(path_of())),
+            Tab::Interbus => Action::device(id, Interbus::Save(path_of())),
+            Tab::Hiperdrive => Action::device(id, Hiperdrive::Save(path_of())),
+            _ => Action::device(id, Hiperface::Save(path_of())),
         });
     }
 
@@ -201,8 +201,8 @@ fn shown(studio: &Studio) -> Option<&AnyDevice> {
     studio.shown()
 }
 
-fn wish(desk: &mut Desk, wish: Wish) {
-    let action = shown(&desk.studio).unwrap().wish(wish);
+fn wish(desk: &mut Desk, wish: DeviceCommand) {
+    let action = shown(&desk.studio).unwrap().command(wish);
     desk.act(action);
 }
 
@@ -244,7 +244,7 @@ fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
 /// Reviews what is edited: the plan.
 #[track_caller]
 fn planned(desk: &mut Desk) -> PlanId {
-    wish(desk, Wish::Review);
+    wish(desk, DeviceCommand::Review);
     until_stage(desk, |stage| matches!(stage, Stage::Ready(_)));
     until_ready(desk);
     let Stage::Ready(plan) = shown(&desk.studio).unwrap().sheet().unwrap().stage else { panic!("no plan") };
@@ -302,22 +302,22 @@ fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
         until_lost(&mut desk);
         assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
         case.edit(&mut desk, &[0x5A, 0x5B]);
-        wish(&mut desk, Wish::Review);
+        wish(&mut desk, DeviceCommand::Review);
         assert_eq!(desk.times_told("session.not_connected"), 1);
-        wish(&mut desk, Wish::Reconnect);
+        wish(&mut desk, DeviceCommand::Reconnect);
         until_lost(&mut desk);
         wire.plug();
         case.reconnect(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edits(), 2);
         // Another one is behind the same adapter now, and nobody has told us.
         wire.exchange(case.other);
-        wish(&mut desk, Wish::Review);
+        wish(&mut desk, DeviceCommand::Review);
         desk.until("it is noticed", |studio| !shown(studio).unwrap().is_dirty());
         until_ready(&mut desk);
         assert_eq!(desk.times_told("session.other_encoder"), 1);
         assert!(!shown(&desk.studio).unwrap().is_reviewing());
         wire.exchange("");
-        wish(&mut desk, Wish::Read);
+        wish(&mut desk, DeviceCommand::Read);
         desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 2);
         until_ready(&mut desk);
         write(&mut desk);
@@ -393,7 +393,7 @@ fn escape_stops_what_runs_before_it_closes_anything() {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
         wire.hold_at(case.reads, 1);
-        wish(&mut desk, Wish::Read);
+        wish(&mut desk, DeviceCommand::Read);
         desk.connect(Connect::Open);
         wire.wait_until_held();
         desk.act(Action::Escape);
@@ -471,7 +471,7 @@ fn another_type_of_device_needs_a_permit_of_its_own() {
         let text = std::fs::read_to_string(&path).unwrap();
         let old = text.lines().find(|line| line.trim().starts_with(&format!("{entry}: "))).unwrap();
         std::fs::write(&path, text.replacen(old, &format!("        {entry}: {value},"), 1)).unwrap();
-        wish(&mut desk, Wish::Restore(path));
+        wish(&mut desk, DeviceCommand::Restore(path));
         until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { .. }));
         until_ready(&mut desk);
         let sheet = shown(&desk.studio).unwrap().sheet().unwrap();
@@ -542,7 +542,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
                     }
                 }
             }
-            wish(&mut desk, Wish::RevertAll);
+            wish(&mut desk, DeviceCommand::RevertAll);
             case.wire(&desk).plug();
             case.reconnect(&mut desk);
             desk.settle();

@@ -3,7 +3,7 @@
 
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab, Wish, connect};
+use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Studio, Tab, connect};
 use encoder_studio::buses::ethernet_ip::protocol::{Identity, IdentityItem, Revision, SocketAddress};
 use encoder_studio::devices::hiperdrive::procedures::Found;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Goal, Lock};
@@ -50,9 +50,14 @@ pub(crate) fn unit(desk: &Desk) -> &Unit {
     desk.studio.hiperdrive().unwrap()
 }
 
+pub(crate) fn command(desk: &mut Desk, command: DeviceCommand) {
+    let id = unit(desk).session.id;
+    desk.act(Action::Command(id, command));
+}
+
 pub(crate) fn act(desk: &mut Desk, action: Hiperdrive) {
     let id = unit(desk).session.id;
-    desk.act(Action::Hiperdrive(id, action));
+    desk.act(Action::device(id, action));
 }
 
 pub(crate) fn drive(desk: &mut Desk, motor: Motor) {
@@ -87,7 +92,7 @@ fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> Found {
 /// Reviews what is edited and writes it.
 #[track_caller]
 pub(crate) fn write(desk: &mut Desk) {
-    let action = desk.studio.shown().unwrap().wish(Wish::Review);
+    let action = desk.studio.shown().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     write_as_shown(desk);
 }
@@ -160,7 +165,7 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Limits { drive: ONE, lower: 65_536, upper: 131_072 });
     assert!(matches!(unit(&desk).marks()[..], [Mark::Outside { position: 0, .. }]), "{:?}", unit(&desk).marks());
-    let action = desk.studio.shown().unwrap().wish(Wish::Review);
+    let action = desk.studio.shown().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     desk.until("it is refused", |studio| {
         let sheet = studio.shown().unwrap().sheet();
@@ -203,7 +208,7 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
     write(&mut desk);
     // 511 turns of 400 steps.
     assert_eq!(unit(&desk).limits_to_confirm(ONE), Some((-204_400, 204_400)));
-    act(&mut desk, Hiperdrive::Reconnect);
+    command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is read again", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && own.session.phase == Phase::Connected && own.moves.motion().is_some()

@@ -4,6 +4,7 @@
 mod bench;
 mod foreign;
 
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Settings, Severity};
 use encoder_studio::devices::hiperdrive::jobs::Change;
@@ -195,7 +196,7 @@ fn a_new_run_tells_what_a_broken_one_left() {
     assert_eq!(kept, desk.studio.settings);
     // The supply takes it away: then there is nothing to tell.
     unit(&desk).target.clone().unwrap().power_cycle();
-    act(&mut desk, Hiperdrive::Read);
+    command(&mut desk, DeviceCommand::Read);
     desk.until("it is read again", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && own.number(own.drive(), 154) == Some(256)
@@ -221,7 +222,7 @@ fn a_reconnection_is_no_restart() {
     });
     target.set_faults(&Faults::default());
     desk.until("it can be asked", |studio| !studio.hiperdrive().unwrap().session.is_busy());
-    act(&mut desk, Hiperdrive::Read);
+    command(&mut desk, DeviceCommand::Read);
     desk.until("it is back", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && matches!(own.axis().unwrap().power(), Some(Power::Back { .. }))
@@ -230,7 +231,7 @@ fn a_reconnection_is_no_restart() {
     assert_eq!(axis(&desk).may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     // Off and on behind the program's back, as a real one is; nobody asks it anything meanwhile.
     target.power_cycle();
-    act(&mut desk, Hiperdrive::Read);
+    command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().survived());
     assert!(axis(&desk).survived(), "{:?}", axis(&desk).power());
@@ -317,7 +318,7 @@ fn the_supply_of_a_hub_is_checked_over_a_refusal_and_a_lost_line() {
     assert_eq!(axis(&desk).may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis(&desk).ask(Button::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     unit(&desk).target.clone().unwrap().power_cycle();
-    act(&mut desk, Hiperdrive::Read);
+    command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().axis().unwrap().survived());
     let Some(Power::Back { restart, .. }) = axis(&desk).power() else { panic!() };

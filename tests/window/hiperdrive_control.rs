@@ -1,6 +1,8 @@
 //! Who has the control of HIPERDRIVE drives, by actions: how it is lost and what is said of it, and parameters that somebody
 //! else changes meanwhile.
 
+use crate::hiperdrive::command;
+use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect};
@@ -34,7 +36,7 @@ fn is_open(studio: &Studio) -> bool {
 fn a_control_that_is_lost_says_why_until_it_is_taken_again() {
     let mut desk = in_control("sim:");
     // Nothing is asked of the device: the loss tells itself.
-    act(&mut desk, Hiperdrive::Poll(None));
+    command(&mut desk, DeviceCommand::Poll(None));
     desk.settle();
     assert_eq!(unit(&desk).why_lost(), None);
     fall_silent(&desk);
@@ -215,7 +217,7 @@ fn stop_ends_no_reading_that_a_drive_in_hand_waits_for() {
     // Nor does whoever changes their mind about a write.
     desk.until("nothing runs", |studio| studio.hiperdrive().unwrap().session.is_ready());
     edit(&mut desk, Edit::Set(number(24), 7));
-    act(&mut desk, Hiperdrive::Review);
+    command(&mut desk, DeviceCommand::Review);
     assert!(unit(&desk).review.is_some() && unit(&desk).session.is_busy());
     let id = unit(&desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Close));
@@ -240,7 +242,7 @@ fn without_control_a_reading_ends_as_the_user_wishes_and_what_it_lacks_is_said()
     assert_eq!(own.actual(ONE), None, "what was read before the loss");
     let asked = own.axis().unwrap().ask(Button::Do, &own.seen(ONE));
     assert_eq!(asked.unwrap_err().id(), "hd_axis.unread", "there is nothing to wait for");
-    act(&mut desk, Hiperdrive::Read);
+    command(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().actual(ONE).is_some());
 }
 
@@ -264,7 +266,7 @@ fn what_was_not_read_while_control_was_held_is_read_once_it_is_given_back() {
 #[test]
 fn what_was_read_before_a_link_was_opened_again_is_no_place_of_a_drive() {
     let mut desk = in_control("sim:");
-    act(&mut desk, Hiperdrive::Reconnect);
+    command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.line().is_some());
     assert!(unit(&desk).survey.is_some() && unit(&desk).session.is_busy());
     assert_eq!(unit(&desk).actual(ONE), None);

@@ -187,7 +187,7 @@ fn on_screen() -> Screen {
         studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.status.is_some())
     });
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
+    screen.act(Action::device(id, Hiperdrive::Take));
     screen.until("it is in hand", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     screen
 }
@@ -215,7 +215,7 @@ fn target(screen: &Screen) -> Node<'_> {
 /// that a busy machine may need several attempts.
 fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    let own = |action| Action::Hiperdrive(id, action);
+    let own = |action| Action::device(id, action);
     for _ in 0..20 {
         screen.act(own(Hiperdrive::SelectDrive(ONE)));
         screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok() && !studio.moves());

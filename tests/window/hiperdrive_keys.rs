@@ -4,6 +4,7 @@
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::hiperdrive::jobs::Motion;
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit};
@@ -242,8 +243,8 @@ fn any_key_while_the_pointer_holds_a_pad_stops() {
 fn a_review_takes_a_key_only_after_it_was_seen_up() {
     let mut screen = in_hand();
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Review));
+    screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
+    screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("it is planned", |studio| studio.hiperdrive().unwrap().review.is_some());
     let writes = |studio: &Studio| studio.hiperdrive().unwrap().session.is_writing();
     screen.until("it can be written", |studio| studio.hiperdrive().unwrap().session.is_ready());
@@ -262,8 +263,8 @@ fn a_review_takes_a_key_only_after_it_was_seen_up() {
 fn a_barcode_scanner_writes_nothing() {
     let mut screen = in_hand();
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Review));
+    screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
+    screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("it is planned", |studio| studio.hiperdrive().unwrap().review.is_some());
     screen.until("it can be written", |studio| studio.hiperdrive().unwrap().session.is_ready());
     screen.button("review.write").focus();

@@ -1,6 +1,8 @@
 //! HIPERDRIVE drives as a person moves them from the window: what begins a motion, what keeps it alive, and everything that
 //! ends it. The drive itself is asked whether it stands.
 
+use crate::hiperdrive::command;
+use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::{Action, Severity, Studio, Tab, connect};
@@ -116,7 +118,7 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
         ("dialog", |desk| desk.connect(connect::Action::Open)),
         // With the act that asks, not with the dialog's picture: the system may take half a second for that.
         ("file dialog", |desk| desk.act(Action::AskOpen)),
-        ("file dialog of the device", |desk| act(desk, Hiperdrive::AskSave)),
+        ("file dialog of the device", |desk| command(desk, DeviceCommand::AskSave)),
         ("question", |desk| {
             edit(desk, Edit::Set(number(24), 7));
             let id = unit(desk).session.id;
@@ -125,14 +127,14 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
         ("window", |desk| desk.act(Action::Close)),
         ("review", |desk| {
             edit(desk, Edit::Set(number(24), 7));
-            act(desk, Hiperdrive::Review);
+            command(desk, DeviceCommand::Review);
         }),
         ("stop", |desk| desk.act(Action::StopMotion)),
         ("stop all", |desk| desk.act(Action::Stop)),
         ("escape", |desk| desk.act(Action::Escape)),
         ("its own stop", |desk| drive(desk, Motor::Stop)),
         ("give", |desk| act(desk, Hiperdrive::Give)),
-        ("disconnect", |desk| act(desk, Hiperdrive::Reconnect)),
+        ("disconnect", |desk| command(desk, DeviceCommand::Reconnect)),
     ];
     for (what, cover) in covers {
         let mut desk = in_control("sim:");

@@ -1,5 +1,7 @@
 //! What is recorded of HIPERDRIVE drives outlives whatever is changed on the page.
 
+use crate::hiperdrive::command;
+use encoder_studio::app::DeviceCommand;
 use std::fs;
 
 use encoder_studio::app::recorder::Recorder;
@@ -70,7 +72,7 @@ fn no_unit_and_no_scale_forgets_a_recording() {
     let before = positions(&desk);
     let target = unit(&desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), number(154), &Value::Number(400)).unwrap());
-    act(&mut desk, Hiperdrive::Read);
+    command(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && own.number(ONE, 154) == Some(400)

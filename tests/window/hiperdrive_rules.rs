@@ -1,5 +1,7 @@
 //! What rules a drive in hand is looked at again and again, whatever is polled and shown; where it cannot be, nothing moves.
 
+use crate::hiperdrive::command;
+use encoder_studio::app::DeviceCommand;
 use std::net::Ipv4Addr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -36,7 +38,7 @@ fn set(desk: &Desk, of: u16, value: i64) {
 fn what_rules_a_drive_in_hand_is_read_whatever_is_polled() {
     for pace in [None, Some(Duration::from_secs(3600))] {
         let mut desk = in_control("sim:");
-        act(&mut desk, Hiperdrive::Poll(pace));
+        command(&mut desk, DeviceCommand::Poll(pace));
         desk.settle();
         set(&desk, 160, 65_536);
         let began = Instant::now();
@@ -247,7 +249,7 @@ fn limits_are_confirmed_at_one_place() {
     for (of, value) in [(154, 400), (156, 256), (186, 255)] {
         target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
     }
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
+    screen.act(Action::device(id, Hiperdrive::Take));
     screen.until("it is locked", |studio| {
         is_ready(studio, true) && studio.hiperdrive().unwrap().moves.locks(ONE).len() == 2
     });

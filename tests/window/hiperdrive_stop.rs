@@ -34,7 +34,7 @@ pub(crate) fn in_hand() -> Screen {
     };
     ready(&mut screen, "it is read", false);
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Take));
+    screen.act(Action::device(id, Hiperdrive::Take));
     ready(&mut screen, "the connection is open", true);
     screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     assert!(is_watched(&screen));
@@ -43,7 +43,7 @@ pub(crate) fn in_hand() -> Screen {
 
 pub(crate) fn begin(screen: &mut Screen) {
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
+    screen.act(Action::device(id, Hiperdrive::Drive(Motor::Move { target: 30_000_000 })));
     screen.until("it moves", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
 }
 
@@ -271,4 +271,16 @@ fn stop_ends_what_runs_while_somebody_else_moves_a_drive() {
     assert!(polls(&screen) && moves(&screen), "it may still be let go elsewhere");
     pointer(&mut screen, place, false);
     assert!(!polls(&screen));
+}
+
+/// Issue 23: an action of another kind was meant for something that is not there.
+#[test]
+fn an_action_of_another_kind_is_told_and_stops_what_moves() {
+    let mut screen = moving();
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::device(id, encoder_studio::devices::ssi::state::Action::Check));
+    until_it_stands(&screen);
+    assert!(!moves(&screen));
+    let told = screen.studio().services.log.notices().any(|notice| notice.texts[0].id() == "session.wrong_kind");
+    assert!(told);
 }

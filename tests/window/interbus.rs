@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, ReviewAction, Severity, Tab, Wish};
+use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Tab};
 use encoder_studio::devices::interbus::profile::Scale;
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, ReadOut, StartupMode};
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit, Encoder};
@@ -45,17 +45,22 @@ fn encoder(desk: &Desk) -> &Encoder {
     desk.studio.interbus().unwrap()
 }
 
+fn command(desk: &mut Desk, command: DeviceCommand) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Command(id, command));
+}
+
 fn act(desk: &mut Desk, action: Interbus) {
     let id = encoder(desk).session.id;
-    desk.act(Action::Interbus(id, action));
+    desk.act(Action::device(id, action));
 }
 
 fn edit(desk: &mut Desk, edit: Edit) {
     act(desk, Interbus::Edit(Box::new(edit)));
 }
 
-fn wish(desk: &mut Desk, wish: Wish) {
-    let action = desk.studio.shown().unwrap().wish(wish);
+fn wish(desk: &mut Desk, wish: DeviceCommand) {
+    let action = desk.studio.shown().unwrap().command(wish);
     desk.act(action);
 }
 
@@ -70,7 +75,7 @@ fn cam(number: u8) -> CamNumber {
 /// Reviews what is edited and writes it; what the plan costs.
 #[track_caller]
 fn write(desk: &mut Desk) -> String {
-    wish(desk, Wish::Review);
+    wish(desk, DeviceCommand::Review);
     desk.until("the plan is there", |studio| {
         studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
@@ -106,8 +111,8 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     edit(&mut desk, Edit::Cam { program: program(2), cam: cam(5), start: 7000, stop: 40, on: true });
     edit(&mut desk, Edit::Cam { program: program(2), cam: cam(6), start: 100, stop: 200, on: true });
     assert!(encoder(&desk).edits_parameters() && encoder(&desk).edits_cams());
-    wish(&mut desk, Wish::Undo);
-    wish(&mut desk, Wish::Redo);
+    wish(&mut desk, DeviceCommand::Undo);
+    wish(&mut desk, DeviceCommand::Redo);
     // One parameterisation and one program.
     let cost = write(&mut desk);
     assert!(cost.starts_with("EEPROM stores: 2. This computer has seen 9 of"), "{cost}");
@@ -130,10 +135,10 @@ fn what_an_encoder_sends_is_chosen_and_followed() {
         studio.interbus().unwrap().record.last().is_some_and(|reading| reading.cams().is_some())
     });
     until_ready(&mut desk);
-    act(&mut desk, Interbus::Poll(Some(Duration::from_millis(1))));
+    command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     desk.until("outputs were compared", |studio| studio.interbus().unwrap().preview.same > 20);
     assert_eq!(encoder(&desk).preview.other, 0);
-    act(&mut desk, Interbus::Poll(None));
+    command(&mut desk, DeviceCommand::Poll(None));
     act(&mut desk, Interbus::Select(StartupMode::Velocity));
     desk.until("a speed comes", |studio| {
         studio.interbus().unwrap().record.last().is_some_and(|reading| reading.rpm().is_some())
@@ -160,17 +165,17 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     assert!(encoder(&desk).survey.is_none() && encoder(&desk).asks_for_standstill());
     let sent = |desk: &Desk| desk.outside.wire(GATE).outs();
     assert_eq!(sent(&desk), 0, "no OUT word");
-    wish(&mut desk, Wish::Read);
+    wish(&mut desk, DeviceCommand::Read);
     desk.settle();
     assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (1, 0));
     // Issue 22.31: a profile of what it holds selects cam programs.
-    act(&mut desk, Interbus::AskSave);
+    command(&mut desk, DeviceCommand::AskSave);
     act(&mut desk, Interbus::Save("k3.ron".into()));
     desk.settle();
     assert!(desk.studio.take_file_question().is_none());
     assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (3, 0));
     act(&mut desk, Interbus::Stopped(true));
-    wish(&mut desk, Wish::Read);
+    wish(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
     until_ready(&mut desk);
     assert_eq!(encoder(&desk).programs_read(), 0, "another program switches outputs: only when asked");
@@ -181,7 +186,7 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     desk.outside.wire(GATE).unplug();
     desk.until("it is lost", |studio| matches!(studio.interbus().unwrap().session.phase, Phase::Lost(_)));
     desk.outside.wire(GATE).plug();
-    act(&mut desk, Interbus::Reconnect);
+    command(&mut desk, DeviceCommand::Reconnect);
     until_ready(&mut desk);
     assert!(!encoder(&desk).is_stopped());
 }

@@ -1,5 +1,6 @@
 //! Sessions that are closed, opened again or dead: what still ends there is told, and waited for within limits.
 
+use encoder_studio::app::DeviceCommand;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -13,7 +14,7 @@ use crate::support::{Desk, PORT, SLOW, is_review};
 fn closed_while_writing(mut desk: Desk) -> Desk {
     desk.put(0, 0, b"X");
     desk.put(0, 2, b"Y");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
     desk.write_as_shown();
@@ -103,10 +104,10 @@ fn a_session_whose_thread_is_dead_is_lost_with_what_it_did() {
     assert!(desk.outside.wakes.load(Ordering::SeqCst) > wakes, "the window is told to look");
     assert!(matches!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Failed(_)));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
 
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().kill();
     desk.write_as_shown();

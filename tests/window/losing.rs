@@ -1,5 +1,6 @@
 //! Stopping half-way, pulling the cable, exchanging the encoder: what is edited stays, and never goes onto another one.
 
+use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::time::Duration;
 
@@ -36,7 +37,7 @@ fn with_a_profile(desk: &mut Desk) {
     fs::write(&path, text.replace(old, "65 4D 64 37 31 4B 2D 34 20 33 30 30 30 52 70 4D")).unwrap();
     desk.act(Action::Open(path));
     desk.until("the profile is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
-    desk.ask(Hiperface::WriteInto(encoder));
+    desk.command(DeviceCommand::WriteInto(encoder));
     desk.until_planned();
 }
 
@@ -77,7 +78,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     let profile = desk.studio.devices().iter().find(|own| *own.phase() == Phase::Offline).unwrap().id();
     let encoder = desk.encoder().session.id;
     desk.act(Action::Select(profile));
-    desk.ask(Hiperface::WriteInto(encoder));
+    desk.command(DeviceCommand::WriteInto(encoder));
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.plan.ops.len(), 2, "what is left");
@@ -92,7 +93,7 @@ fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
     for (address, byte) in [(0, b'a'), (2, b'b'), (4, b'c')] {
         desk.put(0, address, &[byte]);
     }
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 2);
     desk.write_as_shown();
@@ -106,7 +107,7 @@ fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
     assert!(lost(&desk.studio));
     desk.ask(Hiperface::CloseReview);
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert_eq!(desk.edits(), [(0, 2, b'b'), (0, 4, b'c')], "the first is in the encoder");
     desk.write();
@@ -140,7 +141,7 @@ fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
     desk.until("it is lost", lost);
     desk.wire().exchange("serial=OTHER0001");
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
     desk.until_ready();
     desk.settle();
@@ -153,7 +154,7 @@ fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
     desk.until("it is lost", lost);
     desk.wire().exchange("");
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until("the first is read", |studio| serial(studio) == Some("GB0450179"));
     desk.until("its edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
@@ -175,7 +176,7 @@ fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned
     desk.put(0, 0, b"X");
     desk.until_kept();
     desk.wire().exchange("serial=OTHER0001");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
     desk.until_ready();
     desk.settle();
@@ -195,14 +196,14 @@ fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
     desk.wire().exchange("serial=OTHER0001");
     desk.wire().plug();
     desk.wire().hold_at(0x52, 1);
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until("it is held", |studio| studio.hiperface().is_some_and(|own| own.session.is_busy()));
     desk.wire().wait_until_held();
     desk.act(Action::Stop);
     desk.wire().release();
     desk.until_ready();
     assert_eq!(serial(&desk.studio), Some("GB0450179"), "nothing newer is known");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
     desk.until_ready();
     assert_eq!(desk.wire().wear(), 0);
@@ -222,7 +223,7 @@ fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
     desk.until("it is lost", lost);
     desk.wire().plug();
     let errors = desk.told(Severity::Error).len();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert_eq!(desk.told(Severity::Error).len(), errors);
     let link = format!("serial:{PORT}?address=0x41");
@@ -245,7 +246,7 @@ fn what_an_interrupted_write_did_is_followed() {
     assert!(lost(&desk.studio));
     desk.ask(Hiperface::CloseReview);
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until("it is read", |studio| {
         studio
             .hiperface()
@@ -287,7 +288,7 @@ fn other_settings_are_followed_from_the_restart_on() {
     desk.wire().unplug();
     desk.until("it is lost", lost);
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert_eq!(*desk.phase(), Phase::Connected);
 }
@@ -309,20 +310,20 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
             && encoder.session.is_readable()
             && encoder.session.line().is_some()
     );
-    desk.ask(Hiperface::Read);
+    desk.command(DeviceCommand::Read);
     desk.until("it was read in vain", |studio| studio.hiperface().unwrap().session.is_readable());
     assert!(silent(&desk.studio));
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     assert!(desk.encoder().review.is_none());
     desk.wire().exchange("");
     desk.ask(Hiperface::ReadAnalogue(0x07));
     desk.until_ready();
     assert_eq!(*desk.phase(), Phase::Connected, "a refusal is an answer too");
-    desk.ask(Hiperface::Read);
+    desk.command(DeviceCommand::Read);
     desk.until_ready();
     assert_eq!((desk.phase(), desk.edits()), (&Phase::Connected, vec![(0, 0, b'X')]));
 
-    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
     desk.wire().exchange("fault=silent-after:0");
     desk.until("it is silent", silent);
@@ -340,7 +341,7 @@ fn access_codes_go_to_no_other_encoder_on_the_link() {
     desk.until("it is lost", lost);
     desk.wire().exchange("serial=OTHER0001&codes=0:9D");
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
     desk.until_ready();
     assert_eq!(desk.encoder().field(0).unwrap().bytes, None, "nobody has given its code");
@@ -350,13 +351,13 @@ fn access_codes_go_to_no_other_encoder_on_the_link() {
 fn connecting_again_to_a_wire_that_is_written_is_refused() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().hold_at(0x4B, 1);
     desk.write_as_shown();
     desk.wire().wait_until_held();
     desk.open(&format!("serial:{PORT}?address=0x40"));
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     assert_eq!(desk.times_told("session.busy"), 1);
     assert!(desk.encoder().session.is_writing());
     desk.wire().release();
@@ -379,7 +380,7 @@ fn connecting_again_while_something_is_read_ends_that() {
 #[test]
 fn live_values_go_on_around_a_job_and_end_with_the_cable() {
     let mut desk = Desk::at_port("rpm=60");
-    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     assert!(desk.studio.is_live() && desk.studio.can_stop());
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 10);
     let position = desk.encoder().record.last().unwrap();
@@ -406,7 +407,7 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
 #[test]
 fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     let mut desk = Desk::at_port("");
-    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
     desk.wire().exchange("fault=silent-after:0");
     let began = std::time::Instant::now();
@@ -417,7 +418,7 @@ fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     // The event follows at once.
     std::thread::sleep(Duration::from_millis(50));
     desk.wire().exchange("");
-    desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     let points = desk.encoder().record.positions();
     desk.until("samples go on", |studio| studio.hiperface().unwrap().record.positions() > points + 3);
     assert!(desk.studio.is_live());
@@ -428,7 +429,7 @@ fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
 fn stop_and_escape_end_live_values() {
     for stop in [|| Action::Stop, || Action::Escape] {
         let mut desk = Desk::begun("");
-        desk.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+        desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
         desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
         desk.act(stop());
         assert!(!desk.studio.is_live());

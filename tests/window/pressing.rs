@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton};
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::{Action, Tab, Wish};
+use encoder_studio::app::{Action, DeviceCommand, Tab};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 use encoder_studio::devices::interbus::state::Action as Interbus;
 
@@ -63,7 +63,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
         let id = screen.studio().shown().unwrap().id();
         if tab == Tab::Interbus {
             // Else it is not read.
-            screen.act(Action::Interbus(id, Interbus::Stopped(true)));
+            screen.act(Action::device(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
         for page in encoder_studio::kinds::TABS.page_words(tab) {
@@ -75,7 +75,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
             check(&screen, &before, &format!("{tab:?}, {page}, without it"));
             let wire = screen.outside.wire(port).clone();
             wire.hold_at(reads, 1);
-            let read = screen.studio().shown().unwrap().wish(Wish::Read);
+            let read = screen.studio().shown().unwrap().command(DeviceCommand::Read);
             screen.act(read);
             wire.wait_until_held();
             screen.steps();
@@ -124,7 +124,7 @@ fn a_review_that_becomes_ready_takes_no_key_for_a_button_before() {
     let wire = screen.outside.wire(PORT).clone();
     // The status of the data field.
     wire.hold_at(0x4C, 1);
-    screen.ask(Hiperface::Review);
+    screen.command(DeviceCommand::Review);
     wire.wait_until_held();
     screen.steps();
     screen.button("review.cancel").focus();

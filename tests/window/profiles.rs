@@ -1,5 +1,6 @@
 //! Profiles: saved as the encoder is, opened beside it, edited without one.
 
+use encoder_studio::app::DeviceCommand;
 use std::fs;
 
 use encoder_studio::app::diverged::Resolve;
@@ -69,7 +70,7 @@ fn a_profile_of_an_encoder_holds_what_it_has_and_says_what_is_not_in_it() {
 #[test]
 fn saving_asks_for_a_file_named_after_the_encoder() {
     let mut desk = Desk::begun("");
-    desk.ask(Hiperface::AskSave);
+    desk.command(DeviceCommand::AskSave);
     let suggested = "SKM36-GB0450179.ron".into();
     let session = desk.studio.hiperface().unwrap().session.id;
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Save { session, suggested }));
@@ -130,7 +131,7 @@ fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
     desk.put(0, 0, b"X");
     desk.ask(Hiperface::Save(path.clone()));
     assert_eq!(desk.times_told("profile.newer"), 2);
-    desk.ask(Hiperface::WriteInto(encoder));
+    desk.command(DeviceCommand::WriteInto(encoder));
     assert_eq!((desk.times_told("profile.newer"), desk.encoder().session.name().as_str()), (3, "mine.ron"));
     assert_eq!(fs::read_to_string(&path).unwrap(), newer);
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
@@ -145,13 +146,13 @@ fn a_profile_read_again_keeps_its_edits() {
     desk.put(0, 0, b"X");
     let text = read_text(&path).unwrap();
     fs::write(&path, text.replace("45 4D 44 37", "45 4E 44 37")).unwrap();
-    desk.ask(Hiperface::Read);
+    desk.command(DeviceCommand::Read);
     desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.on_device(0, 1) == Some(0x4E));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 
     // A file that is broken by now changes nothing.
     fs::write(&path, "(").unwrap();
-    desk.ask(Hiperface::Read);
+    desk.command(DeviceCommand::Read);
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
     assert_eq!((desk.encoder().staged.on_device(0, 1), desk.edits()), (Some(0x4E), vec![(0, 0, b'X')]));
     // Nor is it replaced without a question.
@@ -207,7 +208,7 @@ fn refused_by_another(desk: &mut Desk, path: &std::path::Path, edits: &[(usize, 
     for (address, bytes) in edits {
         desk.put(0, *address, bytes);
     }
-    desk.ask(Hiperface::WriteInto(other));
+    desk.command(DeviceCommand::WriteInto(other));
     until_refused(desk);
     assert_eq!(desk.encoder().session.id, other);
 }
@@ -311,7 +312,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
     desk.until("it is lost", crate::losing::lost);
     assert!(desk.studio.shown().unwrap().is_savable());
     let path = desk.outside.path("lost.ron");
-    desk.ask(Hiperface::AskSave);
+    desk.command(DeviceCommand::AskSave);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
@@ -371,7 +372,7 @@ fn a_relative_path_is_the_same_file_when_it_is_saved() {
     desk.settle();
     let rel = work.join("rel.ron");
     assert_eq!(desk.encoder().session.place(), rel.display().to_string());
-    desk.ask(Hiperface::AskSave);
+    desk.command(DeviceCommand::AskSave);
     let question = desk.studio.take_file_question().unwrap();
     assert_eq!(question.suggested(), Some(rel.as_path()));
     desk.put(0, 0, b"X");

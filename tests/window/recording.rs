@@ -1,5 +1,6 @@
 //! What is recorded of a polled encoder, and what can be done with it.
 
+use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::time::Duration;
 
@@ -12,7 +13,7 @@ use crate::losing::lost;
 use crate::support::Desk;
 use encoder_studio::devices::hiperface::procedures::Watch;
 
-const FAST: Hiperface = Hiperface::Poll(Some(Duration::from_millis(2)));
+const FAST: DeviceCommand = DeviceCommand::Poll(Some(Duration::from_millis(2)));
 
 fn recorded(studio: &Studio) -> u64 {
     studio.hiperface().unwrap().record.positions()
@@ -42,7 +43,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
 #[test]
 fn the_end_of_the_range_is_no_spike() {
     let mut desk = Desk::begun("rpm=600&position=16600000");
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("the range has ended", |studio| {
         recorded(studio) > 200 && studio.hiperface().unwrap().record.last().is_some_and(|reading| reading.raw < 1 << 23)
     });
@@ -57,7 +58,7 @@ fn the_end_of_the_range_is_no_spike() {
 #[test]
 fn a_linear_encoder_is_recorded_in_millimetres() {
     let mut desk = Desk::begun("type=0x90");
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 5);
     let line = line(recorder(&desk), "position");
     assert_eq!(line.scale().unwrap().unit.id(), "unit.millimetres");
@@ -69,16 +70,16 @@ fn a_linear_encoder_is_recorded_in_millimetres() {
 #[test]
 fn a_pulled_cable_leaves_a_gap_and_loses_nothing() {
     let mut desk = Desk::at_port("rpm=60");
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 20);
     let before = recorded(&desk.studio);
     desk.wire().unplug();
     desk.until("it is lost", lost);
     assert!(recorded(&desk.studio) >= before);
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
-    desk.ask(FAST);
+    desk.command(FAST);
     let before = recorded(&desk.studio);
     desk.until("samples go on", |studio| recorded(studio) > before + 20);
     let recorder = recorder(&desk);
@@ -93,13 +94,13 @@ fn a_pulled_cable_leaves_a_gap_and_loses_nothing() {
 #[test]
 fn another_encoder_begins_another_recording() {
     let mut desk = Desk::at_port("rpm=60");
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 20);
     desk.wire().unplug();
     desk.until("it is lost", lost);
     desk.wire().exchange("serial=OTHER0001&model=sks36");
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert!(recorded(&desk.studio) <= 1, "the position that is read with the rest");
 }
@@ -113,7 +114,7 @@ fn the_recording_is_saved_as_a_table() {
     let question = |visible| FileQuestion::Table { desk: desk_of, visible, suggested: "x.csv".into() };
     desk.act(Action::Chosen(question(false), path.clone()));
     assert_eq!(desk.told(Severity::Warning), ["recorder.nothing_to_write"]);
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 50);
     desk.act(Action::Stop);
     desk.settle();
@@ -158,7 +159,7 @@ fn what_is_watched_is_recorded_beside_the_position() {
     for what in [Watch::Analogue(0x48), Watch::Analogue(0x07), Watch::Counter] {
         desk.ask(Hiperface::Watch(what, true));
     }
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("the counter has come", |studio| {
         let recorder = &studio.hiperface().unwrap().record.recorder();
         recorder.history(line(recorder, "counter")).is_some_and(|history| history.all().end > 0)
@@ -177,10 +178,10 @@ fn what_is_watched_is_recorded_beside_the_position() {
 #[test]
 fn a_position_that_is_read_while_polling_disturbs_nothing() {
     let mut desk = Desk::begun("rpm=600");
-    desk.ask(FAST);
+    desk.command(FAST);
     for round in 1..=5 {
         desk.until("samples come", |studio| recorded(studio) > round * 40);
-        desk.ask(Hiperface::ReadPosition);
+        desk.command(DeviceCommand::ReadPosition);
         desk.until_ready();
     }
     desk.act(Action::Stop);
@@ -197,7 +198,7 @@ fn a_position_that_is_read_while_polling_disturbs_nothing() {
 fn minutes_of_recording_are_asked_for_before_a_session_is_closed() {
     let mut desk = Desk::begun("");
     let id = desk.encoder().session.id;
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 5);
     desk.act(Action::Stop);
     desk.until_ready();
@@ -205,7 +206,7 @@ fn minutes_of_recording_are_asked_for_before_a_session_is_closed() {
     let clock = desk.wire().clock();
     clock.sleep_until(clock.now() + Duration::from_secs(121));
     let before = recorded(&desk.studio);
-    desk.ask(FAST);
+    desk.command(FAST);
     desk.until("two minutes have passed", |studio| recorded(studio) > before + 5);
     desk.act(Action::Stop);
     desk.until_ready();

@@ -1,6 +1,7 @@
 //! Saving into a file that is open: what others wrote there meanwhile is asked about, and what a person wrote between the
 //! entries stays.
 
+use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,6 @@ use encoder_studio::app::diverged::{Resolve, Side};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, SessionId, Severity, Studio};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit as HiperdriveEdit};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
 use encoder_studio::devices::ssi::protocol::{Code, Range};
@@ -69,7 +69,7 @@ fn saving_writes_the_open_file_and_asks_for_another() {
     assert_eq!(desk.studio.take_file_question(), None);
     // Issue 22.26: one byte is one place.
     assert_eq!(says(&path), OWN.replace("\"00 01", "\"58 01"));
-    desk.ask(Hiperface::AskSave);
+    desk.command(DeviceCommand::AskSave);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 
     // An encoder is in no file.
@@ -264,7 +264,7 @@ fn cams_beyond_a_smaller_range_are_told_at_once_and_when_saved() {
     assert!(desk.studio.interbus().unwrap().marks_beside(None).is_empty());
     let steps = Interbus::Edit(Box::new(Edit::Steps(1800)));
     let id = own(&desk);
-    desk.act(Action::Interbus(id, steps));
+    desk.act(Action::device(id, steps));
     let told: Vec<_> = desk.studio.interbus().unwrap().marks_beside(None).iter().map(|text| text.id()).collect();
     assert_eq!(told, ["cams.mark_beyond"]);
     let shown = ProgramNumber::FIRST;
@@ -286,12 +286,12 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
     let cams = "(schema: 1, device: \"interbus\",\n\
         parameters: (steps: 3600, revolutions: 1, direction: \"cw\", preset: 0, zero_shift: 0),\n\
         programs: [(program: 1, mask: 1, cams: [(cam: 0, start: 3000, stop: 3500)])],\n)\n";
-    let interbus = |desk: &mut Desk, id| desk.act(Action::Interbus(id, Interbus::Edit(Box::new(Edit::Preset(9)))));
+    let interbus = |desk: &mut Desk, id| desk.act(Action::device(id, Interbus::Edit(Box::new(Edit::Preset(9)))));
     let hiperdrive = |desk: &mut Desk, id| {
         let number = encoder_studio::devices::hiperdrive::protocol::ParameterNumber::new(166).unwrap();
-        desk.act(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(HiperdriveEdit::Set(number, 40)))));
+        desk.act(Action::device(id, Hiperdrive::Edit(Box::new(HiperdriveEdit::Set(number, 40)))));
     };
-    let layout = |desk: &mut Desk, id| desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
+    let layout = |desk: &mut Desk, id| desk.act(Action::device(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
     type Make<'m> = &'m dyn Fn(&mut Desk, SessionId);
     type Change = (&'static str, &'static str);
     let cases: [(&str, Make, Change, Change); 3] = [
@@ -342,7 +342,7 @@ fn edits_that_fit_no_more_are_left_out_and_told() {
     desk.settle();
     let id = desk.studio.shown().unwrap().id();
     let range = Range::Bits { multiturn: 12, singleturn: 11 };
-    desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Position(range, Code::Binary)))));
+    desk.act(Action::device(id, Ssi::Edit(Box::new(SsiEdit::Position(range, Code::Binary)))));
     assert!(desk.studio.shown().unwrap().is_dirty());
     until_kept(&mut desk);
     let mut desk = desk.crash();
@@ -360,7 +360,7 @@ fn a_draft_of_a_whole_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let (mut desk, path) = opened(text);
     let id = desk.studio.shown().unwrap().id();
-    desk.act(Action::Ssi(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
+    desk.act(Action::device(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
     until_kept(&mut desk);
     let folder = desk.outside.path("data/drafts/ssi-files");
     let draft = fs::read_dir(folder).unwrap().next().unwrap().unwrap().path();

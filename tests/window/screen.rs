@@ -1,5 +1,6 @@
 //! The real window on a desk of the test's own, used by its accessible labels, which are asked of the table of texts.
 
+use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use egui::{Key, Role, Vec2};
@@ -108,7 +109,11 @@ impl Screen {
 
     /// Asks something of the encoder that is shown.
     pub(crate) fn ask(&mut self, action: Hiperface) {
-        self.act(Action::Hiperface(self.encoder().session.id, action));
+        self.act(Action::device(self.encoder().session.id, action));
+    }
+
+    pub(crate) fn command(&mut self, command: DeviceCommand) {
+        self.act(Action::Command(self.encoder().session.id, command));
     }
 
     pub(crate) fn say(&self, id: &'static str) -> String {

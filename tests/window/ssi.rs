@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, FileQuestion, Severity, Tab, Wish};
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity, Tab};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
 use encoder_studio::devices::ssi::protocol::{Code, Doubt, Place, Range};
 use encoder_studio::devices::ssi::state::strip::Handle;
@@ -33,17 +33,22 @@ fn encoder(desk: &Desk) -> &Encoder {
     desk.studio.ssi().unwrap()
 }
 
+fn command(desk: &mut Desk, command: DeviceCommand) {
+    let id = encoder(desk).session.id;
+    desk.act(Action::Command(id, command));
+}
+
 fn act(desk: &mut Desk, action: Ssi) {
     let id = encoder(desk).session.id;
-    desk.act(Action::Ssi(id, action));
+    desk.act(Action::device(id, action));
 }
 
 fn edit(desk: &mut Desk, edit: Edit) {
     act(desk, Ssi::Edit(Box::new(edit)));
 }
 
-fn wish(desk: &mut Desk, wish: Wish) {
-    let action = desk.studio.shown().unwrap().wish(wish);
+fn wish(desk: &mut Desk, wish: DeviceCommand) {
+    let action = desk.studio.shown().unwrap().command(wish);
     desk.act(action);
 }
 
@@ -72,13 +77,13 @@ fn a_layout_needs_no_device() {
     );
     // Every step has a way back.
     assert!(encoder(&desk).is_dirty());
-    wish(&mut desk, Wish::Undo);
+    wish(&mut desk, DeviceCommand::Undo);
     assert!(!encoder(&desk).is_dirty());
-    wish(&mut desk, Wish::Redo);
+    wish(&mut desk, DeviceCommand::Redo);
     assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
-    wish(&mut desk, Wish::RevertAll);
+    wish(&mut desk, DeviceCommand::RevertAll);
     assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Binary);
-    wish(&mut desk, Wish::Undo);
+    wish(&mut desk, DeviceCommand::Undo);
     assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
 }
 
@@ -142,7 +147,7 @@ fn a_frame_changed_by_hand_comes_back_to_its_family() {
 fn a_layout_is_saved_opened_and_kept_over_a_crash() {
     let mut desk = layout();
     act(&mut desk, Ssi::Enter(Field::Singleturn, Input::Number(12)));
-    wish(&mut desk, Wish::AskSave);
+    wish(&mut desk, DeviceCommand::AskSave);
     let question = desk.studio.take_file_question().unwrap();
     assert_eq!(question.suggested().unwrap().to_str(), Some("ahm36_st_12.ron"));
     let path = desk.outside.path("layout.ron");
@@ -188,7 +193,7 @@ fn words_of_an_adapter_come_into_the_live_plot() {
     let own = encoder(&desk);
     assert_eq!(own.designer.family().unwrap().key, "ahm36", "what the virtual encoder sends");
     assert_eq!(own.identity.as_ref().unwrap().asking.clocks, 27);
-    act(&mut desk, Ssi::Poll(Some(Duration::from_millis(1))));
+    command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     desk.until("words stream", |studio| studio.ssi().unwrap().record.positions() > 500);
     let own = encoder(&desk);
     assert!(own.streamed().is_some() && own.is_following());
@@ -201,7 +206,7 @@ fn words_of_an_adapter_come_into_the_live_plot() {
     desk.until("the layout does not fit", |studio| {
         studio.ssi().unwrap().record.tally().noted().iter().any(|noted| noted.stands)
     });
-    act(&mut desk, Ssi::Poll(None));
+    command(&mut desk, DeviceCommand::Poll(None));
 }
 
 #[test]
@@ -215,7 +220,7 @@ fn another_number_of_clocks_is_told_to_the_adapter() {
     desk.until("the adapter is told", |studio| {
         studio.ssi().unwrap().identity.as_ref().is_some_and(|own| own.asking.clocks == 30)
     });
-    act(&mut desk, Ssi::ReadPosition);
+    command(&mut desk, DeviceCommand::ReadPosition);
     desk.until("a word is read", |studio| studio.ssi().unwrap().last().is_some_and(|seen| seen.clocks == 30));
     assert!(encoder(&desk).last().unwrap().decoded.is_none(), "the layout has 27 clocks");
 }
@@ -226,9 +231,9 @@ fn the_layout_is_found_live_and_taken() {
     edit(&mut desk, Edit::Free);
     let clocks = encoder(&desk).clocks();
     assert_eq!(clocks, 33);
-    act(&mut desk, Ssi::Poll(Some(Duration::from_millis(1))));
+    command(&mut desk, DeviceCommand::Poll(Some(Duration::from_millis(1))));
     desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 2000);
-    act(&mut desk, Ssi::Poll(None));
+    command(&mut desk, DeviceCommand::Poll(None));
     act(&mut desk, Ssi::Find);
     desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
     let Hunt::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
@@ -258,13 +263,13 @@ fn a_layout_of_a_profile_is_taken_for_an_encoder() {
     let live = encoder(&desk).session.id;
     desk.act(Action::NewLayout);
     edit(&mut desk, Edit::Family("ttk70".to_owned()));
-    act(&mut desk, Ssi::WriteInto(live));
+    command(&mut desk, DeviceCommand::WriteInto(live));
     assert_eq!(encoder(&desk).session.id, live);
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ttk70");
-    wish(&mut desk, Wish::Undo);
+    wish(&mut desk, DeviceCommand::Undo);
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
     // Nothing is written, and that is said.
-    wish(&mut desk, Wish::Review);
+    wish(&mut desk, DeviceCommand::Review);
     assert!(!desk.studio.shown().unwrap().is_reviewing());
 }
 
@@ -353,7 +358,7 @@ fn the_virtual_encoder_sends_the_layout_on_the_board() {
         let own = studio.ssi().unwrap();
         own.session.is_ready() && own.link_to_send().is_none() && own.identity.is_some()
     });
-    act(&mut desk, Ssi::ReadPosition);
+    command(&mut desk, DeviceCommand::ReadPosition);
     desk.until("a word fits", |studio| {
         let own = studio.ssi().unwrap();
         own.last()
@@ -371,7 +376,7 @@ fn a_boundary_is_dragged_as_the_family_is_set() {
     let own = encoder(&desk).design();
     assert_eq!((own.profile.descriptor.errors[0].clock, own.profile.descriptor.clocks), (15, 15));
     assert_eq!(own.settings.as_ref().unwrap().emit("ahs36"), "ahs36,st=12");
-    wish(&mut desk, Wish::Undo);
+    wish(&mut desk, DeviceCommand::Undo);
     act(&mut desk, Ssi::Enter(Field::Errors, Input::Choice(1)));
     act(&mut desk, Ssi::Move(Handle::StepsEnd, 12));
     let own = encoder(&desk).design();

@@ -1,5 +1,6 @@
 //! The start: the virtual encoder is connected and read, polling is off, and nothing is sent while nobody asks.
 
+use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
@@ -58,15 +59,16 @@ fn every_frame_is_shown_with_its_meaning() {
 fn each_read_is_a_job_that_ends_as_done() {
     let mut desk = Desk::begun("");
     let jobs = desk.studio.services.jobs().len();
+    let id = desk.encoder().session.id;
     for action in [
-        Hiperface::ReadStatus,
-        Hiperface::ReadPosition,
-        Hiperface::ReadCounter,
-        Hiperface::ReadAnalogue(0x48),
-        Hiperface::Check { restart: true },
-        Hiperface::Read,
+        Action::device(id, Hiperface::ReadStatus),
+        Action::Command(id, DeviceCommand::ReadPosition),
+        Action::device(id, Hiperface::ReadCounter),
+        Action::device(id, Hiperface::ReadAnalogue(0x48)),
+        Action::device(id, Hiperface::Check { restart: true }),
+        Action::Command(id, DeviceCommand::Read),
     ] {
-        desk.ask(action);
+        desk.act(action);
         assert!(desk.encoder().session.is_busy());
         desk.until_ready();
     }

@@ -1,5 +1,6 @@
 //! A desk for the window's state: a studio in a world of the test's own, with two cables and a link that hangs for ever.
 
+use encoder_studio::app::DeviceCommand;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -236,7 +237,14 @@ impl Desk {
     pub(crate) fn ask(&mut self, action: Hiperface) {
         let shown = self.studio.hiperface().map(|encoder| encoder.session.id);
         if let Some(id) = shown {
-            self.act(Action::Hiperface(id, action));
+            self.act(Action::device(id, action));
+        }
+    }
+
+    pub(crate) fn command(&mut self, command: DeviceCommand) {
+        let shown = self.studio.hiperface().map(|encoder| encoder.session.id);
+        if let Some(id) = shown {
+            self.act(Action::Command(id, command));
         }
     }
 
@@ -354,7 +362,7 @@ impl Desk {
     /// Reviews and writes what is edited.
     #[track_caller]
     pub(crate) fn write(&mut self) {
-        self.ask(Hiperface::Review);
+        self.command(DeviceCommand::Review);
         self.until_planned();
         self.write_as_shown();
         self.until_written();

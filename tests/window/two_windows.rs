@@ -1,6 +1,8 @@
 //! Two windows on one settings file: in this process and in processes of their own. What one of them has changed survives
 //! what the other writes, and limits that are unconfirmed in one lock the other.
 
+use crate::hiperdrive::command;
+use encoder_studio::app::DeviceCommand;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -68,7 +70,7 @@ fn take(desk: &mut Desk) {
 fn scale(desk: &mut Desk, numerator: i64) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), number(154), &Value::Number(numerator)).unwrap());
-    act(desk, Hiperdrive::Read);
+    command(desk, DeviceCommand::Read);
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && own.number(ONE, 154) == Some(numerator)

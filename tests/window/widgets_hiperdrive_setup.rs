@@ -4,6 +4,7 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::Queryable;
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, Text, connect};
 use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
@@ -143,14 +144,14 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     assert_eq!(wanted.limits(own.drive()), Some((-204_400, 204_400)));
     let id = own.session.id;
     // The review says it in millimetres, each under its own scale, old and new on one line.
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Review));
+    screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("there is a plan", |studio| {
         studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -2044.0000 mm  →  -204400 · -2044.00 mm"));
     screen.act(Action::Review(id, ReviewAction::Close));
     // As numbers they lie 164 times further.
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Undo));
+    screen.act(Action::Command(id, DeviceCommand::Undo));
     screen.press(Role::RadioButton, "Limits: keep their numbers");
     screen.click("hd_scale.set");
     let own = screen.studio().hiperdrive().unwrap();
@@ -211,7 +212,7 @@ fn parameters_are_typed_into_their_table() {
     screen.put("158 Lower limit", "17");
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let three = encoder_studio::devices::hiperdrive::protocol::DriveNumber::new(3).unwrap();
-    screen.act(Action::Hiperdrive(id, Hiperdrive::SelectDrive(three)));
+    screen.act(Action::device(id, Hiperdrive::SelectDrive(three)));
     screen.steps();
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(screen.harness.query_by_role_and_label(Role::TextInput, "158 Lower limit").is_none());
@@ -238,7 +239,7 @@ fn a_step_is_seen_before_it_can_be_left() {
 fn stop_is_reached_over_a_dialog() {
     let mut screen = page("sim:", "page.motion");
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    let act = |screen: &mut Screen, action| screen.act(Action::Hiperdrive(id, action));
+    let act = |screen: &mut Screen, action| screen.act(Action::device(id, action));
     act(&mut screen, Hiperdrive::Take);
     screen.until("the control is taken", |studio| {
         studio.hiperdrive().is_some_and(|own| own.moves.is_open() && own.session.is_ready())
@@ -293,7 +294,7 @@ fn nothing_in_a_step_moves_away_under_the_pointer() {
     screen.steps();
     assert_eq!(places(&screen), before, "with control");
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::Lead(Goal::Enabled))));
+    screen.act(Action::device(id, Hiperdrive::Drive(Motor::Lead(Goal::Enabled))));
     screen.until("it is enabled", |studio| {
         studio.hiperdrive().is_some_and(|own| own.state(own.drive()) == Some(State::Enabled))
     });

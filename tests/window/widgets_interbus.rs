@@ -40,7 +40,7 @@ impl Screen {
 
     fn edit_cams(&mut self, edit: Edit) {
         let id = self.studio().interbus().unwrap().session.id;
-        self.act(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
+        self.act(Action::device(id, Interbus::Edit(Box::new(edit))));
     }
 
     fn paste(&mut self, text: &str) {

@@ -2,6 +2,7 @@
 
 use egui::{Key, Rect, Role, Vec2};
 use egui_kittest::kittest::Queryable;
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, Studio, Tab, Theme};
@@ -106,7 +107,7 @@ fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
         let mut screen = Screen::opened_in(Tab::Ssi, link, size);
         screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.last().is_some()));
         let id = screen.studio().ssi().unwrap().session.id;
-        screen.act(Action::Ssi(id, Ssi::Check));
+        screen.act(Action::device(id, Ssi::Check));
         screen.until("it is checked", |studio| studio.ssi().unwrap().check.is_some());
         look_at_everything(&mut screen, size);
     }
@@ -121,7 +122,7 @@ fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
             studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
         });
         let id = screen.studio().interbus().unwrap().session.id;
-        screen.act(Action::Interbus(id, Interbus::Check));
+        screen.act(Action::device(id, Interbus::Check));
         screen.until("it is checked", |studio| studio.interbus().unwrap().check.is_some());
         look_at_everything(&mut screen, size);
     }
@@ -141,7 +142,7 @@ fn every_page_of_an_ssi_layout_is_drawn() {
     look_at_everything(&mut screen, SMALL);
     // Any frame, with all that one can have.
     let id = screen.studio().ssi().unwrap().session.id;
-    screen.act(Action::Ssi(id, Ssi::Edit(Box::new(Edit::Free))));
+    screen.act(Action::device(id, Ssi::Edit(Box::new(Edit::Free))));
     for action in [
         Ssi::AddErrorBit,
         Ssi::AddErrorBit,
@@ -149,7 +150,7 @@ fn every_page_of_an_ssi_layout_is_drawn() {
         Ssi::Enter(Field::Repeat, Input::Switch(true)),
         Ssi::Enter(Field::Singleturn, Input::Number(99)),
     ] {
-        screen.act(Action::Ssi(id, action));
+        screen.act(Action::device(id, action));
     }
     assert_eq!(screen.studio().ssi().unwrap().clocks(), 61);
     look_at_everything(&mut screen, SMALL);
@@ -198,7 +199,7 @@ fn every_page_is_drawn_with_all_that_an_encoder_tells() {
         screen.ask(action);
         screen.until("it is done", ready);
     }
-    screen.ask(Hiperface::Poll(Some(std::time::Duration::from_millis(5))));
+    screen.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     look_at_everything(&mut screen, LARGE);
     assert!(screen.encoder().record.positions() > 2);
     screen.click("shell.stop");

@@ -1,5 +1,6 @@
 //! The plot in the window: its tools by their labels, its chart by the pointer and the keyboard.
 
+use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
@@ -7,7 +8,6 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
 use encoder_studio::app::{Action, FileQuestion};
 use encoder_studio::app::{Desk as Of, Language, Text, recorder};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::screen::Screen;
 use crate::support::Outside;
@@ -18,7 +18,7 @@ fn recorded() -> Screen {
     screen.until("it is read", |studio| {
         studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
     });
-    screen.ask(Hiperface::Poll(Some(Duration::from_millis(2))));
+    screen.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     screen.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 300);
     screen.act(Action::Stop);
     screen.steps();

@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::{Action, Tab};
 use encoder_studio::devices::ssi::state::{Action as Ssi, Try};
 
@@ -39,12 +40,12 @@ fn words_that_come_while_one_types_are_not_taken_for_what_was_typed() {
     let id = screen.studio().ssi().unwrap().session.id;
     let last = |screen: &Screen| screen.studio().ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame;
     for id_of_entry in ["ssi_trial.position", "ssi_trial.bits_label"] {
-        screen.act(Action::Ssi(id, Ssi::Try(Try::Live)));
+        screen.act(Action::device(id, Ssi::Try(Try::Live)));
         let label = screen.say(id_of_entry);
         screen.harness.get_by_role_and_label(Role::TextInput, &label).focus();
         screen.steps();
         let before = last(&screen);
-        screen.act(Action::Ssi(id, Ssi::ReadPosition));
+        screen.act(Action::Command(id, DeviceCommand::ReadPosition));
         screen.until("the shaft has turned", move |studio| {
             studio.ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame != before
         });

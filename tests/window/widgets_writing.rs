@@ -2,6 +2,7 @@
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Language, Text};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
@@ -149,7 +150,7 @@ fn a_restore_is_stopped_half_way_by_click() {
         let edit = Hiperface::Put { field: 0, address, bytes: vec![0] };
         screen.ask(edit);
     }
-    screen.ask(Hiperface::Review);
+    screen.command(DeviceCommand::Review);
     screen.until("the plan is ready", |studio| {
         is_review(studio, |state| matches!(state, ReviewState::Ready(_)))
             && studio.hiperface().unwrap().session.is_ready()

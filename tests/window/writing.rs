@@ -1,5 +1,6 @@
 //! Edit, review, write, see the read-back; and nothing is written without that.
 
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, Severity, Text};
 use encoder_studio::devices::hiperface::jobs::Change;
@@ -25,7 +26,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     assert_eq!((staged.on_device(0, RATED), staged.byte(0, RATED)), (Some(0x22), Some(0x23)));
     assert_eq!(desk.wire().field(0)[RATED], 0x22);
 
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     let status = DataFieldStatus::from_byte(0xC9);
@@ -76,7 +77,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Outcome::Done, 1));
 
     // The next plan knows what the encoder has taken, and the backup leads back.
-    desk.ask(Hiperface::Restore(backup));
+    desk.command(DeviceCommand::Restore(backup));
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.cycles_seen, Some(1));
@@ -92,7 +93,7 @@ fn nothing_is_written_without_consent() {
     desk.put(0, 0, b"X");
     desk.write_as_shown();
     assert!(!desk.encoder().session.is_busy(), "there is no plan");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     // Before the plan is shown there is nothing to consent to.
     desk.write_as_shown();
     desk.until_planned();
@@ -109,7 +110,7 @@ fn nothing_is_written_without_consent() {
 fn write_pressed_twice_writes_once() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     for _ in 0..3 {
         desk.write_as_shown();
@@ -124,7 +125,7 @@ fn write_pressed_twice_writes_once() {
 #[test]
 fn what_is_there_already_is_not_written() {
     let mut desk = Desk::begun("");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     assert_eq!(desk.told(Severity::Note).last(), Some(&"session.nothing_edited"));
     desk.put(0, 0, b"E");
     assert!(!desk.encoder().staged.is_dirty(), "E stands there");
@@ -139,7 +140,7 @@ fn what_is_there_already_is_not_written() {
 fn edits_made_while_the_plan_is_shown_are_not_written_with_it() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.put(0, 1, b"Y");
     desk.write_as_shown();
@@ -152,7 +153,7 @@ fn edits_made_while_the_plan_is_shown_are_not_written_with_it() {
 fn an_encoder_that_changed_since_the_plan_is_not_written() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.wire().exchange("model=skm36&serial=AA1");
     desk.write_as_shown();
@@ -166,12 +167,12 @@ fn an_encoder_that_changed_since_the_plan_is_not_written() {
 fn consent_is_to_the_plan_that_was_drawn_and_to_no_other() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     let drawn = desk.review().prepared().unwrap().plan.id();
     desk.ask(Hiperface::CloseReview);
     desk.put(0, 1, b"Y");
-    desk.ask(Hiperface::Review);
+    desk.command(DeviceCommand::Review);
     desk.until_planned();
     desk.ask(Hiperface::Write(drawn));
     desk.settle();
@@ -189,7 +190,7 @@ fn another_plan_is_not_forced_onto_a_worn_encoder_by_an_earlier_wish() {
     desk.write();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
     let backup = committed.backup.clone().unwrap();
-    desk.ask(Hiperface::Restore(backup));
+    desk.command(DeviceCommand::Restore(backup));
     desk.until_planned();
     desk.ask(Hiperface::ForceWear(true));
     assert!(desk.review().force_wear);
@@ -211,7 +212,7 @@ fn what_would_discard_edits_is_refused_until_they_are_written_or_taken_back() {
     assert_eq!(rules::resize(memory, first, small, &desk.encoder().staged), Err(why.clone()));
     assert_eq!(refused(&mut desk, Change::DeleteField { number: 0 }), why);
     assert_eq!(refused(&mut desk, Change::ResizeField { number: 0, size: small }), why);
-    desk.ask(Hiperface::RevertAll);
+    desk.command(DeviceCommand::RevertAll);
     change(&mut desk, Change::ResizeField { number: 0, size: small });
     desk.put(0, 0, b"X");
     change(&mut desk, Change::LockField { number: 0, lock: true });
@@ -390,7 +391,7 @@ fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_l
     desk.wire().unplug();
     desk.until("it is lost", |studio| studio.hiperface().unwrap().session.line().is_none());
     desk.wire().plug();
-    desk.ask(Hiperface::Reconnect);
+    desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert_eq!(desk.edits(), [(0, 0, b'X')], "the code is still known");
     desk.write();

@@ -1,21 +1,48 @@
 //! A kind of device as the studio sees it, typed: what a device brings so that the rest is done for all of them alike.
 
+use std::any::Any;
 use std::path::{Path, PathBuf};
 
 use crate::app::action::{ReadError, ReviewAction};
+use crate::app::documents::only_looked_at;
 use crate::app::recorder::Recorder;
 use crate::app::review::Sheet;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Listed, OnLine, Saved};
-use crate::app::{SineCosineSource, Tab};
+use crate::app::studio::SessionId;
+use crate::app::{AnyDevice, DeviceAction, DeviceCommand, SineCosineSource, Tab, Text};
 use crate::link::LinkUrl;
-use crate::profile::Document;
+use crate::profile::{Body, Document, ProfileError};
 use crate::store::DeviceKey;
 
 /// A device, or a profile of one, with everything that is known of it.
 pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
     /// The tab that shows it.
     const TAB: Tab;
+
+    /// What this kind alone can be asked for.
+    type Action: DeviceAction;
+
+    /// What its own tasks come back with.
+    type Done: Any + Send;
+
+    /// Does what this kind alone can be asked for.
+    fn act(&mut self, action: Self::Action, context: &mut ActContext<'_>);
+
+    /// Does what every device can be asked for, opening a link and writing into another device aside.
+    fn command(&mut self, command: DeviceCommand, services: &mut Services);
+
+    /// Takes what a task of its own comes back with.
+    fn done(&mut self, done: Self::Done, services: &mut Services);
+
+    /// Returns the profile as the user wants it, to be written into another device; `None` where there is none.
+    fn wanted_body(&self) -> Option<Body>;
+
+    /// Takes over a profile: shows what writing it would do, or edits what it says.
+    ///
+    /// # Errors
+    /// It is of another kind of device.
+    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
     /// Returns the number of edits that are not written.
     fn edits(&self) -> usize;
@@ -100,6 +127,39 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
     /// Returns what moves, to be stopped.
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         None
+    }
+}
+
+/// What an action of a device may use beside the device.
+pub(crate) struct ActContext<'a> {
+    /// The log, tasks, questions.
+    pub(crate) services: &'a mut Services,
+    /// The other devices that are open.
+    others: &'a [Box<AnyDevice>],
+    next: Vec<DeviceCommand>,
+}
+
+impl<'a> ActContext<'a> {
+    pub(in crate::app) fn new(services: &'a mut Services, others: &'a [Box<AnyDevice>]) -> Self {
+        ActContext { services, others, next: Vec::new() }
+    }
+
+    /// Asks the same device for something more, once the action is done.
+    pub(crate) fn then(&mut self, command: DeviceCommand) {
+        self.next.push(command);
+    }
+
+    pub(in crate::app) fn into_next(self) -> Vec<DeviceCommand> {
+        self.next
+    }
+
+    /// Returns the profile as it is edited in another session; `None` where there is none.
+    ///
+    /// # Errors
+    /// The refusal of a profile that is only looked at.
+    pub(crate) fn profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
+        let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
+        only_looked_at(other.source()).map_or_else(|| Ok(other.wanted_body()), Err)
     }
 }
 

@@ -4,7 +4,8 @@
 use std::any::Any;
 use std::path::{Path, PathBuf};
 
-use super::model::{DeviceMemory, DeviceModel, MotionControl};
+use super::command::DeviceCommand;
+use super::model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
 use crate::app::action::{ReadError, ReviewAction};
 use crate::app::closing::MUCH;
 use crate::app::line::Progressing;
@@ -16,9 +17,9 @@ use crate::app::session::{
 };
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
-use crate::app::{SineCosineSource, Tab, Text};
+use crate::app::{Payload, SineCosineSource, Tab, Text, WrongKind};
 use crate::link::LinkUrl;
-use crate::profile::Document;
+use crate::profile::{Body, Document, ProfileError};
 use crate::store::{Backup, DeviceKey, Entry, FileError, StatusEntry};
 
 /// A device, or a profile of one, of whatever kind.
@@ -89,6 +90,16 @@ pub trait OpenDevice: Any {
     fn motion(&self) -> Option<&dyn MotionControl>;
     #[doc(hidden)]
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl>;
+    #[doc(hidden)]
+    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), WrongKind>;
+    #[doc(hidden)]
+    fn obey(&mut self, command: DeviceCommand, services: &mut Services);
+    #[doc(hidden)]
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind>;
+    #[doc(hidden)]
+    fn wanted_body(&self) -> Option<Body>;
+    #[doc(hidden)]
+    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
     #[doc(hidden)]
     fn take_link(&mut self, url: LinkUrl);
     #[doc(hidden)]
@@ -239,6 +250,28 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         DeviceModel::motion_mut(self)
+    }
+
+    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), WrongKind> {
+        DeviceModel::act(self, action.open()?, context);
+        Ok(())
+    }
+
+    fn obey(&mut self, command: DeviceCommand, services: &mut Services) {
+        DeviceModel::command(self, command, services);
+    }
+
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind> {
+        DeviceModel::done(self, done.open()?, services);
+        Ok(())
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        DeviceModel::wanted_body(self)
+    }
+
+    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        DeviceModel::take_over(self, body, services)
     }
 
     fn take_link(&mut self, url: LinkUrl) {

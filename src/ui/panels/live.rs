@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 
 use super::nothing;
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Desk, Rgb, Studio, Text, Wish};
+use crate::app::{Action, AnyDevice, Desk, DeviceCommand, Rgb, Studio, Text};
 use crate::ui::controls::{choice, enabled_button, icon_button};
 use crate::ui::page::apart;
 use crate::ui::{Skin, Views, icons, plot};
@@ -88,13 +88,13 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
     ui.horizontal_wrapped(|ui| {
         if polling {
             if enabled_button(ui, true, icons::PAUSE, &skin.say("live.pause")).clicked() {
-                actions.push(device.wish(Wish::Poll(None)));
+                actions.push(device.command(DeviceCommand::Poll(None)));
             }
         } else if enabled_button(ui, connected, icons::PLAY, &skin.say("live.start")).clicked() {
-            actions.push(device.wish(Wish::Poll(Some(Duration::from_micros(rate)))));
+            actions.push(device.command(DeviceCommand::Poll(Some(Duration::from_micros(rate)))));
         }
         if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
-            actions.push(device.wish(Wish::ReadPosition));
+            actions.push(device.command(DeviceCommand::ReadPosition));
         }
         if let Some(session) = views.session(device) {
             session.watch_menu(ui, skin, device, actions);
@@ -102,7 +102,7 @@ fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, act
         if choice(ui, &skin.say("live.rate"), &mut rate, rates) {
             views.rate = rate;
             if polling {
-                actions.push(device.wish(Wish::Poll(Some(Duration::from_micros(rate)))));
+                actions.push(device.command(DeviceCommand::Poll(Some(Duration::from_micros(rate)))));
             }
         }
     });

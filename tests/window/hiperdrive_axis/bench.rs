@@ -1,5 +1,6 @@
 //! A desk on which axes are set up: steps, writes that go well and that do not, jogs.
 
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, ReviewAction, Tab};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
@@ -21,9 +22,14 @@ pub(super) fn axis(desk: &Desk) -> &Axis {
     unit(desk).axis().unwrap()
 }
 
+pub(super) fn command(desk: &mut Desk, command: DeviceCommand) {
+    let id = unit(desk).session.id;
+    desk.act(Action::Command(id, command));
+}
+
 pub(super) fn act(desk: &mut Desk, action: Hiperdrive) {
     let id = unit(desk).session.id;
-    desk.act(Action::Hiperdrive(id, action));
+    desk.act(Action::device(id, action));
 }
 
 pub(super) fn run(desk: &mut Desk, action: Run) {
@@ -165,7 +171,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         let id = unit(desk).session.id;
         desk.act(Action::Review(id, ReviewAction::Close));
         desk.until("it can be asked", |studio| studio.hiperdrive().is_some_and(|own| !own.session.is_busy()));
-        act(desk, Hiperdrive::Read);
+        command(desk, DeviceCommand::Read);
         desk.until("it is read again", |studio| {
             let own = studio.hiperdrive().unwrap();
             let seen = own.seen(own.drive());

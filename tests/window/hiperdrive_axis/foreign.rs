@@ -1,5 +1,6 @@
 //! Another master sets the reference again, at another place, to the number that it has: no parameter changes by it.
 
+use encoder_studio::app::DeviceCommand;
 use encoder_studio::devices::hiperdrive::protocol::ParameterNumber;
 use encoder_studio::sim::Faults;
 
@@ -48,7 +49,7 @@ fn a_reference_set_again_while_the_line_is_gone_is_told() {
     set_by_another(&desk);
     target.set_faults(&Faults::default());
     desk.until("it can be asked", |studio| !studio.hiperdrive().unwrap().session.is_busy());
-    act(&mut desk, Hiperdrive::Read);
+    command(&mut desk, DeviceCommand::Read);
     desk.until("it is told", |studio| {
         let own = studio.hiperdrive().unwrap();
         words::unexplained(own.axis().unwrap(), &own.seen(own.drive())).is_some()

@@ -5,10 +5,12 @@ use std::time::Duration;
 use super::action::Action;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::Text;
+use crate::app::ActContext;
+use crate::app::DeviceCommand;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
-use crate::devices::biss::jobs::BissJob;
+use crate::app::{Severity, Text};
+use crate::devices::biss::jobs::{BissJob, Change};
 use crate::devices::biss::profile::{BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, Register, RegisterAddress};
 use crate::profile::Body;
@@ -21,24 +23,21 @@ const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+        let services = &mut *context.services;
         match action {
-            // The studio opens links, and knows other sessions.
-            Action::Reconnect | Action::WriteInto(_) | Action::PlanMounting { .. } => {}
-            Action::Review => self.review_edits(services),
-            Action::Read => {
-                if !self.session.read_file_again(services) {
-                    self.submit(BissJob::Survey, services);
+            Action::PlanMounting { mut run, motor, data } => {
+                let profile = data.map_or(Ok(None), |id| context.profile_of(id));
+                match profile {
+                    Ok(profile) => {
+                        run.data = profile.and_then(|body| body.into_profile().ok()).map(Box::new);
+                        self.plan(Change::Guided { run: *run, motor }, context.services);
+                    }
+                    Err(refusal) => context.services.tell(Severity::Error, vec![refusal], Some(&self.session.name())),
                 }
             }
             Action::ReadStatus => self.submit(BissJob::Status, services),
             Action::Check => self.submit(BissJob::Check, services),
-            Action::ReadPosition => self.submit(BissJob::Position, services),
-            Action::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
             Action::Watch(register, on) => self.watch(*register, on),
             Action::ReadBank(bank) => self.read_bank(bank, services),
             Action::SeeBank(bank) => {
@@ -50,9 +49,6 @@ impl Encoder {
             }
             Action::ReadArea(first) => self.read_area(first, services),
             Action::Put { start, bytes } => self.put(start, &bytes, services),
-            Action::Undo => self.memory.undo(),
-            Action::Redo => self.memory.redo(),
-            Action::RevertAll => self.memory.revert(),
             Action::Revert { start, count } => self.memory.revert_range(start, count),
             Action::Plan(change) => self.plan(*change, services),
             Action::Answer(task, answer) => self.answer(task, answer),
@@ -63,9 +59,32 @@ impl Encoder {
                     motor.set_rpm(rpm);
                 }
             }
-            Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),
-            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// Does what every device can be asked for.
+    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        match command {
+            // The studio opens links, and knows other sessions.
+            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
+            DeviceCommand::Review => self.review_edits(services),
+            DeviceCommand::Read => {
+                if !self.session.read_file_again(services) {
+                    self.submit(BissJob::Survey, services);
+                }
+            }
+            DeviceCommand::ReadPosition => self.submit(BissJob::Position, services),
+            DeviceCommand::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            DeviceCommand::Undo => self.memory.undo(),
+            DeviceCommand::Redo => self.memory.redo(),
+            DeviceCommand::RevertAll => self.memory.revert(),
+            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
+            DeviceCommand::Restore(path) => self.read_backup(path, services),
         }
     }
 

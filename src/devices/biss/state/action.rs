@@ -1,7 +1,7 @@
 //! What can be asked of a BiSS encoder that is shown.
 
+use crate::app::DeviceAction;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use crate::app::studio::SessionId;
 use crate::devices::biss::jobs::Change;
@@ -11,18 +11,10 @@ use crate::devices::biss::protocol::{Register, RegisterAddress};
 
 /// Something in the BiSS tab.
 pub enum Action {
-    /// Open the link again, after it was lost or could not be opened.
-    Reconnect,
-    /// Read everything again; edits stay.
-    Read,
     /// Read errors, warnings, temperature and mode.
     ReadStatus,
     /// The device check.
     Check,
-    /// Read the position once.
-    ReadPosition,
-    /// Read the position all the time, or no more.
-    Poll(Option<Duration>),
     /// While the position is read all the time, read this too, or no more.
     Watch(Box<Register>, bool),
     /// Read a bank; `None`: the direct registers.
@@ -38,12 +30,6 @@ pub enum Action {
         /// The bytes.
         bytes: Vec<u8>,
     },
-    /// Take the last edit back.
-    Undo,
-    /// Do it again.
-    Redo,
-    /// Take all edits back.
-    RevertAll,
     /// Take the edits of a range back.
     Revert {
         /// First byte.
@@ -51,8 +37,6 @@ pub enum Action {
         /// How many.
         count: usize,
     },
-    /// Show what writing the edits would do.
-    Review,
     /// Show what a change would do.
     Plan(Box<Change>),
     /// Show what a mounting run would do; the plain data comes from a profile that is open in another session.
@@ -72,12 +56,8 @@ pub enum Action {
     LeadBack,
     /// Turn the virtual encoder's shaft, in revolutions a minute.
     Turn(f64),
-    /// Ask where to save the profile.
-    AskSave,
     /// Save the profile.
     Save(PathBuf),
-    /// Show what restoring a backup would do.
-    Restore(PathBuf),
-    /// Show what writing this profile into a connected encoder would do.
-    WriteInto(SessionId),
 }
+
+impl DeviceAction for Action {}

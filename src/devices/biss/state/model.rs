@@ -1,15 +1,39 @@
 //! A BiSS encoder among the devices of the studio.
 
+use std::convert::Infallible;
 use std::path::PathBuf;
 
-use super::Encoder;
+use super::{Action, Encoder};
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::Saved;
-use crate::app::{DeviceMemory, DeviceModel, Tab};
+use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Tab};
+use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Biss;
+    type Action = Action;
+    type Done = Infallible;
+
+    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+        Encoder::act(self, action, context);
+    }
+
+    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        Encoder::command(self, command, services);
+    }
+
+    fn done(&mut self, done: Infallible, _services: &mut Services) {
+        match done {}
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Saved::wanted_body(self)
+    }
+
+    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        Saved::restore(self, body, services)
+    }
 
     fn edits(&self) -> usize {
         Encoder::edits(self)

@@ -1,5 +1,6 @@
 //! Motor and OEM data: the bytes of an area in the hex editor, what they mean, and the way to write the edits.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::{Action, AnyDevice, Studio, Text};
@@ -45,7 +46,7 @@ pub(super) fn page_ui(
         }
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("data.read")).clicked() {
-            actions.push(Action::Biss(encoder.session.id, Biss::ReadArea(area.first)));
+            actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
         }
         let shown = shown.as_ref().unwrap_or(area);
         let text = Text::new("data.banks")
@@ -65,7 +66,7 @@ pub(super) fn page_ui(
         None => {
             let read = (icons::ARROW_CLOCKWISE, skin.say("data.read"), encoder.session.is_ready());
             if empty(ui, skin, &skin.say("data.not_read"), Some((read.0, &read.1, read.2))) {
-                actions.push(Action::Biss(encoder.session.id, Biss::ReadArea(area.first)));
+                actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
             }
         }
     }
@@ -111,18 +112,21 @@ fn bytes(
         });
     }
     // The buttons at the foot undo as well as the keys do.
-    if actions.iter().any(|own| matches!(own, Action::Biss(_, Biss::Undo | Biss::Redo))) {
+    if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.follow(wanted);
     }
     let start = |offset: usize| -> Option<RegisterAddress> { places(area).nth(offset) };
     for edit in edits {
-        let action = match edit {
-            HexEdit::Put { address, bytes } => start(address).map(|start| Biss::Put { start, bytes }),
-            HexEdit::Undo => Some(Biss::Undo),
-            HexEdit::Redo => Some(Biss::Redo),
-            HexEdit::Revert { range } => start(range.start).map(|start| Biss::Revert { start, count: range.len() }),
-        };
-        actions.extend(action.map(|action| Action::Biss(encoder.session.id, action)));
+        let id = encoder.session.id;
+        let own = |action| Action::device(id, action);
+        actions.extend(match edit {
+            HexEdit::Put { address, bytes } => start(address).map(|start| own(Biss::Put { start, bytes })),
+            HexEdit::Undo => Some(Action::Command(id, DeviceCommand::Undo)),
+            HexEdit::Redo => Some(Action::Command(id, DeviceCommand::Redo)),
+            HexEdit::Revert { range } => {
+                start(range.start).map(|start| own(Biss::Revert { start, count: range.len() }))
+            }
+        });
     }
 }
 

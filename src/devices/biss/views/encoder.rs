@@ -1,5 +1,6 @@
 //! Who the encoder is and how it is, its frame, the wiring, its data sheet.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::{frame, motor, sheet, wiring};
@@ -53,7 +54,7 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
     let ready = encoder.session.is_readable();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
-            actions.push(Action::Biss(encoder.session.id, Biss::Read));
+            actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
     card_with(ui, skin, "encoder_card.title", read, |ui| {
@@ -137,7 +138,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("status_card.read")).clicked() {
-            actions.push(Action::Biss(encoder.session.id, Biss::ReadStatus));
+            actions.push(Action::device(encoder.session.id, Biss::ReadStatus));
         }
     };
     card_with(ui, skin, "status_card.title", read, |ui| {
@@ -180,7 +181,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-            actions.push(Action::Biss(encoder.session.id, Biss::Check));
+            actions.push(Action::device(encoder.session.id, Biss::Check));
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {

@@ -1,12 +1,12 @@
 //! The single-cycle frame as it came last: a cell a bit, and what its fields say.
 
+use crate::app::DeviceCommand;
 use egui::Ui;
 
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::protocol::{Layout, Reading};
-use crate::devices::biss::state::Action as Biss;
 use crate::devices::biss::state::Encoder;
 use crate::ui::Skin;
 use crate::ui::controls::{card_with, enabled_button, paragraph, row};
@@ -18,7 +18,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("frame_card.read")).clicked() {
-            actions.push(Action::Biss(encoder.session.id, Biss::ReadPosition));
+            actions.push(Action::Command(encoder.session.id, DeviceCommand::ReadPosition));
         }
     };
     card_with(ui, skin, "frame_card.title", read, |ui| {

@@ -75,7 +75,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &
                 skin.words(&words::name(&register.name))
             };
             if ui.checkbox(&mut on, name).changed() {
-                actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(register), on)));
+                actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(register), on)));
             }
         }
     });

@@ -112,7 +112,7 @@ fn unsaved_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Act
 fn lead_back_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = skin.say("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
-        actions.push(Action::Biss(encoder.session.id, Biss::LeadBack));
+        actions.push(Action::device(encoder.session.id, Biss::LeadBack));
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor
             for rpm in SPEEDS {
                 let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
                 if ui.add(egui::Button::selectable(motor.rpm() == rpm, word)).clicked() {
-                    actions.push(Action::Biss(encoder.session.id, Biss::Turn(rpm)));
+                    actions.push(Action::device(encoder.session.id, Biss::Turn(rpm)));
                 }
             }
         });
@@ -38,7 +38,7 @@ pub(super) fn turning_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &
         ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
         ui.label(skin.words(&text));
         if enabled_button(ui, true, icons::STOP, &skin.say("motor_card.stop")).clicked() {
-            actions.push(Action::Biss(encoder.session.id, Biss::Turn(0.0)));
+            actions.push(Action::device(encoder.session.id, Biss::Turn(0.0)));
         }
     });
 }

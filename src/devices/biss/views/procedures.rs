@@ -154,7 +154,7 @@ fn mounting_ui(
         {
             let motor = own.motor.unwrap_or(MotorSource::Other);
             let plan = Biss::PlanMounting { run: Box::new(run), motor, data: *own.data };
-            actions.push(Action::Biss(encoder.session.id, plan));
+            actions.push(Action::device(encoder.session.id, plan));
         }
     });
 }
@@ -231,7 +231,7 @@ fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm,
         ui.horizontal_wrapped(|ui| {
             let word = skin.say("preset_card.store");
             if enabled_button(ui, ready && value.is_ok(), icons::FLOPPY_DISK, &word).clicked() {
-                actions.push(Action::Biss(encoder.session.id, plan(value.ok(), None)));
+                actions.push(Action::device(encoder.session.id, plan(value.ok(), None)));
             }
         });
         ui.add_space(skin.space.inside);
@@ -247,7 +247,7 @@ fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm,
                 (PresetParts::Multiturn, "preset_card.multiturn"),
             ] {
                 if enabled_button(ui, ready, icons::TARGET, &skin.say(id)).clicked() {
-                    actions.push(Action::Biss(encoder.session.id, plan(None, Some(parts))));
+                    actions.push(Action::device(encoder.session.id, plan(None, Some(parts))));
                 }
             }
         });
@@ -272,7 +272,7 @@ fn filter_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Acti
                     ui.label(&word);
                 } else if enabled_button(ui, ready, icons::SLIDERS, &word).clicked() {
                     let change = Box::new(Change::SelectFilter(filter));
-                    actions.push(Action::Biss(encoder.session.id, Biss::Plan(change)));
+                    actions.push(Action::device(encoder.session.id, Biss::Plan(change)));
                 }
                 ui.label(skin.caption(skin.say(hint)));
             });

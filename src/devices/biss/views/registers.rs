@@ -1,5 +1,6 @@
 //! The registers, bank after bank: a list of the banks, and the table.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::{Action, Text};
@@ -29,7 +30,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     if encoder.description.is_none() {
         let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
         if empty(ui, skin, &skin.say("registers.nothing"), Some((read.0, &read.1, read.2))) {
-            actions.push(Action::Biss(encoder.session.id, Biss::Read));
+            actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
     }
@@ -77,7 +78,7 @@ fn head(
         if let Some(own) = encoder.table.groups().get(at) {
             let word = skin.words(&read_words(own.bank));
             if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &word).clicked() {
-                actions.push(Action::Biss(encoder.session.id, Biss::ReadBank(own.bank)));
+                actions.push(Action::device(encoder.session.id, Biss::ReadBank(own.bank)));
             }
         }
         watching(ui, skin, encoder, view, actions);
@@ -112,7 +113,7 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
         let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
         if button.on_hover_text(skin.words(&words::name(&row.register.name))).clicked() {
             let register = Box::new(row.register.clone());
-            actions.push(Action::Biss(encoder.session.id, Biss::Watch(register, !on)));
+            actions.push(Action::device(encoder.session.id, Biss::Watch(register, !on)));
         }
     }
     if !watched.is_empty() {
@@ -122,7 +123,7 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
             for own in watched {
                 let name = format!("{}  {}", own.address, skin.words(&words::name(&own.name)));
                 if ui.button(format!("{}  {name}", icons::X)).clicked() {
-                    actions.push(Action::Biss(encoder.session.id, Biss::Watch(Box::new(own), false)));
+                    actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(own), false)));
                 }
             }
         });
@@ -176,17 +177,17 @@ fn table(
     };
     for (place, byte) in typed {
         let put = start(place).map(|start| Biss::Put { start, bytes: vec![byte] });
-        actions.extend(put.map(|put| Action::Biss(encoder.session.id, put)));
+        actions.extend(put.map(|put| Action::device(encoder.session.id, put)));
     }
     if let Some(RegisterEvent::Revert(place)) = output.event {
         let revert = start(place).map(|start| Biss::Revert { start, count: 1 });
-        actions.extend(revert.map(|revert| Action::Biss(encoder.session.id, revert)));
+        actions.extend(revert.map(|revert| Action::device(encoder.session.id, revert)));
     }
     // What comes in sight is read once by itself, when nothing else is to be done.
     let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
     let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.wants(own);
     if let Some((_, own)) = in_sight.into_iter().find(unread) {
-        actions.push(Action::Biss(encoder.session.id, Biss::SeeBank(own.bank)));
+        actions.push(Action::device(encoder.session.id, Biss::SeeBank(own.bank)));
     }
 }
 

@@ -45,10 +45,10 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
         let event = steps(ui, skin, &model);
         match (event, demand) {
             (Some(StepsEvent::Start), Some(own)) => {
-                actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Go)));
+                actions.push(Action::device(id, Biss::Answer(own.task, Answer::Go)));
             }
             (Some(StepsEvent::Skip), Some(own)) => {
-                actions.push(Action::Biss(id, Biss::Answer(own.task, Answer::Skip)));
+                actions.push(Action::device(id, Biss::Answer(own.task, Answer::Skip)));
             }
             _ => {}
         }
@@ -191,7 +191,7 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, ac
                 ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
             }
             if button(ui, icons::CHECK, &skin.say("guide.close")).clicked() {
-                actions.push(Action::Biss(id, Biss::CloseGuide));
+                actions.push(Action::device(id, Biss::CloseGuide));
             }
         });
     });

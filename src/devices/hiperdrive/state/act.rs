@@ -5,6 +5,7 @@ use super::action::{Action, Motor};
 use super::staged::Edit;
 use super::unit::Unit;
 use super::words;
+use crate::app::DeviceCommand;
 use crate::app::services::Services;
 use crate::app::session::{Saved, WithMemory};
 use crate::app::{Severity, Text};
@@ -17,26 +18,11 @@ impl Unit {
     /// Does what is asked.
     pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
-            // The studio opens links, and knows other sessions.
-            Action::Reconnect | Action::WriteInto(_) => {}
-            Action::Read => {
-                if !self.session.read_file_again(services) {
-                    self.submit(HiperdriveJob::Survey, services);
-                }
-            }
             Action::ReadStatus => {
                 self.submit(HiperdriveJob::Status, services);
             }
             Action::Check => {
                 self.submit(HiperdriveJob::Check, services);
-            }
-            Action::ReadPosition => {
-                self.submit(HiperdriveJob::Position(self.drive()), services);
-            }
-            Action::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
             }
             Action::SelectDrive(drive) => {
                 if self.drives().contains(&drive) {
@@ -56,19 +42,6 @@ impl Unit {
                 }
             }
             Action::Edit(edit) => self.edit(&edit),
-            Action::Undo => {
-                self.staged.undo();
-                self.refusal = None;
-            }
-            Action::Redo => {
-                self.staged.redo();
-                self.refusal = None;
-            }
-            Action::RevertAll => {
-                self.staged.revert();
-                self.refusal = None;
-            }
-            Action::Review => self.review_edits(services),
             Action::Plan(change) => self.plan(*change, services),
             Action::Take => self.take_control(services),
             Action::Give => {
@@ -77,9 +50,43 @@ impl Unit {
             }
             Action::Drive(motor) => self.drive_by(motor, services),
             Action::Axis(action) => self.act_axis(action, services),
-            Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),
-            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// Does what every device can be asked for.
+    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        match command {
+            // The studio opens links, and knows other sessions.
+            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
+            DeviceCommand::Read => {
+                if !self.session.read_file_again(services) {
+                    self.submit(HiperdriveJob::Survey, services);
+                }
+            }
+            DeviceCommand::ReadPosition => {
+                self.submit(HiperdriveJob::Position(self.drive()), services);
+            }
+            DeviceCommand::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            DeviceCommand::Undo => {
+                self.staged.undo();
+                self.refusal = None;
+            }
+            DeviceCommand::Redo => {
+                self.staged.redo();
+                self.refusal = None;
+            }
+            DeviceCommand::RevertAll => {
+                self.staged.revert();
+                self.refusal = None;
+            }
+            DeviceCommand::Review => self.review_edits(services),
+            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
+            DeviceCommand::Restore(path) => self.read_backup(path, services),
         }
     }
 

@@ -1,30 +1,21 @@
 //! What can be asked of an adapter or a hub that is shown, and of its drives.
 
+use crate::app::DeviceAction;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use super::axis;
 use super::ruler::Measure;
 use super::staged::Edit;
-use crate::app::studio::SessionId;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Length, RunEnd};
 
 /// Something in the HIPERDRIVE tab.
 pub enum Action {
-    /// Open the link again, after it was lost or could not be opened.
-    Reconnect,
-    /// Read everything again; edits stay.
-    Read,
     /// Read states and errors.
     ReadStatus,
     /// The device check.
     Check,
-    /// Read where the drive is, once.
-    ReadPosition,
-    /// Read where the drive is all the time, or no more.
-    Poll(Option<Duration>),
     /// Show another drive.
     SelectDrive(DriveNumber),
     /// Show positions in this.
@@ -33,14 +24,6 @@ pub enum Action {
     SetPitch(DriveNumber, Option<Length>),
     /// Change something that is not written yet.
     Edit(Box<Edit>),
-    /// Take the last edit back.
-    Undo,
-    /// Do it again.
-    Redo,
-    /// Take all edits back.
-    RevertAll,
-    /// Show what writing the edits would do.
-    Review,
     /// Show what a change would do.
     Plan(Box<Change>),
     /// Open the cyclic connection. Nothing moves by that.
@@ -51,14 +34,8 @@ pub enum Action {
     Drive(Motor),
     /// Set up the axis of the drive that is shown.
     Axis(axis::Action),
-    /// Ask where to save the profile.
-    AskSave,
     /// Save the profile.
     Save(PathBuf),
-    /// Show what restoring a backup would do.
-    Restore(PathBuf),
-    /// Show what writing this profile into a connected device would do.
-    WriteInto(SessionId),
 }
 
 /// What a person wants of the drive that is shown.
@@ -120,3 +97,5 @@ pub enum Motor {
     /// A person has looked at the limits in their own unit.
     ConfirmLimits(DriveNumber),
 }
+
+impl DeviceAction for Action {}

@@ -2,12 +2,10 @@
 
 use std::time::Duration;
 
-use super::action::Action;
 use super::remembered::Marks;
 use super::unit::Unit;
 use crate::app::Settings;
-use crate::app::services::Services;
-use crate::app::studio::{SessionId, Studio};
+use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::store::FileError;
 
@@ -71,27 +69,5 @@ impl Studio {
     fn hiperdrives_in_hand(&mut self) -> impl Iterator<Item = &mut Unit> {
         let all = self.devices.iter_mut().filter_map(|device| device.get_mut::<Unit>());
         all.filter(|unit| unit.moves.is_open())
-    }
-
-    pub(crate) fn act_hiperdrive(&mut self, id: SessionId, action: Action) {
-        match action {
-            Action::Reconnect => self.reconnect(id),
-            Action::WriteInto(_) if self.is_only_looked_at(id) => {}
-            Action::WriteInto(target) => {
-                let profile = self.device(id).and_then(|device| device.get::<Unit>()?.wanted_profile());
-                let Some(profile) = profile else { return };
-                self.show(Tab::Hiperdrive, target);
-                self.with_hiperdrive(target, |unit, services| unit.plan_restore(profile, services));
-            }
-            action => self.with_hiperdrive(id, |unit, services| unit.act(action, services)),
-        }
-    }
-
-    pub(crate) fn with_hiperdrive(&mut self, id: SessionId, act: impl FnOnce(&mut Unit, &mut Services)) {
-        self.with_device(id, |device, services| {
-            if let Some(unit) = device.get_mut::<Unit>() {
-                act(unit, services);
-            }
-        });
     }
 }

@@ -1,15 +1,39 @@
 //! HIPERDRIVE drives behind an adapter or a hub among the devices of the studio.
 
+use std::convert::Infallible;
 use std::path::PathBuf;
 
-use super::Unit;
+use super::{Action, Unit};
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::Saved;
-use crate::app::{DeviceMemory, DeviceModel, MotionControl, Tab};
+use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, MotionControl, Tab};
+use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Unit {
     const TAB: Tab = Tab::Hiperdrive;
+    type Action = Action;
+    type Done = Infallible;
+
+    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+        Unit::act(self, action, context.services);
+    }
+
+    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        Unit::command(self, command, services);
+    }
+
+    fn done(&mut self, done: Infallible, _services: &mut Services) {
+        match done {}
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Saved::wanted_body(self)
+    }
+
+    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        Saved::restore(self, body, services)
+    }
 
     fn edits(&self) -> usize {
         Unit::edits(self)

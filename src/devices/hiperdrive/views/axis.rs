@@ -51,7 +51,7 @@ pub(crate) struct Shown<'a> {
 
 impl Shown<'_> {
     fn push(&self, actions: &mut Vec<Action>, action: Run) {
-        actions.push(Action::Hiperdrive(self.unit.session.id, Hiperdrive::Axis(action)));
+        actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
     /// A button of the run, with why it cannot be pressed.
@@ -120,7 +120,7 @@ fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         let allowed = unit.may_set_up();
         ui.horizontal(|ui| {
             if primary(ui, skin, allowed.is_ok(), icons::PLAY, &skin.say("hd_axis.begin")).clicked() {
-                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Axis(Run::Begin)));
+                actions.push(Action::device(unit.session.id, Hiperdrive::Axis(Run::Begin)));
             }
             if let Err(why) = &allowed {
                 warning(ui, skin, why);

@@ -26,14 +26,14 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, unit: &Unit, act
                 if unit.moves.is_open() {
                     let word = skin.say("hd_bar.give");
                     if allowed_button(ui, skin, &unit.can_give(), icons::PLUGS, &word).clicked() {
-                        actions.push(Action::Hiperdrive(id, Hiperdrive::Give));
+                        actions.push(Action::device(id, Hiperdrive::Give));
                     }
                     let well = || RichText::new(skin.say("hd_bar.in_control")).color(skin.palette.good);
                     ui.label(outside::badge(skin, unit).unwrap_or_else(well));
                 } else {
                     let word = skin.say("hd_bar.take");
                     if allowed_button(ui, skin, &unit.can_take(), icons::PLUGS_CONNECTED, &word).clicked() {
-                        actions.push(Action::Hiperdrive(id, Hiperdrive::Take));
+                        actions.push(Action::device(id, Hiperdrive::Take));
                     }
                     let watching = || skin.label(skin.say("hd_bar.watching"));
                     ui.label(outside::badge(skin, unit).unwrap_or_else(watching));
@@ -79,7 +79,7 @@ fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         let moving = unit.moving_drives();
         for drive in drives {
             if drive_button(ui, skin, unit, (drive, moving.contains(&drive))) {
-                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::SelectDrive(drive)));
+                actions.push(Action::device(unit.session.id, Hiperdrive::SelectDrive(drive)));
             }
         }
     });

@@ -1,5 +1,6 @@
 //! Who the device and its drives are, what a check of them says, how it is wired.
 
+use crate::app::DeviceCommand;
 use egui::Ui;
 
 use crate::app::Action;
@@ -51,7 +52,7 @@ fn identity(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &skin.say("hd_device.read"))
                 .clicked()
         {
-            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Read));
+            actions.push(Action::Command(unit.session.id, DeviceCommand::Read));
         }
     };
     card_with(ui, skin, "hd_device.title", read, |ui| {
@@ -106,7 +107,7 @@ fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit) {
 fn check(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Check));
+            actions.push(Action::device(unit.session.id, Hiperdrive::Check));
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {
@@ -120,7 +121,7 @@ fn services(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         for (service, note) in SERVICES {
             if enabled_button(ui, unit.session.is_ready(), "", &skin.words(&explain::service(service))).clicked() {
                 let change = Change::Do(service);
-                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Plan(Box::new(change))));
+                actions.push(Action::device(unit.session.id, Hiperdrive::Plan(Box::new(change))));
             }
             paragraph(ui, skin.caption(skin.say(note)));
             ui.add_space(skin.space.inside);

@@ -33,11 +33,11 @@ fn buffer(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         let ready = unit.session.is_ready();
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("hd_errors.read")).clicked() {
-            actions.push(Action::Hiperdrive(id, Hiperdrive::ReadStatus));
+            actions.push(Action::device(id, Hiperdrive::ReadStatus));
         }
         if enabled_button(ui, ready, icons::CHECK, &skin.say("hd_errors.acknowledge")).clicked() {
             let change = Change::Do(Service::Acknowledge(drive));
-            actions.push(Action::Hiperdrive(id, Hiperdrive::Plan(Box::new(change))));
+            actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))));
         }
     };
     card_with(ui, skin, "hd_errors.title", read, |ui| {

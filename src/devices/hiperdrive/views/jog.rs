@@ -37,7 +37,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
                         Ok(by) => {
                             view.step_problem = None;
                             let step = Hiperdrive::Drive(Motor::Step { by });
-                            actions.push(Action::Hiperdrive(unit.session.id, step));
+                            actions.push(Action::device(unit.session.id, step));
                         }
                         Err(why) => view.step_problem = Some(why),
                     }
@@ -112,5 +112,5 @@ pub(super) fn pad_ui(
         Some(HoldEvent::Stop) => return actions.push(Action::StopMotion),
         None => return,
     };
-    actions.push(Action::Hiperdrive(session, Hiperdrive::Drive(motor)));
+    actions.push(Action::device(session, Hiperdrive::Drive(motor)));
 }

@@ -98,7 +98,7 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                     .clicked()
                 {
                     let confirm = Hiperdrive::Drive(Motor::ConfirmLimits(drive));
-                    actions.push(Action::Hiperdrive(unit.session.id, confirm));
+                    actions.push(Action::device(unit.session.id, confirm));
                 }
             }
         });
@@ -134,7 +134,7 @@ fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                 State::Locked => Motor::Acknowledge,
                 State::Enabled | State::Moving | State::Fault => Motor::Lead(Goal::Enabled),
             };
-            actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::Drive(wanted)));
+            actions.push(Action::device(unit.session.id, Hiperdrive::Drive(wanted)));
         }
         if !beside {
             let top = ui.cursor().top();
@@ -169,7 +169,7 @@ fn news(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
 }
 
 fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
-    actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(motor)));
+    actions.push(Action::device(id, Hiperdrive::Drive(motor)));
 }
 
 /// To a position, and at a speed: with the same effort.
@@ -335,7 +335,7 @@ pub(super) fn length_ui(
         ui.push_id(id, |ui| {
             ui.spacing_mut().combo_width = MEASURE;
             if choice(ui, &skin.say("hd_move.measure"), &mut measure, measures) {
-                actions.push(Action::Hiperdrive(unit.session.id, Hiperdrive::SetMeasure(measure)));
+                actions.push(Action::device(unit.session.id, Hiperdrive::SetMeasure(measure)));
             }
         });
     });

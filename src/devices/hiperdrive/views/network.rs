@@ -1,6 +1,7 @@
 //! Where the device has its address from: what its TCP/IP object says beside what is wanted, what that comes to at the next
 //! power-up, and what the address switches mean.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Severity, Text};
@@ -46,7 +47,7 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
     let mut asked = Vec::new();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("hd_net.read")).clicked() {
-            asked.push(Action::Hiperdrive(id, Hiperdrive::Read));
+            asked.push(Action::Command(id, DeviceCommand::Read));
         }
     };
     card_with(ui, skin, "hd_net.title", read, |ui| {
@@ -81,7 +82,7 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
                 && let Ok(own) = allowed
             {
                 let change = Change::Network(own);
-                actions.push(Action::Hiperdrive(id, Hiperdrive::Plan(Box::new(change))));
+                actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))));
             }
             if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &skin.say("hd_net.revert")).clicked() {
                 form = before.clone();

@@ -59,7 +59,7 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
                 Direction::Counterclockwise => "hd_outside.free_down",
             };
             if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &skin.say(free)).clicked() {
-                actions.push(Action::Hiperdrive(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
+                actions.push(Action::device(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
             }
         }
     });
@@ -67,8 +67,7 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
     if allowed_button(ui, skin, &unit.may_plan(), "", &skin.say("hd_outside.set")).clicked() {
         let change =
             forms::steps(unit, &draft.place, unit.measure).and_then(|position| unit.reference_here(drive, position));
-        draft.problem =
-            change.map(|change| actions.push(Action::Hiperdrive(id, Hiperdrive::Plan(Box::new(change))))).err();
+        draft.problem = change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();
     }
     problem(ui, skin, draft.problem.as_ref());
 }

@@ -163,7 +163,7 @@ fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Vec<Row>], view: &mut Vi
     if let Some(RegisterEvent::Revert(place)) = output.event {
         edits.extend(at(place).map(|row| Edit::Revert(row.number)));
     }
-    let act = |edit| Action::Hiperdrive(unit.session.id, Hiperdrive::Edit(Box::new(edit)));
+    let act = |edit| Action::device(unit.session.id, Hiperdrive::Edit(Box::new(edit)));
     actions.extend(edits.into_iter().map(act));
 }
 

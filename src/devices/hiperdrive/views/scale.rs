@@ -30,7 +30,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         entry(ui, skin, &word, |ui| {
             settled_entry(ui, &mut view.pitch, &shown, NUMBER, &word, |text| {
                 let pitch = if text.trim().is_empty() { None } else { Some(forms::length(text)?) };
-                actions.push(Action::Hiperdrive(id, Hiperdrive::SetPitch(drive, pitch)));
+                actions.push(Action::device(id, Hiperdrive::SetPitch(drive, pitch)));
                 Ok(())
             });
             ui.label(skin.label(skin.say("hd_scale.a_turn")));
@@ -56,7 +56,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
                 view.refused = scale
                     .map(|scale| {
                         let edit = Edit::Scale { drive, scale, limits };
-                        actions.push(Action::Hiperdrive(id, Hiperdrive::Edit(Box::new(edit))));
+                        actions.push(Action::device(id, Hiperdrive::Edit(Box::new(edit))));
                     })
                     .err();
             }

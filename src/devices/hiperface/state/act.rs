@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::action::Action;
 use super::encoder::Encoder;
 use super::write::with_options;
+use crate::app::DeviceCommand;
 use crate::app::Text;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
@@ -21,19 +22,7 @@ impl Encoder {
     /// Does what is asked.
     pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
-            // The studio opens links, and knows other sessions.
-            Action::Reconnect | Action::WriteInto(_) => {}
-            Action::Read => self.read_again(services),
             Action::ReadStatus => self.submit(HiperfaceJob::Status, services),
-            Action::ReadPosition => {
-                let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
-                self.submit(HiperfaceJob::Position(geometry), services);
-            }
-            Action::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
             Action::Watch(what, on) => self.watch(what, on),
             Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
             Action::ReadRest => self.read_rest(services),
@@ -53,15 +42,7 @@ impl Encoder {
                 }
             }
             Action::Put { field, address, bytes } => self.put(field, address, &bytes, services),
-            Action::Undo => {
-                self.staged.undo();
-            }
-            Action::Redo => {
-                self.staged.redo();
-            }
-            Action::RevertAll => self.staged.revert(),
             Action::Revert(range) => self.staged.revert_range(range),
-            Action::Review => self.review_edits(services),
             Action::Plan(change) => self.plan(change, services),
             Action::PlanAgain(options) => {
                 if let Some(review) = &self.review {
@@ -71,10 +52,36 @@ impl Encoder {
             Action::ForceWear(force) => self.force_wear(force),
             Action::Write(plan) => self.write(plan, services),
             Action::CloseReview => self.close_review(),
-            Action::AskSave => self.session.ask_where_to_save(services),
             Action::Save(path) => self.save(path, services),
             Action::Commutation(action) => self.act_commutation(action, services),
-            Action::Restore(path) => self.read_backup(path, services),
+        }
+    }
+
+    /// Does what every device can be asked for.
+    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        match command {
+            // The studio opens links, and knows other sessions.
+            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
+            DeviceCommand::Read => self.read_again(services),
+            DeviceCommand::ReadPosition => {
+                let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
+                self.submit(HiperfaceJob::Position(geometry), services);
+            }
+            DeviceCommand::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            DeviceCommand::Undo => {
+                self.staged.undo();
+            }
+            DeviceCommand::Redo => {
+                self.staged.redo();
+            }
+            DeviceCommand::RevertAll => self.staged.revert(),
+            DeviceCommand::Review => self.review_edits(services),
+            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
+            DeviceCommand::Restore(path) => self.read_backup(path, services),
         }
     }
 

@@ -1,10 +1,9 @@
 //! What can be asked of the encoder that is shown.
 
+use crate::app::DeviceAction;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use super::commutation;
-use crate::app::studio::SessionId;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::profile::{FieldRange, RestoreOptions};
@@ -13,16 +12,8 @@ use crate::profile::PlanId;
 
 /// Something in the HIPERFACE tab.
 pub enum Action {
-    /// Open the link again, after it was lost or could not be opened.
-    Reconnect,
-    /// Read everything again; edits stay.
-    Read,
     /// Read the error queue.
     ReadStatus,
-    /// Read the position once.
-    ReadPosition,
-    /// Read the position all the time, or no more.
-    Poll(Option<Duration>),
     /// While the position is read all the time, read this too, or no more.
     Watch(Watch, bool),
     /// Read an analogue channel.
@@ -56,16 +47,8 @@ pub enum Action {
         /// The bytes.
         bytes: Vec<u8>,
     },
-    /// Take the last edit back.
-    Undo,
-    /// Do it again.
-    Redo,
-    /// Take all edits back.
-    RevertAll,
     /// Take the edits of a range back.
     Revert(FieldRange),
-    /// Show what writing the edits would do.
-    Review,
     /// Show what a change would do.
     Plan(Change),
     /// Make the plan again with other options, where the change is a restore.
@@ -76,14 +59,10 @@ pub enum Action {
     Write(PlanId),
     /// Close the review.
     CloseReview,
-    /// Ask where to save the profile.
-    AskSave,
     /// Save the profile.
     Save(PathBuf),
-    /// Show what restoring a backup would do.
-    Restore(PathBuf),
     /// The commutation assistant.
     Commutation(commutation::Action),
-    /// Show what writing this profile into a connected encoder would do.
-    WriteInto(SessionId),
 }
+
+impl DeviceAction for Action {}

@@ -58,7 +58,7 @@ impl SineCosineSource for Encoder {
     }
 
     fn read_action(&self) -> crate::app::Action {
-        crate::app::Action::Hiperface(self.session.id, Action::ReadRest)
+        crate::app::Action::device(self.session.id, Action::ReadRest)
     }
 
     fn origin(&self) -> SineCosineOrigin {

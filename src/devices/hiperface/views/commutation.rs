@@ -65,7 +65,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
 }
 
 fn ask(encoder: &Encoder, action: Assistant) -> Action {
-    Action::Hiperface(encoder.session.id, Hiperface::Commutation(action))
+    Action::device(encoder.session.id, Hiperface::Commutation(action))
 }
 
 fn before(ui: &mut Ui, skin: &Skin, form: &mut Form) {

@@ -1,5 +1,6 @@
 //! Who the encoder is, what its error queue says, the device check, the extended label, the wiring.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::wiring;
@@ -34,7 +35,7 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
     let ready = encoder.session.is_readable();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Read));
+            actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
     card_with(ui, skin, "encoder_card.title", read, |ui| {
@@ -94,7 +95,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
         if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("status_card.read"))
             .clicked()
         {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::ReadStatus));
+            actions.push(Action::device(encoder.session.id, Hiperface::ReadStatus));
         }
     };
     let palette = skin.palette;
@@ -130,7 +131,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, action
         ui.add_space(skin.space.between);
         ui.checkbox(restart, skin.say("check_card.restart"));
         if enabled_button(ui, encoder.session.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Check { restart: *restart }));
+            actions.push(Action::device(encoder.session.id, Hiperface::Check { restart: *restart }));
         }
     });
 }

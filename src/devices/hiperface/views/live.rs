@@ -62,7 +62,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, channel: &
         for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
             let mut on = watched.contains(&what);
             if ui.checkbox(&mut on, skin.words(&state::watch_name(what))).changed() {
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Watch(what, on)));
+                actions.push(Action::device(encoder.session.id, Hiperface::Watch(what, on)));
             }
         }
         ui.horizontal(|ui| {
@@ -72,7 +72,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, channel: &
             if enabled_button(ui, entered.is_ok(), icons::PLUS, &skin.say("live.watch_add")).clicked()
                 && let Ok(channel) = entered
             {
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Watch(Watch::Analogue(channel), true)));
+                actions.push(Action::device(encoder.session.id, Hiperface::Watch(Watch::Analogue(channel), true)));
             }
         });
     });

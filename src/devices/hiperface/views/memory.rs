@@ -1,6 +1,7 @@
 //! The encoder's memory: the map of its data fields, what can be done with each, the bytes of the one that is selected,
 //! what they mean, and the way to write the edits.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use crate::app::session::Phase;
@@ -53,7 +54,7 @@ pub(super) fn page_ui(
     if encoder.identity.is_none() {
         let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
         if empty(ui, skin, &skin.say("memory.nothing"), Some((read.0, &read.1, read.2))) {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Read));
+            actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
     }
@@ -139,7 +140,7 @@ fn map(
             let size = u8::try_from(blocks).ok().and_then(FieldSize::from_blocks);
             if let (Some(size), Some(last)) = (size, wanted.last()) {
                 let change = Change::ResizeField { number: last.number, size };
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
+                actions.push(Action::device(encoder.session.id, Hiperface::Plan(change)));
             }
         }
         None => {}
@@ -198,20 +199,18 @@ fn field_ui(
         });
     }
     // The buttons at the foot undo as well as the keys do.
-    if actions.iter().any(|own| matches!(own, Action::Hiperface(_, Hiperface::Undo | Hiperface::Redo))) {
+    if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.follow(bytes);
     }
     let number = field.number;
-    actions.extend(edits.into_iter().map(|edit| {
-        Action::Hiperface(
-            encoder.session.id,
-            match edit {
-                HexEdit::Put { address, bytes } => Hiperface::Put { field: number, address, bytes },
-                HexEdit::Undo => Hiperface::Undo,
-                HexEdit::Redo => Hiperface::Redo,
-                HexEdit::Revert { range } => Hiperface::Revert(FieldRange::new(number, range.start, range.len())),
-            },
-        )
+    let id = encoder.session.id;
+    actions.extend(edits.into_iter().map(|edit| match edit {
+        HexEdit::Put { address, bytes } => Action::device(id, Hiperface::Put { field: number, address, bytes }),
+        HexEdit::Undo => Action::Command(id, DeviceCommand::Undo),
+        HexEdit::Redo => Action::Command(id, DeviceCommand::Redo),
+        HexEdit::Revert { range } => {
+            Action::device(id, Hiperface::Revert(FieldRange::new(number, range.start, range.len())))
+        }
     }));
 }
 
@@ -246,7 +245,7 @@ fn field_head(
             change = Some(Change::DeleteField { number: field.number });
         }
     });
-    actions.extend(change.map(|change| Action::Hiperface(encoder.session.id, Hiperface::Plan(change))));
+    actions.extend(change.map(|change| Action::device(encoder.session.id, Hiperface::Plan(change))));
 }
 
 fn code_menu(ui: &mut Ui, skin: &Skin, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
@@ -322,7 +321,7 @@ fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view:
         if allowed_button(ui, skin, &allowed, icons::PLUS, &skin.say("memory.create")).clicked() {
             let status = forms::new_field(view.size, view.code, view.code_required);
             let change = Change::CreateField { number: memory.fields, status };
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
+            actions.push(Action::device(encoder.session.id, Hiperface::Plan(change)));
         }
     });
 }

@@ -67,7 +67,7 @@ fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Te
     match change {
         Ok(change) => {
             *problem = None;
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Plan(change)));
+            actions.push(Action::device(encoder.session.id, Hiperface::Plan(change)));
         }
         Err(why) => *problem = Some(why),
     }
@@ -108,8 +108,7 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
                 ui.label(skin.label(skin.words(&text)));
                 let undo = skin.say("position_card.undo");
                 if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
-                    actions
-                        .push(Action::Hiperface(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
+                    actions.push(Action::device(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
                 }
             });
         }
@@ -133,7 +132,7 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                 match code {
                     Ok(code) => {
                         view.code_problem = None;
-                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::UseCode { number, code }));
+                        actions.push(Action::device(encoder.session.id, Hiperface::UseCode { number, code }));
                     }
                     Err(why) => view.code_problem = Some(why),
                 }
@@ -210,9 +209,7 @@ fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             let now = enabled_button(ui, ready, icons::LIGHTNING, &skin.say("settings_card.now"));
             if now.on_hover_text(skin.say("settings_card.now_hint")).clicked() {
                 match wanted() {
-                    Ok(wanted) => {
-                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::ConfigureForNow(wanted)))
-                    }
+                    Ok(wanted) => actions.push(Action::device(encoder.session.id, Hiperface::ConfigureForNow(wanted))),
                     Err(why) => view.settings_problem = Some(why),
                 }
             }
@@ -233,7 +230,7 @@ fn restart(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     card(ui, skin, "restart_card.title", |ui| {
         paragraph(ui, skin.label(skin.say("restart_card.words")));
         if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &skin.say("restart_card.run")).clicked() {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::Reset));
+            actions.push(Action::device(encoder.session.id, Hiperface::Reset));
         }
     });
 }

@@ -63,7 +63,7 @@ fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
                 match forms::channel(&view.channel) {
                     Ok(channel) => {
                         view.problem = None;
-                        actions.push(Action::Hiperface(encoder.session.id, Hiperface::ReadAnalogue(channel)));
+                        actions.push(Action::device(encoder.session.id, Hiperface::ReadAnalogue(channel)));
                     }
                     Err(problem) => view.problem = Some(problem),
                 }
@@ -79,7 +79,7 @@ fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     let ready = encoder.session.is_ready();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("counter_card.read")).clicked() {
-            actions.push(Action::Hiperface(encoder.session.id, Hiperface::ReadCounter));
+            actions.push(Action::device(encoder.session.id, Hiperface::ReadCounter));
         }
     };
     let mut change = None;
@@ -95,5 +95,5 @@ fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
             }
         });
     });
-    actions.extend(change.map(|change| Action::Hiperface(encoder.session.id, Hiperface::Plan(change))));
+    actions.extend(change.map(|change| Action::device(encoder.session.id, Hiperface::Plan(change))));
 }

@@ -3,6 +3,7 @@
 use super::action::Action;
 use super::encoder::Encoder;
 use super::staged::Edit;
+use crate::app::DeviceCommand;
 use crate::app::action::FileQuestion;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
@@ -16,38 +17,12 @@ impl Encoder {
     /// Does what is asked.
     pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
-            // The studio opens links, and knows other sessions.
-            Action::Reconnect | Action::WriteInto(_) => {}
             Action::Stopped(stopped) => self.say_stopped(stopped),
-            Action::Read => {
-                if !self.session.read_file_again(services) && self.try_submit(InterbusJob::Survey, services) {
-                    self.read_after = self.known_programs();
-                }
-            }
             Action::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),
             Action::ReadOut(what) => self.submit(InterbusJob::ReadOut(what), services),
             Action::Select(mode) => self.submit(InterbusJob::Select(mode), services),
             Action::Check => self.submit(InterbusJob::Check, services),
-            Action::ReadPosition => self.submit(InterbusJob::Position, services),
-            Action::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
             Action::Edit(edit) => self.edit(&edit),
-            Action::Undo => {
-                self.staged.undo();
-                self.refusal = None;
-            }
-            Action::Redo => {
-                self.staged.redo();
-                self.refusal = None;
-            }
-            Action::RevertAll => {
-                self.staged.revert();
-                self.refusal = None;
-            }
-            Action::Review => self.review_edits(services),
             Action::Plan(change) => self.plan(*change, services),
             Action::LeadBack => self.submit(InterbusJob::LeadBack, services),
             Action::AskTable(program) => {
@@ -72,13 +47,47 @@ impl Encoder {
                     motor.set_rpm(rpm);
                 }
             }
+            Action::Save(path) => self.save(path, services),
+        }
+    }
+
+    /// Does what every device can be asked for.
+    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        match command {
+            // The studio opens links, and knows other sessions.
+            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
+            DeviceCommand::Read => {
+                if !self.session.read_file_again(services) && self.try_submit(InterbusJob::Survey, services) {
+                    self.read_after = self.known_programs();
+                }
+            }
+            DeviceCommand::ReadPosition => self.submit(InterbusJob::Position, services),
+            DeviceCommand::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            DeviceCommand::Undo => {
+                self.staged.undo();
+                self.refusal = None;
+            }
+            DeviceCommand::Redo => {
+                self.staged.redo();
+                self.refusal = None;
+            }
+            DeviceCommand::RevertAll => {
+                self.staged.revert();
+                self.refusal = None;
+            }
+            DeviceCommand::Review => self.review_edits(services),
             // Before a name is asked for: reading for a file selects cam programs. What was read before needs no reading.
-            Action::AskSave if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() => {
+            DeviceCommand::AskSave
+                if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() =>
+            {
                 services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
             }
-            Action::AskSave => self.session.ask_where_to_save(services),
-            Action::Save(path) => self.save(path, services),
-            Action::Restore(path) => self.read_backup(path, services),
+            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
+            DeviceCommand::Restore(path) => self.read_backup(path, services),
         }
     }
 

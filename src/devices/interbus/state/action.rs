@@ -1,22 +1,17 @@
 //! What can be asked of an INTERBUS encoder that is shown.
 
+use crate::app::DeviceAction;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use super::staged::Edit;
-use crate::app::studio::SessionId;
 use crate::devices::interbus::jobs::Change;
 use crate::devices::interbus::profile::Scale;
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOut, StartupMode};
 
 /// Something in the INTERBUS tab.
 pub enum Action {
-    /// Open the link again, after it was lost or could not be opened.
-    Reconnect,
     /// A person says that the machine stands, or that it does not any more.
     Stopped(bool),
-    /// Read parameters again, and the cam programs that were read before; edits stay.
-    Read,
     /// Read cam programs: the encoder's outputs switch to each of them.
     ReadPrograms(Vec<ProgramNumber>),
     /// Read one thing out.
@@ -25,20 +20,8 @@ pub enum Action {
     Select(StartupMode),
     /// The device check.
     Check,
-    /// Read the IN word once.
-    ReadPosition,
-    /// Read the IN word all the time, or no more.
-    Poll(Option<Duration>),
     /// Change something that is not written yet.
     Edit(Box<Edit>),
-    /// Take the last edit back.
-    Undo,
-    /// Do it again.
-    Redo,
-    /// Take all edits back.
-    RevertAll,
-    /// Show what writing the edits would do.
-    Review,
     /// Show what a change would do.
     Plan(Box<Change>),
     /// Back to the mode that was found, whoever left the encoder otherwise.
@@ -67,12 +50,8 @@ pub enum Action {
     SetScale(Scale),
     /// Turn the virtual encoder's shaft, in revolutions a minute.
     Turn(f64),
-    /// Ask where to save the profile.
-    AskSave,
     /// Save the profile.
     Save(PathBuf),
-    /// Show what restoring a backup would do.
-    Restore(PathBuf),
-    /// Show what writing this profile into a connected encoder would do.
-    WriteInto(SessionId),
 }
+
+impl DeviceAction for Action {}

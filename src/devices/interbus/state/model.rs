@@ -2,14 +2,37 @@
 
 use std::path::PathBuf;
 
-use super::Encoder;
+use super::{Action, Done, Encoder};
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::Saved;
-use crate::app::{DeviceMemory, DeviceModel, Tab};
+use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Tab};
+use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Interbus;
+    type Action = Action;
+    type Done = Done;
+
+    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+        Encoder::act(self, action, context.services);
+    }
+
+    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        Encoder::command(self, command, services);
+    }
+
+    fn done(&mut self, done: Done, services: &mut Services) {
+        Encoder::done(self, done, services);
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Saved::wanted_body(self)
+    }
+
+    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        Saved::restore(self, body, services)
+    }
 
     fn edits(&self) -> usize {
         Encoder::edits(self)

@@ -29,7 +29,7 @@ impl Encoder {
         let session = self.session.id;
         services.tasks.run("table", move || {
             let result = read_file(&path);
-            StudioAction::Done(StudioDone::Interbus(session, Done::Read(path, result)))
+            StudioAction::Done(StudioDone::device(session, Done::Read(path, result)))
         });
     }
 
@@ -75,7 +75,7 @@ impl Encoder {
         let session = self.session.id;
         services.tasks.run("export", move || {
             let result = write_atomically(&path, text.as_bytes());
-            StudioAction::Done(StudioDone::Interbus(session, Done::Written(path, result)))
+            StudioAction::Done(StudioDone::device(session, Done::Written(path, result)))
         });
     }
 

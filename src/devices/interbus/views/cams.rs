@@ -73,10 +73,10 @@ fn unread(ui: &mut Ui, skin: &Skin, encoder: &Encoder, program: ProgramNumber, a
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         ui.vertical_centered(|ui| {
             if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("ib_cams.read_one")).clicked() {
-                actions.push(Action::Interbus(id, Interbus::ReadPrograms(vec![program])));
+                actions.push(Action::device(id, Interbus::ReadPrograms(vec![program])));
             }
             if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("ib_cams.read_all")).clicked() {
-                actions.push(Action::Interbus(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
+                actions.push(Action::device(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
             }
         });
         paragraph(ui, skin.caption(skin.say("ib_cams.read_words")));

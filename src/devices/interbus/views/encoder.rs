@@ -1,5 +1,6 @@
 //! Who the encoder is, what it sends, and how it is wired.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use crate::app::Action;
@@ -32,7 +33,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
                 motor::card_ui(ui, skin, motor.rpm(), |rpm| {
-                    actions.push(Action::Interbus(encoder.session.id, Interbus::Turn(rpm)))
+                    actions.push(Action::device(encoder.session.id, Interbus::Turn(rpm)))
                 });
             }
         },
@@ -47,7 +48,7 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
     let ready = encoder.session.is_readable() && (encoder.is_stopped() || encoder.profile().is_some());
     let read = |ui: &mut Ui| {
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
-            actions.push(Action::Interbus(encoder.session.id, Interbus::Read));
+            actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
     card_with(ui, skin, "encoder_card.title", read, |ui| {
@@ -85,7 +86,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-            actions.push(Action::Interbus(encoder.session.id, Interbus::Check));
+            actions.push(Action::device(encoder.session.id, Interbus::Check));
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {
@@ -116,7 +117,7 @@ fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
             paragraph(ui, RichText::new(skin.say("ib_sends.left")).color(skin.palette.warn));
         }
         if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &skin.say("lead_back_card.button")).clicked() {
-            actions.push(Action::Interbus(encoder.session.id, Interbus::LeadBack));
+            actions.push(Action::device(encoder.session.id, Interbus::LeadBack));
         }
         let Some(own) = encoder.mode() else {
             paragraph(ui, skin.caption(skin.say("ib_sends.mode_unknown")));
@@ -133,7 +134,7 @@ fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
             });
         });
         if wanted != own {
-            actions.push(Action::Interbus(encoder.session.id, Interbus::Select(wanted)));
+            actions.push(Action::device(encoder.session.id, Interbus::Select(wanted)));
         }
         paragraph(ui, skin.caption(skin.say("ib_sends.mode_words")));
     });

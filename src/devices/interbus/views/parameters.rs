@@ -72,13 +72,13 @@ fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                     let both = [Direction::Clockwise, Direction::Counterclockwise];
                     let both = both.map(|own| (own, skin.words(&explain::direction(own))));
                     if choice(ui, &word, &mut direction, both) {
-                        actions.push(Action::Interbus(id, Interbus::Edit(Box::new(Edit::Direction(direction)))));
+                        actions.push(Action::device(id, Interbus::Edit(Box::new(Edit::Direction(direction)))));
                     }
                 } else {
                     let draft = view.drafts.entry(parameter.name()).or_default();
                     settled_entry(ui, draft, &now.to_string(), NUMBER, &word, |text| {
                         let edit = forms::parameter(parameter, text, new)?;
-                        actions.push(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
+                        actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
                         Ok(())
                     });
                 }
@@ -134,7 +134,7 @@ fn preset(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
                 match forms::preset(&view.preset, &parameters) {
                     Ok(value) => {
                         view.preset_problem = None;
-                        actions.push(Action::Interbus(id, Interbus::Plan(Box::new(Change::Preset { value }))));
+                        actions.push(Action::device(id, Interbus::Plan(Box::new(Change::Preset { value }))));
                     }
                     Err(why) => view.preset_problem = Some(why),
                 }
@@ -146,7 +146,7 @@ fn preset(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         }
         ui.add_space(skin.space.inside);
         if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ib_preset.default")).clicked() {
-            actions.push(Action::Interbus(id, Interbus::Plan(Box::new(Change::Default))));
+            actions.push(Action::device(id, Interbus::Plan(Box::new(Change::Default))));
         }
         paragraph(ui, skin.caption(skin.say("ib_preset.default_words")));
     });

@@ -28,7 +28,7 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mu
             for (at, row) in READ_OUTS.iter().enumerate() {
                 let name = skin.words(&explain::read_out(row.read_out));
                 if icon_button(ui, ready, icons::ARROW_CLOCKWISE, &name).clicked() {
-                    actions.push(Action::Interbus(id, Interbus::ReadOut(row.read_out)));
+                    actions.push(Action::device(id, Interbus::ReadOut(row.read_out)));
                 }
                 ui.horizontal(|ui| {
                     ui.set_min_width(NAMES);
@@ -53,7 +53,7 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mu
                 let button =
                     egui::Button::new(skin.mono(format!("{number:X}  {value}"))).min_size([REGISTER, 28.0].into());
                 if crate::ui::controls::name(ui.add_enabled(ready, button), ready, &name).clicked() {
-                    actions.push(Action::Interbus(id, Interbus::ReadOut(what)));
+                    actions.push(Action::device(id, Interbus::ReadOut(what)));
                 }
             }
         });

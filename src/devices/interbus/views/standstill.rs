@@ -1,5 +1,6 @@
 //! What a running machine would notice is done only once somebody has said that it stands.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use crate::app::Action;
@@ -20,13 +21,13 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut 
             let ink = if stopped { skin.palette.good } else { skin.palette.warn };
             ui.label(RichText::new(if stopped { icons::CHECK_CIRCLE } else { icons::WARNING }).color(ink));
             if ui.checkbox(&mut stopped, skin.say("ib_stop.stands")).changed() {
-                actions.push(Action::Interbus(id, Interbus::Stopped(stopped)));
+                actions.push(Action::device(id, Interbus::Stopped(stopped)));
             }
             if encoder.survey.is_none() {
                 let ready = encoder.is_stopped() && encoder.session.is_ready();
                 let word = skin.say("ib_stop.read");
                 if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &word).clicked() {
-                    actions.push(Action::Interbus(id, Interbus::Read));
+                    actions.push(Action::Command(id, DeviceCommand::Read));
                 }
             }
         });

@@ -8,10 +8,12 @@ use super::design::Edit;
 use super::encoder::Encoder;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
+use crate::app::ActContext;
+use crate::app::DeviceCommand;
 use crate::app::action::{Action as StudioAction, Done as StudioDone, FileQuestion};
 use crate::app::documents::{document_of, only_looked_at};
 use crate::app::services::Services;
-use crate::app::session::{OnLine, Source};
+use crate::app::session::{Drafted, OnLine, Source};
 use crate::app::{Severity, Text, explain};
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{find, frame_bits};
@@ -20,25 +22,18 @@ use crate::store::write_atomically;
 
 impl Encoder {
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+        let services = &mut *context.services;
         match action {
-            // The studio opens links, and knows other sessions.
-            Action::Reconnect | Action::WriteInto(_) | Action::SendLayout => {}
-            Action::Read => {
-                if !self.session.read_file_again(services) && !matches!(self.session.source, Source::New { .. }) {
-                    self.submit(SsiJob::Hello, services);
-                }
-            }
-            Action::Review | Action::Restore(_) => {
-                services.tell(Severity::Note, vec![Text::new("ssi.never_written")], Some(&self.session.name()));
+            Action::SendLayout => {
+                let Some(url) = self.link_to_send() else { return };
+                // The draft belongs to the encoder that the link before stands for.
+                self.leave_draft(services);
+                self.take_link(&url);
+                self.session.source = Source::Link(url);
+                context.then(DeviceCommand::Reconnect);
             }
             Action::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
-            Action::ReadPosition => self.submit(SsiJob::Read, services),
-            Action::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
             Action::Edit(edit) => self.edit(*edit),
             Action::Enter(field, input) => match self.designer.entered(field, &input) {
                 Ok(edit) => self.edit(edit),
@@ -58,7 +53,6 @@ impl Encoder {
                 let frame = self.designer.without_error_bit(index);
                 self.edit(Edit::Frame(Box::new(frame)));
             }
-            Action::Undo | Action::Redo | Action::RevertAll => self.step(&action),
             Action::Try(with) => self.try_with(with),
             Action::SetClocks(clocks) => {
                 self.clocks = clocks
@@ -73,10 +67,6 @@ impl Encoder {
             Action::ForgetSearch => self.hunt = Hunt::Nothing,
             Action::Take(class, member) => self.take_found(class, member),
             Action::ForgetErrors => self.record.forget_tally(),
-            Action::AskSave => {
-                let suggested = self.suggested("ron");
-                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
-            }
             Action::AskExport(format) => {
                 let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
                 services.file_question = Some(FileQuestion::Export { session: self.session.id, format, suggested });
@@ -106,16 +96,43 @@ impl Encoder {
         }
     }
 
-    /// All changes are taken back, as one step.
-    pub(super) fn act_revert(&mut self) {
-        self.step(&Action::RevertAll);
+    /// Does what every device can be asked for.
+    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        match command {
+            // The studio opens links, and knows other sessions.
+            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
+            DeviceCommand::Read => {
+                if !self.session.read_file_again(services) && !matches!(self.session.source, Source::New { .. }) {
+                    self.submit(SsiJob::Hello, services);
+                }
+            }
+            DeviceCommand::Review | DeviceCommand::Restore(_) => {
+                services.tell(Severity::Note, vec![Text::new("ssi.never_written")], Some(&self.session.name()));
+            }
+            DeviceCommand::ReadPosition => self.submit(SsiJob::Read, services),
+            DeviceCommand::Poll(interval) => {
+                if let Some(begins) = self.session.poll(interval) {
+                    self.record.poll(interval, begins);
+                }
+            }
+            DeviceCommand::Undo | DeviceCommand::Redo | DeviceCommand::RevertAll => self.step(&command),
+            DeviceCommand::AskSave => {
+                let suggested = self.suggested("ron");
+                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
+            }
+        }
     }
 
-    fn step(&mut self, action: &Action) {
+    /// All changes are taken back, as one step.
+    pub(super) fn act_revert(&mut self) {
+        self.step(&DeviceCommand::RevertAll);
+    }
+
+    fn step(&mut self, command: &DeviceCommand) {
         let before = self.designer.layout().clone();
-        let has_changed = match action {
-            Action::Undo => self.designer.undo(),
-            Action::Redo => self.designer.redo(),
+        let has_changed = match command {
+            DeviceCommand::Undo => self.designer.undo(),
+            DeviceCommand::Redo => self.designer.redo(),
             _ => self.designer.revert(),
         };
         if has_changed {
@@ -183,7 +200,7 @@ impl Encoder {
                 Hunt::Found { origin, clocks, search }
             });
             let hunt = Box::new(result.unwrap_or_else(Hunt::Failed));
-            StudioAction::Done(StudioDone::Ssi(session, Done::Found { number, hunt }))
+            StudioAction::Done(StudioDone::device(session, Done::Found { number, hunt }))
         });
     }
 
@@ -221,7 +238,7 @@ impl Encoder {
         let session = self.session.id;
         services.tasks.run("export", move || {
             let result = write_atomically(&path, text.as_bytes());
-            StudioAction::Done(StudioDone::Ssi(session, Done::Written(path, result)))
+            StudioAction::Done(StudioDone::device(session, Done::Written(path, result)))
         });
     }
 

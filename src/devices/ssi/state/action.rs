@@ -1,26 +1,17 @@
 //! What can be asked of an SSI encoder that is shown, or of its layout.
 
+use crate::app::DeviceAction;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use super::design::Edit;
 use super::export::Format;
 use super::form::{Field, Input};
 use super::strip::Handle;
-use crate::app::studio::SessionId;
 
 /// Something in the SSI tab.
 pub enum Action {
-    /// Open the link again, after it was lost or could not be opened.
-    Reconnect,
-    /// Ask the adapter anew who it is; a layout in a file is read again.
-    Read,
     /// The device check.
     Check,
-    /// Read one word.
-    ReadPosition,
-    /// Read words all the time, or no more.
-    Poll(Option<Duration>),
     /// Change the layout.
     Edit(Box<Edit>),
     /// Put something into a row of its form.
@@ -31,20 +22,8 @@ pub enum Action {
     AddErrorBit,
     /// No error bit of this number any more.
     RemoveErrorBit(usize),
-    /// Take the last change back.
-    Undo,
-    /// Do it again.
-    Redo,
-    /// Take all changes back.
-    RevertAll,
     /// Try the layout with something.
     Try(Try),
-    /// Show what writing would do: nothing is ever written.
-    Review,
-    /// Show what restoring a backup would do: there is none.
-    Restore(PathBuf),
-    /// Take this layout for a connected encoder.
-    WriteInto(SessionId),
     /// Words have so many clocks while a layout is looked for; `None`: as many as the layout.
     SetClocks(Option<u8>),
     /// Look for the layout of the words that were read last.
@@ -59,8 +38,6 @@ pub enum Action {
     Take(usize, usize),
     /// Forget what error bits have said.
     ForgetErrors,
-    /// Ask where to save the layout.
-    AskSave,
     /// Ask where to write the layout for other programs.
     AskExport(Format),
     /// Write the layout for other programs.
@@ -89,3 +66,5 @@ pub enum Try {
     /// The word that was read last, again and again.
     Live,
 }
+
+impl DeviceAction for Action {}

@@ -3,13 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::action::Action;
-use super::design::Edit;
 use super::encoder::Encoder;
 use crate::app::Severity;
-use crate::app::services::Services;
 use crate::app::session::Source;
-use crate::app::studio::{SessionId, Studio};
+use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::devices::ssi::protocol::Families;
 use crate::devices::ssi::state::explain as words;
@@ -42,40 +39,6 @@ impl Studio {
         let layout = Encoder::new_layout(id, name, &mut self.services);
         self.devices.push(Box::new(layout));
         self.show(Tab::Ssi, id);
-    }
-
-    pub(crate) fn act_ssi(&mut self, id: SessionId, action: Action) {
-        match action {
-            Action::Reconnect => self.reconnect(id),
-            Action::WriteInto(target) => {
-                let Some(profile) =
-                    self.device(id).and_then(|device| device.get::<Encoder>()).map(Encoder::wanted_profile)
-                else {
-                    return;
-                };
-                self.show(Tab::Ssi, target);
-                self.with_ssi(target, |encoder, _| encoder.edit(Edit::Whole(Box::new(profile))));
-            }
-            Action::SendLayout => {
-                let link = self.device(id).and_then(|device| device.get::<Encoder>()?.link_to_send());
-                let Some(url) = link else { return };
-                self.with_device(id, |device, services| {
-                    // The draft belongs to the encoder that the link before stands for.
-                    device.leave_draft(services);
-                    device.take_link(url);
-                });
-                self.reconnect(id);
-            }
-            action => self.with_ssi(id, |encoder, services| encoder.act(action, services)),
-        }
-    }
-
-    pub(crate) fn with_ssi(&mut self, id: SessionId, act: impl FnOnce(&mut Encoder, &mut Services)) {
-        self.with_device(id, |device, services| {
-            if let Some(encoder) = device.get_mut::<Encoder>() {
-                act(encoder, services);
-            }
-        });
     }
 
     /// The families were read; those that cannot be used are told.

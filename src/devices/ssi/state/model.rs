@@ -2,14 +2,39 @@
 
 use std::path::PathBuf;
 
-use super::Encoder;
+use super::design::Edit;
+use super::{Action, Done, Encoder};
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
-use crate::app::{DeviceModel, Tab};
+use crate::app::{ActContext, DeviceCommand, DeviceModel, Tab};
 use crate::link::LinkUrl;
+use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Ssi;
+    type Action = Action;
+    type Done = Done;
+
+    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+        Encoder::act(self, action, context);
+    }
+
+    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        Encoder::command(self, command, services);
+    }
+
+    fn done(&mut self, done: Done, services: &mut Services) {
+        Encoder::done(self, done, services);
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Some(Body::new(self.wanted_profile()))
+    }
+
+    fn take_over(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {
+        self.edit(Edit::Whole(Box::new(body.into_profile()?)));
+        Ok(())
+    }
 
     fn edits(&self) -> usize {
         Encoder::edits(self)

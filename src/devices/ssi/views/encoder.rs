@@ -1,5 +1,6 @@
 //! The encoder behind its adapter, what its error bits have said, and how it is wired.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::wiring;
@@ -21,7 +22,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             if let Some(motor) = &encoder.motor {
                 ui.add_space(skin.space.groups);
                 motor::card_ui(ui, skin, motor.rpm(), |rpm| {
-                    actions.push(Action::Ssi(encoder.session.id, Ssi::Turn(rpm)))
+                    actions.push(Action::device(encoder.session.id, Ssi::Turn(rpm)))
                 });
             }
         },
@@ -41,7 +42,7 @@ fn adapter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
     let is_readable = encoder.session.is_readable() && !encoder.is_profile();
     let read = |ui: &mut Ui| {
         if enabled_button(ui, is_readable, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
-            actions.push(Action::Ssi(id, Ssi::Read));
+            actions.push(Action::Command(id, DeviceCommand::Read));
         }
     };
     card_with(ui, skin, "ssi_adapter.title", read, |ui| {
@@ -83,7 +84,7 @@ fn errors(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
         if enabled_button(ui, !noted.is_empty(), icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_tally.forget"))
             .clicked()
         {
-            actions.push(Action::Ssi(id, Ssi::ForgetErrors));
+            actions.push(Action::device(id, Ssi::ForgetErrors));
         }
     };
     card_with(ui, skin, "ssi_tally.title", forget, |ui| {
@@ -111,7 +112,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
-            actions.push(Action::Ssi(encoder.session.id, Ssi::Check));
+            actions.push(Action::device(encoder.session.id, Ssi::Check));
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {

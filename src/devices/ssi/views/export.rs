@@ -1,5 +1,6 @@
 //! The layout for other programs: as text to be read, copied and saved.
 
+use crate::app::DeviceCommand;
 use egui::{ScrollArea, Ui};
 
 use crate::app::Action;
@@ -32,7 +33,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     let aside = |ui: &mut Ui| {
         let is_there = text.is_ok();
         if enabled_button(ui, is_there, icons::FLOPPY_DISK, &skin.say("ssi_export.save")).clicked() {
-            actions.push(Action::Ssi(id, Ssi::AskExport(own)));
+            actions.push(Action::device(id, Ssi::AskExport(own)));
         }
         if enabled_button(ui, is_there, icons::COPY, &skin.say("ssi_export.copy")).clicked()
             && let Ok(text) = &text
@@ -57,7 +58,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
                 actions.push(Action::Save(id));
             }
             if button(ui, "", &skin.say("profile_card.save_as")).clicked() {
-                actions.push(Action::Ssi(id, Ssi::AskSave));
+                actions.push(Action::Command(id, DeviceCommand::AskSave));
             }
         });
     });

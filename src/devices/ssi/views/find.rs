@@ -49,7 +49,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 /// Which frames are looked into.
 fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    let mut ask = |action| actions.push(Action::Ssi(id, action));
+    let mut ask = |action| actions.push(Action::device(id, action));
     card(ui, skin, "ssi_find.title", |ui| {
         paragraph(ui, skin.label(skin.say("ssi_find.words")));
         ui.add_space(skin.space.inside);
@@ -146,7 +146,7 @@ fn class_ui(
                 let word = skin.say("ssi_find.take");
                 let take = enabled_button(ui, true, icons::CHECK, &word);
                 if take.clicked() {
-                    actions.push(Action::Ssi(id, Ssi::Take(number, place)));
+                    actions.push(Action::device(id, Ssi::Take(number, place)));
                 }
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.y = skin.space.inside;

@@ -30,7 +30,7 @@ pub(super) fn rows_ui(
 ) {
     for row in rows {
         let word = skin.words(&row.name);
-        let mut put = |input| actions.push(Action::Ssi(encoder.session.id, Ssi::Enter(row.field, input)));
+        let mut put = |input| actions.push(Action::device(encoder.session.id, Ssi::Enter(row.field, input)));
         let response = match &row.entry {
             Entry::Switch(is_on) => {
                 let mut is_on = *is_on;

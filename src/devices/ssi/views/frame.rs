@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::View as Tab;
 use super::form::rows_ui;
 use super::trial;
-use crate::app::{Action, AnyDevice, Studio, Text, Wish};
+use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 use crate::devices::ssi::protocol::Family;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::strip::{self, Strip};
@@ -73,10 +73,10 @@ fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
     let id = encoder.session.id;
     let aside = |ui: &mut Ui| {
         if icon_button(ui, encoder.designer.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
-            actions.push(Action::Ssi(id, Ssi::Redo));
+            actions.push(Action::Command(id, DeviceCommand::Redo));
         }
         if icon_button(ui, encoder.designer.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
-            actions.push(Action::Ssi(id, Ssi::Undo));
+            actions.push(Action::Command(id, DeviceCommand::Undo));
         }
     };
     let mut asked = Vec::new();
@@ -89,7 +89,7 @@ fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
                 ui.label(RichText::new(icons::INFO).color(skin.palette.accent));
                 ui.label(skin.say("ssi_layout.sends_other"));
                 if button(ui, icons::PLAY, &skin.say("ssi_layout.send")).clicked() {
-                    asked.push(Action::Ssi(id, Ssi::SendLayout));
+                    asked.push(Action::device(id, Ssi::SendLayout));
                 }
             });
         }
@@ -110,7 +110,7 @@ fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
 fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     let designer = &encoder.designer;
     let id = encoder.session.id;
-    let edit = |edit| Action::Ssi(id, Ssi::Edit(Box::new(edit)));
+    let edit = |edit| Action::device(id, Ssi::Edit(Box::new(edit)));
     let families: Vec<&Family> = designer.families().iter().collect();
     let own = designer.family().and_then(|own| families.iter().position(|family| family.key == own.key));
     let mut chosen = own;
@@ -186,11 +186,11 @@ fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         following: encoder.designer.errors_follow(),
     };
     match bit_strip(ui, skin, &model) {
-        Some(StripEvent::Moved(handle, to)) => actions.push(Action::Ssi(id, Ssi::Move(handle, to))),
+        Some(StripEvent::Moved(handle, to)) => actions.push(Action::device(id, Ssi::Move(handle, to))),
         Some(StripEvent::Selected(clock)) => view.selected = Some(clock),
         Some(StripEvent::Toggled(clock)) => {
             view.selected = Some(clock);
-            actions.push(Action::Ssi(id, Ssi::Try(Try::Toggle(clock))));
+            actions.push(Action::device(id, Ssi::Try(Try::Toggle(clock))));
         }
         // It shows by itself what the frame would be.
         Some(StripEvent::Preview(..)) | None => {}
@@ -225,11 +225,11 @@ fn group_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, group: &Group, view: &m
                 )
                 .clicked()
             {
-                actions.push(Action::Ssi(id, Ssi::AddErrorBit));
+                actions.push(Action::device(id, Ssi::AddErrorBit));
             }
         });
     });
-    actions.extend(asked.map(|asked| Action::Ssi(id, asked)));
+    actions.extend(asked.map(|asked| Action::device(id, asked)));
 }
 
 /// Taking changes back, saving, and taking the layout for an encoder that is connected.
@@ -237,7 +237,7 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, encoder: 
     let is_dirty = encoder.is_dirty();
     ui.horizontal(|ui| {
         if enabled_button(ui, is_dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
-            actions.push(device.wish(Wish::RevertAll));
+            actions.push(device.command(DeviceCommand::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if primary(ui, skin, true, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
@@ -263,7 +263,7 @@ fn take_for(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actio
     let menu = ui.menu_button(format!("{}  {word}", icons::PLUGS_CONNECTED), |ui| {
         for target in targets {
             if ui.button(format!("{} · {}", target.name(), target.place())).clicked() {
-                actions.push(device.wish(Wish::WriteInto(target.id())));
+                actions.push(device.command(DeviceCommand::WriteInto(target.id())));
                 ui.close();
             }
         }

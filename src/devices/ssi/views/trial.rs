@@ -48,12 +48,12 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         }
     };
     card_with(ui, skin, "ssi_trial.title", live, |ui| {
-        numbers(ui, skin, encoder, &shown, view, &mut |with| actions.push(Action::Ssi(id, Ssi::Try(with))));
+        numbers(ui, skin, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
         bits(ui, skin, encoder, &shown, view, actions);
         problem(ui, skin, encoder.trial.problem());
         findings(ui, skin, &shown);
     });
-    actions.extend(wish.map(|with| Action::Ssi(id, Ssi::Try(with))));
+    actions.extend(wish.map(|with| Action::device(id, Ssi::Try(with))));
     view.held = view.is_typed_in().then_some(shown);
 }
 
@@ -121,7 +121,7 @@ fn bits(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut
     if response.has_focus() {
         view.bits = Some(text);
     } else if response.lost_focus() && text.trim() != own {
-        actions.push(Action::Ssi(encoder.session.id, Ssi::Try(Try::Bits(text))));
+        actions.push(Action::device(encoder.session.id, Ssi::Try(Try::Bits(text))));
     }
 }
 

@@ -1,12 +1,13 @@
 //! What comes of the readings: the offset, its way into a data field, a position to be set, and the report.
 
+use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::{ask, number};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
+use crate::devices::hiperface::state::Encoder;
 use crate::devices::hiperface::state::commutation::{Action as Assistant, Form, Storage, Stored, stored};
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder};
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, paragraph, primary, row, verdict_ui,
 };
@@ -76,7 +77,7 @@ pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut F
             }
             let ready = encoder.session.is_ready() && encoder.staged.is_dirty();
             if primary(ui, skin, ready, icons::LIST_CHECKS, &skin.say("commutation.review")).clicked() {
-                actions.push(Action::Hiperface(encoder.session.id, Hiperface::Review));
+                actions.push(Action::Command(encoder.session.id, DeviceCommand::Review));
             }
         });
         if let (Err(why), true) = (&bytes, encoder.commutation.offset(encoder.geometry()).is_ok()) {

@@ -68,7 +68,7 @@ fn whole(
     actions: &mut Vec<Action>,
 ) {
     let id = encoder.session.id;
-    let mut put = |edit: Edit| actions.push(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
+    let mut put = |edit: Edit| actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
     icon_menu(ui, icons::PENCIL_SIMPLE, &skin.say("ib_cams.whole"), |ui| {
         ui.set_max_width(300.0);
         ui.label(skin.heading(skin.say("ib_cams.copy")));
@@ -110,7 +110,7 @@ fn tables(ui: &mut Ui, skin: &Skin, encoder: &Encoder, program: ProgramNumber, a
     icon_menu(ui, icons::TABLE, &skin.say("ib_cams.tables"), |ui| {
         ui.set_max_width(300.0);
         if button(ui, icons::FOLDER_OPEN, &skin.say("ib_table.open")).clicked() {
-            actions.push(Action::Interbus(id, Interbus::AskTable(program)));
+            actions.push(Action::device(id, Interbus::AskTable(program)));
             ui.close();
         }
         if button(ui, icons::COPY, &skin.say("ib_table.paste")).clicked() {
@@ -118,10 +118,8 @@ fn tables(ui: &mut Ui, skin: &Skin, encoder: &Encoder, program: ProgramNumber, a
             ui.close();
         }
         if button(ui, icons::FLOPPY_DISK, &skin.say("ib_table.save")).clicked() {
-            actions.push(Action::Interbus(
-                id,
-                Interbus::AskSaveTable { decimal_comma: skin.language == Language::German },
-            ));
+            actions
+                .push(Action::device(id, Interbus::AskSaveTable { decimal_comma: skin.language == Language::German }));
             ui.close();
         }
         paragraph(ui, skin.caption(skin.say("ib_table.words")));

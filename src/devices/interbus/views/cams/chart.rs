@@ -51,7 +51,7 @@ pub(super) fn card_ui(
         }
     };
     let mut event = None;
-    let edit = |edit: Edit| Action::Interbus(encoder.session.id, Interbus::Edit(Box::new(edit)));
+    let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
     card_with(ui, skin, "ib_cams.title", aside, |ui| {
         let label = skin.words(&Text::new("ib_startup.program").with("program", chart.program.get()));
         let sends = encoder.record.last().filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));

@@ -21,7 +21,7 @@ pub(super) fn pasted(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions
         input.events.iter().find_map(|event| if let Event::Paste(text) = event { Some(text.clone()) } else { None })
     });
     if let Some(text) = text.filter(|text| !text.trim().is_empty()) {
-        actions.push(Action::Interbus(encoder.session.id, Interbus::PasteTable(program, text)));
+        actions.push(Action::device(encoder.session.id, Interbus::PasteTable(program, text)));
     }
 }
 
@@ -66,10 +66,10 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, import: &Impo
         ui.horizontal(|ui| {
             if primary(ui, skin, is_whole && !table.rows.is_empty(), icons::CHECK, &skin.say("ib_table.take")).clicked()
             {
-                actions.push(Action::Interbus(id, Interbus::TakeTable(true)));
+                actions.push(Action::device(id, Interbus::TakeTable(true)));
             }
             if button(ui, icons::X, &skin.say("ib_table.leave")).clicked() {
-                actions.push(Action::Interbus(id, Interbus::TakeTable(false)));
+                actions.push(Action::device(id, Interbus::TakeTable(false)));
             }
         });
     });

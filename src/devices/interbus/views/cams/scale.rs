@@ -22,7 +22,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         paragraph(ui, skin.label(skin.say("ib_scale.words")));
         let (scale, range) = (&encoder.scale, encoder.range());
         let id = encoder.session.id;
-        let mut set = |scale: Scale| actions.push(Action::Interbus(id, Interbus::SetScale(scale)));
+        let mut set = |scale: Scale| actions.push(Action::device(id, Interbus::SetScale(scale)));
         let word = skin.say("ib_scale.unit");
         let mut unit = scale.unit();
         entry(ui, skin, &word, |ui| {

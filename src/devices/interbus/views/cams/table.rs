@@ -86,7 +86,7 @@ fn row(
     actions: &mut Vec<Action>,
 ) {
     let (id, program, cam) = (encoder.session.id, chart.program, lane.cam);
-    let mut put = |edit: Edit| actions.push(Action::Interbus(id, Interbus::Edit(Box::new(edit))));
+    let mut put = |edit: Edit| actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
     let ink = if lane.edited { skin.palette.staged } else { skin.palette.text };
     let mut on = lane.on;
     let response = cell(ui, CAM, |ui| ui.checkbox(&mut on, RichText::new(cam.get().to_string()).color(ink)));

@@ -19,7 +19,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             let shifts = (0..=25).filter_map(WindowShift::new).map(|own| (own, own.get().to_string()));
             if choice(ui, &word, &mut wanted, shifts) {
                 let edit = Box::new(Edit::Shift(wanted));
-                actions.push(Action::Interbus(encoder.session.id, Interbus::Edit(edit)));
+                actions.push(Action::device(encoder.session.id, Interbus::Edit(edit)));
             }
             let before = encoder.shift();
             if let Some(before) = before.filter(|before| Some(*before) != known) {

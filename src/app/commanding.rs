@@ -1,0 +1,68 @@
+//! What is asked of one device: by its kind's own actions, or by what every device can be asked for.
+
+use super::action::ReadError;
+use super::devices::{ActContext, DeviceCommand};
+use super::documents::read_error;
+use super::payload::{Payload, WrongKind};
+use super::studio::{SessionId, Studio};
+use super::{AnyDevice, Severity, Text};
+
+impl Studio {
+    /// Asks a device for what every device can be asked for. Links are opened here, and here two sessions meet.
+    pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
+        match command {
+            DeviceCommand::Reconnect => self.reconnect(id),
+            DeviceCommand::WriteInto(target) => self.write_into(id, target),
+            command => self.with_device(id, |device, services| device.obey(command, services)),
+        }
+    }
+
+    fn write_into(&mut self, id: SessionId, target: SessionId) {
+        // Into a device without a memory nothing is written: it takes over what is only looked at, too.
+        let is_written = self.device(id).is_some_and(|device| device.memory().is_some());
+        if is_written && self.is_only_looked_at(id) {
+            return;
+        }
+        let Some(body) = self.device(id).and_then(AnyDevice::wanted_body) else { return };
+        let Some(tab) = self.device(target).map(AnyDevice::tab) else { return };
+        self.show(tab, target);
+        let Some(at) = self.devices.iter().position(|device| device.id() == target) else { return };
+        let taken = self.devices.get_mut(at).map(|device| device.take_over(body, &mut self.services));
+        if let Some(Err(error)) = taken {
+            let place = self.device(id).map(AnyDevice::place).unwrap_or_default();
+            let text = read_error(place.as_ref(), &ReadError::Profile(error));
+            self.services.tell(Severity::Error, vec![text], None);
+        }
+    }
+
+    /// Asks a device for what its kind alone can be asked for.
+    pub(super) fn act_device(&mut self, id: SessionId, action: Payload) {
+        let Some(at) = self.devices.iter().position(|device| device.id() == id) else { return };
+        let mut device = self.devices.remove(at);
+        let mut context = ActContext::new(&mut self.services, &self.devices);
+        let done = device.act(action, &mut context);
+        let next = context.into_next();
+        self.devices.insert(at, device);
+        self.check_kind(done, id);
+        for command in next {
+            self.command(id, command);
+        }
+    }
+
+    /// A task of a device has come back.
+    pub(super) fn device_done(&mut self, id: SessionId, done: Payload) {
+        let mut taken = Ok(());
+        self.with_device(id, |device, services| taken = device.done(done, services));
+        self.check_kind(taken, id);
+    }
+
+    /// An action that reached another kind of device was meant for something that is not there: nothing goes on moving on
+    /// the strength of it.
+    fn check_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
+        if done.is_err() {
+            self.stop_motion();
+            let name = self.device(id).map(AnyDevice::name);
+            self.services.tell(Severity::Error, vec![Text::new("session.wrong_kind")], name.as_deref());
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! What every device can be asked for, whatever its kind.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::AnyDevice;
+use crate::app::action::Action;
+use crate::app::studio::SessionId;
+
+/// What every device can be asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DeviceCommand {
+    /// Open the link again.
+    Reconnect,
+    /// Read everything again.
+    Read,
+    /// Ask where to save a profile.
+    AskSave,
+    /// Show what writing the edits would do.
+    Review,
+    /// Read the position all the time, or no more.
+    Poll(Option<Duration>),
+    /// Read the position once.
+    ReadPosition,
+    /// Take the last edit back.
+    Undo,
+    /// Do it again.
+    Redo,
+    /// Take all edits back.
+    RevertAll,
+    /// Show what restoring a backup would do.
+    Restore(PathBuf),
+    /// Show what writing this profile into a connected device would do.
+    WriteInto(SessionId),
+}
+
+impl AnyDevice {
+    /// Returns the action by which this device is asked.
+    pub fn command(&self, command: DeviceCommand) -> Action {
+        Action::Command(self.id(), command)
+    }
+}
