@@ -9,13 +9,13 @@ use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use encoder_studio::analysis::analysis::Analysis;
 use encoder_studio::analysis::capture::Wishes;
 use encoder_studio::analysis::diagnosis::{Record, diagnose};
 use encoder_studio::analysis::ellipse::Ellipse;
 use encoder_studio::analysis::lissajous::{Density, Square};
 use encoder_studio::analysis::position_error::Samples;
 use encoder_studio::analysis::quality::Limits;
+use encoder_studio::analysis::signal_analysis::Analysis;
 use encoder_studio::store::read_capture;
 use nalgebra::{DMatrix, DVector};
 

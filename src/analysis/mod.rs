@@ -4,7 +4,6 @@
 //!
 //! Follows SICK 8010701 (HIPERFACE, process data channel) and Heydemann, Applied Optics 20, 3382 (1981).
 
-pub mod analysis;
 pub mod arctan;
 pub mod capture;
 pub mod commutation;
@@ -22,6 +21,7 @@ pub mod outliers;
 pub mod position_error;
 pub mod quality;
 pub mod revolution;
+pub mod signal_analysis;
 pub mod spectrum;
 pub mod synchronise;
 mod time;

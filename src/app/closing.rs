@@ -76,8 +76,8 @@ impl Studio {
         let edits = self.devices.iter().any(|device| device.is_dirty());
         let recorded = self.devices.iter().any(|device| device.has_recorded_much());
         if busy || edits || recorded {
-            let lost = |device: &&Box<AnyDevice>| device.is_dirty() && !device.keeps_edits();
-            let text = match self.devices.iter().find(lost) {
+            let lost = |device: &&AnyDevice| device.is_dirty() && !device.keeps_edits();
+            let text = match self.devices.iter().map(Box::as_ref).find(lost) {
                 Some(device) => Text::new("question.session_lost").with("name", device.name()),
                 None if busy => Text::new("question.busy"),
                 None => Text::new(if edits { "question.edits" } else { "question.recording" }),

@@ -1,5 +1,6 @@
 //! The devices on the desk, of whatever kind: what the studio asks of each of them.
 
+mod any_device;
 mod command;
 mod model;
 mod open_device;

@@ -30,8 +30,9 @@ impl Studio {
                 if !remarks.is_empty() {
                     self.services.tell(Severity::Warning, remarks, None);
                 }
-                let own = |device: &&Box<AnyDevice>| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
-                let open = self.devices.iter().find(own).map(|device| device.id());
+                let own =
+                    |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
+                let open = self.devices.iter().map(Box::as_ref).find(own).map(|device| device.id());
                 let id = open.unwrap_or_else(|| self.new_id());
                 if open.is_some() {
                     self.with_device(id, |device, _| device.take_document(file, *document));

@@ -252,8 +252,8 @@ impl Studio {
     /// Something runs that comes to an end by itself, or measures; being read all the time is none of that.
     pub fn works(&self) -> bool {
         let search = self.search().is_some_and(crate::devices::hiperface::state::Search::is_running);
-        let device = |device: &Box<AnyDevice>| device.is_opening() || device.is_busy();
-        self.devices.iter().any(device) || search || self.signals.can_stop()
+        let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
+        self.devices.iter().map(Box::as_ref).any(device) || search || self.signals.can_stop()
     }
 
     /// Live values come in: the picture has to be drawn again and again.

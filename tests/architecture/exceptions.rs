@@ -6,7 +6,6 @@ pub(crate) const KNOWS_A_DEVICE: &[&str] = &[
     "src/app/brakes.rs",
     "src/app/connect/mod.rs",
     "src/app/devices.rs",
-    "src/app/devices/wish.rs",
     "src/app/documents.rs",
     "src/app/explain/detail.rs",
     "src/app/explain/detail/tests.rs",

@@ -1,11 +1,11 @@
 //! The virtual sine/cosine source beside the analysis: what is set in one is found by the other.
 
 use encoder_studio::analysis::Time;
-use encoder_studio::analysis::analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::diagnosis::{Diagnosis, Record, What, diagnose};
 use encoder_studio::analysis::nonlinearity::nonlinearity;
 use encoder_studio::analysis::position_error::Samples;
 use encoder_studio::analysis::quality::Limits;
+use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::wires::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{References, Settings, Source};
 

@@ -279,8 +279,7 @@ fn an_action_of_another_kind_is_told_and_stops_what_moves() {
     let mut screen = moving();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, encoder_studio::devices::ssi::state::Action::Check));
-    until_it_stands(&screen);
-    assert!(!moves(&screen));
+    screen.until("it stands", |studio| !studio.moves());
     let told = screen.studio().services.log.notices().any(|notice| notice.texts[0].id() == "session.wrong_kind");
     assert!(told);
 }

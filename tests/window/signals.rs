@@ -267,7 +267,11 @@ impl Desk {
 
     /// Polls until what is shown is virtual and as good as asked for.
     #[track_caller]
-    fn until_live(&mut self, what: &str, wanted: impl Fn(&encoder_studio::analysis::analysis::Analysis) -> bool) {
+    fn until_live(
+        &mut self,
+        what: &str,
+        wanted: impl Fn(&encoder_studio::analysis::signal_analysis::Analysis) -> bool,
+    ) {
         self.until(what, |studio| {
             let shown = studio.signals.measurement().filter(|own| own.origin == Origin::Virtual);
             shown.and_then(|own| own.analysis.as_ref().ok()).is_some_and(&wanted)

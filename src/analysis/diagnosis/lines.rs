@@ -9,9 +9,9 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::LEAST_LINE;
-use crate::analysis::analysis::Analysis;
 use crate::analysis::ellipse::Correction;
 use crate::analysis::position_error::Samples;
+use crate::analysis::signal_analysis::Analysis;
 use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 
 /// Frequencies of the mains.

@@ -15,10 +15,10 @@ pub use compare::{Changes, Untold, compare};
 pub use finding::{Finding, Severity, Stuck, What};
 pub use lines::Interference;
 
-use super::analysis::{Analysis, AnalysisError};
 use super::ellipse::{Channel, FitError};
 use super::position_error::Samples;
 use super::quality::{Finding as OutOfLimits, Limits, Verdict, within};
+use super::signal_analysis::{Analysis, AnalysisError};
 use super::wires::Wire;
 
 /// Hum and interference below this share of the amplitude are not told.

@@ -3,10 +3,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::analysis::analysis::Analysis;
 use crate::analysis::ellipse::Channel;
 use crate::analysis::outliers::kept;
 use crate::analysis::position_error::Samples;
+use crate::analysis::signal_analysis::Analysis;
 
 /// Sectors of the period in which the distance from the ellipse is averaged.
 const SECTORS: usize = 64;

@@ -2,9 +2,9 @@
 //! disturbances in what the ellipse was fitted to, columns that are no differences.
 
 use super::{Finding, OutOfLimits, Severity, WARNING_SHARE, What};
-use crate::analysis::analysis::Analysis;
 use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::Basis;
+use crate::analysis::signal_analysis::Analysis;
 
 /// Mean level of a wire, and its amplitude, peak, in volts: 2.0 … 3.0 V and 0.5 Vpp by section 1 of the project's
 /// sine/cosine reference, with room for levels and amplitudes that are not in order.

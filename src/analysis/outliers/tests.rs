@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::analysis::analysis::{Analysis, AnalysisError};
 use crate::analysis::position_error::{Basis, Samples};
+use crate::analysis::signal_analysis::{Analysis, AnalysisError};
 
 const ELLIPSE: Ellipse =
     Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.02, offset_sine_v: -0.03, gain_ratio: 1.05, phase_error_rad: 0.05 };

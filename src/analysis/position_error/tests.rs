@@ -1,8 +1,8 @@
 //! Errors that were put in come out; what is not an error of the signals does not.
 
 use super::*;
-use crate::analysis::analysis::{Analysis, AnalysisError};
 use crate::analysis::ellipse::{Channel, FitError};
+use crate::analysis::signal_analysis::{Analysis, AnalysisError};
 
 const CIRCLE: Ellipse =
     Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 };

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use super::file;
-use crate::analysis::analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::analysis::capture::CaptureError;
 use crate::analysis::diagnosis::{Finding, Stuck, Untold, What};
 use crate::analysis::ellipse::{Channel, FitError, LEAST_POINTS};
 use crate::analysis::nonlinearity::NonlinearityError;
 use crate::analysis::quality::{Finding as Parameter, Verdict};
 use crate::analysis::revolution::RevolutionError;
+use crate::analysis::signal_analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::analysis::spectrum::SpectrumError;
 use crate::app::Text;
 use crate::app::number::decimals;

@@ -8,12 +8,12 @@ use clap::{ArgMatches, Args};
 use serde_json::{Value as Json, json};
 
 use self::args::Analyse;
-use crate::analysis::analysis::Analysis;
 use crate::analysis::capture::{Capture, Layout, Wishes};
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
 use crate::analysis::position_error::{Basis, Samples, harmonics};
 use crate::analysis::quality::Family;
 use crate::analysis::revolution::Revolution;
+use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Text, explain};
 use crate::cli::args::Common;
 use crate::cli::commands::{OwnCommand, parse};

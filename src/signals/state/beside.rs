@@ -3,12 +3,12 @@
 //! 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
-use crate::analysis::analysis::Analysis;
 use crate::analysis::arctan::{Phase, exact};
 use crate::analysis::capture::Capture;
 use crate::analysis::nonlinearity::{Deviation, Nonlinearity};
 use crate::analysis::outliers::kept;
 use crate::analysis::revolution::{Revolution, RevolutionError};
+use crate::analysis::signal_analysis::Analysis;
 use crate::analysis::synchronise::{STEPS, measure_offset};
 use crate::app::Text;
 

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{AbsoluteOffset, Example, NoOffset, Nonlinearities, Spectra, beside};
-use crate::analysis::analysis::{Analysis, AnalysisError};
 use crate::analysis::capture::Capture;
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
 use crate::analysis::ellipse::Correction;
@@ -14,6 +13,7 @@ use crate::analysis::lissajous::{Density, Square};
 use crate::analysis::position_error::Samples;
 use crate::analysis::quality::Family;
 use crate::analysis::revolution::RevolutionError;
+use crate::analysis::signal_analysis::{Analysis, AnalysisError};
 use crate::analysis::spectrum::SpectrumError;
 use crate::app::{Language, Text, explain};
 

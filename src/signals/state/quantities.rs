@@ -2,9 +2,9 @@
 //! `signal::quality` has them; SICK 8010701 for amplitudes and bandwidth.
 
 use super::Results;
-use crate::analysis::analysis::{Analysis, LEAST_OCTANTS};
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
 use crate::analysis::quality::{Family, Verdict};
+use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
 
 /// A number that was measured.
 #[derive(Clone, Debug, PartialEq)]

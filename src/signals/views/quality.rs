@@ -5,10 +5,10 @@ use std::sync::Arc;
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
 use super::{View, numbers, source};
-use crate::analysis::analysis::Analysis;
 use crate::analysis::diagnosis::{Changes, Finding, Severity};
 use crate::analysis::lissajous::Square;
 use crate::analysis::quality::Family;
+use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Action, Text, explain};
 use crate::signals::state::{Action as Signals_, Measurement, Results, Signals, forms, quantities};
 use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};

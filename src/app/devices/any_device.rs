@@ -1,0 +1,147 @@
+//! What follows for every device from what is asked of it.
+
+use std::any::Any;
+use std::path::{Path, PathBuf};
+
+use super::AnyDevice;
+use super::model::DeviceMemory;
+use crate::app::Text;
+use crate::app::action::{ReadError, ReviewAction};
+use crate::app::closing::MUCH;
+use crate::app::review::Sheet;
+use crate::app::services::Services;
+use crate::app::session::{Listed, Opening, Phase, Source};
+use crate::app::studio::SessionId;
+use crate::app::trace::TraceLog;
+use crate::profile::Document;
+use crate::store::{Backup, DeviceKey, Entry, StatusEntry};
+
+impl AnyDevice {
+    /// Returns the device as what it is; `None` where it is of another kind.
+    pub fn get<M: Any>(&self) -> Option<&M> {
+        (self as &dyn Any).downcast_ref()
+    }
+
+    pub(crate) fn get_mut<M: Any>(&mut self) -> Option<&mut M> {
+        (self as &mut dyn Any).downcast_mut()
+    }
+
+    /// Its number in the studio.
+    pub fn id(&self) -> SessionId {
+        self.state().id
+    }
+
+    /// The name by which the log and the jobs call it.
+    pub fn name(&self) -> String {
+        self.state().name()
+    }
+
+    /// Where the data come from, in words that may be seen.
+    pub fn place(&self) -> String {
+        self.state().place()
+    }
+
+    /// Where the data come from.
+    pub fn source(&self) -> &Source {
+        &self.state().source
+    }
+
+    /// How it stands with the connection.
+    pub fn phase(&self) -> &Phase {
+        &self.state().phase
+    }
+
+    pub(in crate::app) fn phase_mut(&mut self) -> &mut Phase {
+        &mut self.state_mut().phase
+    }
+
+    /// Its link is being opened.
+    pub(in crate::app) fn is_opening(&self) -> bool {
+        self.state().opening.is_some()
+    }
+
+    pub(in crate::app) fn opening_mut(&mut self) -> &mut Option<Opening> {
+        &mut self.state_mut().opening
+    }
+
+    /// What has passed over the line.
+    pub fn trace(&self) -> &TraceLog {
+        &self.state().trace
+    }
+
+    /// This is the attempt to open its link that counts.
+    pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
+        self.state().is_attempt(attempt)
+    }
+
+    /// Backups, or why there are none; `None`: not asked for yet.
+    pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
+        self.state().backups.as_ref()
+    }
+
+    /// Writes of this device that the logbook knows, or why it does not tell; `None`: not asked for yet.
+    pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
+        self.state().writes.as_ref()
+    }
+
+    /// Status codes of this device that the logbook knows, the newest first.
+    pub fn statuses(&self) -> &[StatusEntry] {
+        &self.state().statuses
+    }
+
+    /// A review of a write is open.
+    pub fn is_reviewing(&self) -> bool {
+        self.memory().is_some_and(DeviceMemory::is_reviewing)
+    }
+
+    /// The review of a write, where one is on its way.
+    pub fn sheet(&self) -> Option<Sheet> {
+        self.memory()?.sheet()
+    }
+
+    pub(in crate::app) fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
+        if let Some(memory) = self.memory_mut() {
+            memory.act_review(action, services);
+        }
+    }
+
+    pub(in crate::app) fn close_review(&mut self) {
+        if let Some(memory) = self.memory_mut() {
+            memory.close_review();
+        }
+    }
+
+    /// Backups and writes were listed.
+    pub(in crate::app) fn listed(&mut self, of: &DeviceKey, listed: Listed) {
+        if let Some(memory) = self.memory_mut() {
+            memory.listed(of, listed);
+        }
+    }
+
+    /// A backup was read, or not.
+    pub(in crate::app) fn take_backup(
+        &mut self,
+        of: &DeviceKey,
+        path: &Path,
+        result: Result<Box<Document>, ReadError>,
+        services: &mut Services,
+    ) {
+        if let Some(memory) = self.memory_mut() {
+            memory.take_backup(of, path, result, services);
+        }
+    }
+
+    /// There are minutes of a recording that no table has.
+    pub(in crate::app) fn has_recorded_much(&self) -> bool {
+        self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
+    }
+
+    pub(in crate::app) fn suggested_file(&self) -> PathBuf {
+        self.state().suggested_file()
+    }
+
+    /// A save has come to a question: another one may begin.
+    pub(in crate::app) fn save_waits(&mut self) {
+        self.state_mut().is_saving = false;
+    }
+}
