@@ -1,5 +1,6 @@
 //! What a person, a view or a finished task asks of the studio.
 
+use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,20 +8,18 @@ use super::connect;
 use super::devices::DeviceCommand;
 use super::diverged::{Diverged, Resolve};
 use super::keep::{SettingsRead, SettingsWritten};
+use super::leaving::Leaver;
 use super::payload::Payload;
 use super::recorder::{self, Exported};
 use super::review::Permit;
+use super::services::Services;
 use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::{Language, Picture, Settings, Text, Theme};
-use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::protocol::Descriptions;
-use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;
-use crate::devices::interbus::jobs::Interbus;
-use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::protocol::Families;
 use crate::devices::ssi::state as ssi;
 use crate::link::LinkError;
@@ -137,16 +136,8 @@ pub enum Done {
         /// There is.
         exists: bool,
     },
-    /// A link to a HIPERFACE encoder was opened, or not.
-    OpenedHiperface(Attempt<Hiperface>),
-    /// A link to a BiSS encoder was opened, or not.
-    OpenedBiss(Attempt<Biss>),
-    /// A link to an SSI encoder was opened, or not.
-    OpenedSsi(Attempt<Ssi>),
-    /// A link to an INTERBUS encoder was opened, or not.
-    OpenedInterbus(Attempt<Interbus>),
-    /// A link to HIPERDRIVE drives was opened, or not.
-    OpenedHiperdrive(Attempt<Hiperdrive>),
+    /// A link was opened for a session, or not.
+    Opened(Attempt),
     /// Devices that answer in this network, or why nobody could be asked.
     FoundDrives(u32, Result<Vec<crate::devices::hiperdrive::state::FoundDevice>, Text>),
     /// The families of SSI encoders were read, with what is wrong with those of the user's own.
@@ -220,13 +211,13 @@ pub enum Done {
 }
 
 /// What came of opening a link for a session.
-pub struct Attempt<D: Kind> {
+pub struct Attempt {
     /// For whom.
     pub session: SessionId,
     /// Which attempt of that session: only its latest counts.
     pub attempt: u32,
     /// The session on its thread.
-    pub result: Result<Box<Opened<D>>, Box<OpenFailed>>,
+    pub(super) result: Result<Box<dyn AnyOpened>, Box<OpenFailed>>,
 }
 
 /// A session on its thread, with the ring that its trace goes into.
@@ -245,6 +236,25 @@ pub struct Opened<D: Kind> {
     pub(crate) began: jiff::Zoned,
     /// Who waits for the wire waits until this is dropped.
     pub(super) turn: crossbeam_channel::Sender<()>,
+}
+
+/// A session on its thread, of a kind of device that is not known on the way.
+pub(super) trait AnyOpened: Any + Send {
+    /// Lets it go: nobody wants it any more.
+    fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
+
+    fn into_any(self: Box<Self>) -> Box<dyn Any>;
+}
+
+impl<D: Kind> AnyOpened for Opened<D> {
+    fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services) {
+        let Opened { worker, url, turn, .. } = *self;
+        services.leave(worker, Leaver { session, about: url.to_string(), url, write: None }, Some(turn));
+    }
+
+    fn into_any(self: Box<Self>) -> Box<dyn Any> {
+        self
+    }
 }
 
 /// What has had time enough before the window closes; the later ones include those before.

@@ -58,7 +58,7 @@ impl Studio {
 
     /// An action that reached another kind of device was meant for something that is not there: nothing goes on moving on
     /// the strength of it.
-    fn check_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
+    pub(super) fn check_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
         if done.is_err() {
             self.stop_motion();
             let name = self.device(id).map(AnyDevice::name);

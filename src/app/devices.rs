@@ -7,7 +7,7 @@ mod open_device;
 mod shown;
 
 pub use command::DeviceCommand;
-pub(crate) use model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
+pub(crate) use model::{ActContext, DeviceMemory, DeviceModel, MotionControl, Prepare};
 pub use open_device::{AnyDevice, OpenDevice};
 pub(super) use shown::Shown;
 

@@ -44,7 +44,7 @@ pub(crate) mod track;
 
 pub use action::{Action, Desk, Done, FileQuestion, ReviewAction};
 pub use brakes::Brakes;
-pub(crate) use devices::{ActContext, DeviceMemory, DeviceModel, MotionControl};
+pub(crate) use devices::{ActContext, DeviceMemory, DeviceModel, MotionControl, Prepare};
 pub use devices::{AnyDevice, DeviceCommand, OpenDevice};
 pub use hold::{HoldEvent, HoldInput, HoldScene, HoldState};
 pub use keep::{SettingsRead, SettingsWritten};

@@ -4,20 +4,15 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::devices::device_at_link;
-use super::leaving::{Leaver, same_wire};
+use super::leaving::same_wire;
 use super::question::{Question, Then};
-use super::services::{JobEnd, World};
+use super::services::{JobEnd, Services, World};
 use super::session::{Kind, Opening, Phase, Source, without_codes};
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text};
-use crate::devices::biss::jobs::Biss;
-use crate::devices::hiperdrive::jobs::Hiperdrive;
-use crate::devices::hiperface::jobs::{Hiperface, may_have_other_master};
-use crate::devices::interbus::jobs::Interbus;
-use crate::devices::ssi::jobs::Ssi;
-use crate::devices::ssi::state as ssi;
+use crate::devices::hiperface::jobs::may_have_other_master;
 use crate::link::{LinkUrl, Scheme, TraceEntry};
 use crate::worker::{Ring, Session, Worker};
 
@@ -153,36 +148,42 @@ impl Studio {
     /// Another attempt to open a link for a session: from now on only its result counts.
     fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl) {
         let attempt = self.new_number();
-        let Some(device) = self.device_mut(id) else { return };
-        let (tab, earlier) = (device.tab(), device.opening_mut().take().map(|opening| opening.over));
-        let over = match tab {
-            Tab::Hiperface => {
-                let codes = self.services.world.codes.clone();
-                let prepare = move |session: &mut Session<Hiperface>| {
-                    for (number, code) in codes {
-                        session.codes_mut().set(number, code);
-                    }
-                };
-                self.open_task(url, earlier, prepare, opened(id, attempt))
-            }
-            Tab::Biss => self.open_task(url, earlier, |_: &mut Session<Biss>| (), opened(id, attempt)),
-            Tab::Ssi => {
-                let asking = self.device(id).and_then(|device| device.get::<ssi::Encoder>()).map(ssi::Encoder::asking);
-                let prepare =
-                    move |session: &mut Session<Ssi>| asking.into_iter().for_each(|own| session.ask_like(own));
-                self.open_task(url, earlier, prepare, opened(id, attempt))
-            }
-            Tab::Interbus => self.open_task(url, earlier, |_: &mut Session<Interbus>| (), opened(id, attempt)),
-            Tab::Hiperdrive => self.open_task(url, earlier, |_: &mut Session<Hiperdrive>| (), opened(id, attempt)),
-            // No device is shown there.
-            Tab::Signals => return,
-        };
-        if let Some(device) = self.device_mut(id) {
-            *device.phase_mut() = Phase::Opening;
-            *device.opening_mut() = Some(Opening { attempt: Some(attempt), over });
-        }
+        self.signals.source.free_wire(&url, &mut self.services);
+        let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) else { return };
+        let earlier = device.opening_mut().take().map(|opening| opening.over);
+        let over = device.open(url, attempt, earlier, &mut self.services);
+        *device.phase_mut() = Phase::Opening;
+        *device.opening_mut() = Some(Opening { attempt: Some(attempt), over });
     }
 
+    /// A link was opened, or not.
+    pub(super) fn opened(&mut self, done: Attempt) {
+        let Attempt { session, attempt, result } = done;
+        let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);
+        let Some(device) = self.devices.iter_mut().find(own) else {
+            if let Ok(opened) = result {
+                // Its session was closed, or has opened another one since.
+                opened.turn_away(session, &mut self.services);
+            }
+            return;
+        };
+        match result {
+            Ok(opened) => {
+                if let Source::Link(url) = device.source() {
+                    self.settings.use_link(device.tab(), &without_codes(url));
+                }
+                let taken = device.connect(opened, &mut self.services);
+                self.check_kind(taken, session);
+            }
+            Err(failed) => {
+                let why = device.open_failed(&failed);
+                device.lose(why, &mut self.services);
+            }
+        }
+    }
+}
+
+impl Services {
     /// Opens a link on a thread, after an earlier attempt and after whoever still holds the wire. What it gives tells by
     /// its end that the wire is free again, or in use.
     pub(crate) fn open_task<D: Kind>(
@@ -193,10 +194,9 @@ impl Studio {
         done: impl FnOnce(Result<Box<Opened<D>>, Box<OpenFailed>>) -> Done + Send + 'static,
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
-        let (world, wake) = (self.services.world.clone(), self.services.tasks.wake());
-        self.signals.source.free_wire(&url, &mut self.services);
-        let endings = self.services.endings_on(&url);
-        self.services.tasks.run("open", move || {
+        let (world, wake) = (self.world.clone(), self.tasks.wake());
+        let endings = self.endings_on(&url);
+        self.tasks.run("open", move || {
             if let Some(earlier) = earlier {
                 // Nothing is ever sent: it ends, or hangs for ever.
                 let _ = earlier.recv_timeout(world.patience.job);
@@ -207,40 +207,6 @@ impl Studio {
         });
         over
     }
-
-    /// A link was opened, or not; `take` gives it to the session that waits for it.
-    pub(super) fn opened<D: Kind>(&mut self, done: Attempt<D>, take: impl FnOnce(&mut Studio, SessionId, Opened<D>)) {
-        let Attempt { session, attempt, result } = done;
-        let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);
-        let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(own)) else {
-            if let Ok(opened) = result {
-                self.turn_away(*opened, session);
-            }
-            return;
-        };
-        match result {
-            Ok(opened) => {
-                if let Source::Link(url) = device.source() {
-                    self.settings.use_link(device.tab(), &without_codes(url));
-                }
-                take(self, session, *opened);
-            }
-            Err(failed) => device.lose(D::open_failed(&failed), &mut self.services),
-        }
-    }
-
-    /// Nobody wants any more what was opened: its session was closed, or has opened another one since.
-    pub(super) fn turn_away<D: Kind>(&mut self, opened: Opened<D>, session: SessionId) {
-        let Opened { worker, url, turn, .. } = opened;
-        self.services.leave(worker, Leaver { session, about: url.to_string(), url, write: None }, Some(turn));
-    }
-}
-
-fn opened<D: Kind>(
-    session: SessionId,
-    attempt: u32,
-) -> impl FnOnce(Result<Box<Opened<D>>, Box<OpenFailed>>) -> Done + Send + 'static {
-    move |result| D::opened(Attempt { session, attempt, result })
 }
 
 fn open<D: Kind>(

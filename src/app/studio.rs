@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::action::{Action, Done, FileQuestion, Waited};
+use super::action::{Action, AnyOpened, Done, FileQuestion, Waited};
 use super::connect::Connect;
-use super::devices::DeviceModel;
 use super::devices::{AnyDevice, Shown};
 use super::diverged::Diverged;
 use super::documents::{is_capture, read_document};
@@ -16,10 +15,7 @@ use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
 use super::{Settings, Severity, Text, explain};
 use crate::devices::biss::state as biss;
-use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::hiperface::state::Encoder;
-use crate::devices::interbus::state as interbus;
-use crate::devices::ssi::state as ssi;
 use crate::link::LinkUrl;
 use crate::signals::state::{self as signals, Signals};
 
@@ -285,40 +281,18 @@ impl Studio {
         }
     }
 
-    fn with_model<M: DeviceModel>(&mut self, id: SessionId, act: impl FnOnce(&mut M, &mut Services)) {
-        self.with_device(id, |device, services| {
-            if let Some(model) = device.get_mut() {
-                act(model, services);
-            }
-        });
-    }
-
     fn done(&mut self, done: Done) {
         match done {
-            Done::OpenedBiss(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_model::<biss::Encoder>(id, |encoder, services| encoder.connect(opened, services));
-            }),
-            Done::OpenedSsi(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_model::<ssi::Encoder>(id, |encoder, services| encoder.connect(opened, services));
-            }),
-            Done::OpenedInterbus(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_model::<interbus::Encoder>(id, |encoder, services| encoder.connect(opened, services));
-            }),
-            Done::OpenedHiperdrive(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_model::<hiperdrive::Unit>(id, |unit, services| unit.connect(opened, services));
-            }),
+            Done::Opened(attempt) => self.opened(attempt),
             Done::FoundDrives(number, found) => self.found_drives(number, found),
             Done::Device(id, done) => self.device_done(id, done),
             Done::Families(families, broken) => self.take_families(families, &broken),
-            Done::OpenedHiperface(attempt) => self.opened(attempt, |studio, id, opened| {
-                studio.with_model::<Encoder>(id, |encoder, services| encoder.connect(opened, services));
-            }),
             Done::OpenedForSearch { number, result } => {
                 let search = self.connect.as_mut().and_then(|connect| connect.search.as_mut());
                 match (search.filter(|search| search.number == number && search.is_running()), result) {
                     (Some(search), result) => search.opened(result, &self.services),
                     // One that was ended while it opened has no use for it.
-                    (None, Ok(opened)) => self.turn_away(*opened, SessionId(number)),
+                    (None, Ok(opened)) => opened.turn_away(SessionId(number), &mut self.services),
                     (None, Err(_)) => {}
                 }
             }

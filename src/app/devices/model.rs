@@ -3,17 +3,18 @@
 use std::any::Any;
 use std::path::{Path, PathBuf};
 
-use crate::app::action::{ReadError, ReviewAction};
+use crate::app::action::{Opened, ReadError, ReviewAction};
 use crate::app::documents::only_looked_at;
 use crate::app::recorder::Recorder;
 use crate::app::review::Sheet;
-use crate::app::services::Services;
+use crate::app::services::{Services, World};
 use crate::app::session::{Drafted, Listed, OnLine, Saved};
 use crate::app::studio::SessionId;
 use crate::app::{AnyDevice, DeviceAction, DeviceCommand, SineCosineSource, Tab, Text};
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::DeviceKey;
+use crate::worker;
 
 /// A device, or a profile of one, with everything that is known of it.
 pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
@@ -25,6 +26,14 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
 
     /// What its own tasks come back with.
     type Done: Any + Send;
+
+    /// Returns what is done with a session before it goes to its thread.
+    fn prepare(&self, _world: &World) -> Prepare<Self::Device> {
+        Box::new(|_| ())
+    }
+
+    /// Takes the session of a link that was opened for it.
+    fn connect(&mut self, opened: Opened<Self::Device>, services: &mut Services);
 
     /// Does what this kind alone can be asked for.
     fn act(&mut self, action: Self::Action, context: &mut ActContext<'_>);
@@ -129,6 +138,9 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
         None
     }
 }
+
+/// What is done with a session before it goes to its thread.
+pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
 /// What an action of a device may use beside the device.
 pub(crate) struct ActContext<'a> {

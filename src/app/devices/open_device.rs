@@ -4,11 +4,15 @@
 use std::any::Any;
 use std::path::PathBuf;
 
+use crossbeam_channel::Receiver;
+
 use super::command::DeviceCommand;
 use super::model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
+use crate::app::action::{AnyOpened, Attempt, Done, OpenFailed};
 use crate::app::line::Progressing;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
+use crate::app::session::Kind;
 use crate::app::session::{DraftDone, Drafted, OnLine, ProfileFile, Saving, SessionState, Source};
 use crate::app::{Payload, SineCosineSource, Tab, Text, WrongKind};
 use crate::link::LinkUrl;
@@ -83,6 +87,12 @@ pub trait OpenDevice: Any {
     fn motion(&self) -> Option<&dyn MotionControl>;
     #[doc(hidden)]
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl>;
+    #[doc(hidden)]
+    fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()>;
+    #[doc(hidden)]
+    fn open_failed(&self, failed: &OpenFailed) -> Text;
+    #[doc(hidden)]
+    fn connect(&mut self, opened: Box<dyn AnyOpened>, services: &mut Services) -> Result<(), WrongKind>;
     #[doc(hidden)]
     fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), WrongKind>;
     #[doc(hidden)]
@@ -243,6 +253,25 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         DeviceModel::motion_mut(self)
+    }
+
+    fn open_failed(&self, failed: &OpenFailed) -> Text {
+        M::Device::open_failed(failed)
+    }
+
+    fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()> {
+        let session = self.session().id;
+        let prepare = DeviceModel::prepare(self, &services.world);
+        services.open_task::<M::Device>(url, earlier, prepare, move |result| {
+            let result = result.map(|opened| opened as Box<dyn AnyOpened>);
+            Done::Opened(Attempt { session, attempt, result })
+        })
+    }
+
+    fn connect(&mut self, opened: Box<dyn AnyOpened>, services: &mut Services) -> Result<(), WrongKind> {
+        let opened = opened.into_any().downcast().map_err(|_| WrongKind)?;
+        DeviceModel::connect(self, *opened, services);
+        Ok(())
     }
 
     fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), WrongKind> {

@@ -1,6 +1,6 @@
 //! What a kind of device tells the studio of its types, so that opening, leaving and running are the same for all.
 
-use crate::app::action::{Attempt, Done, OpenFailed};
+use crate::app::action::OpenFailed;
 use crate::app::services::{JobEnd, Opener, World};
 use crate::app::session::{DraftEdits, first};
 use crate::app::{Severity, Text, explain};
@@ -22,9 +22,6 @@ pub trait Kind: Device + Sized {
 
     /// Opens links to such devices.
     fn opener(world: &World) -> &Opener<Self>;
-
-    /// What a task that opened a link, or could not, comes back with.
-    fn opened(attempt: Attempt<Self>) -> Done;
 
     /// Why a link could not be opened, and what to do.
     fn open_failed(failed: &OpenFailed) -> Text {

@@ -4,16 +4,22 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use super::{Action, Encoder};
+use crate::app::action::Opened;
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::Saved;
 use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Tab};
+use crate::devices::biss::jobs::Biss;
 use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Biss;
     type Action = Action;
     type Done = Infallible;
+
+    fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
+        Encoder::connect(self, opened, services);
+    }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context);

@@ -3,7 +3,7 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::action::{Attempt, Done, Opened};
+use crate::app::action::Opened;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory, first};
@@ -27,10 +27,6 @@ impl Kind for Biss {
 
     fn opener(world: &World) -> &Opener<Self> {
         &world.open_biss
-    }
-
-    fn opened(attempt: Attempt<Self>) -> Done {
-        Done::OpenedBiss(attempt)
     }
 
     fn job(job: &BissJob) -> Text {

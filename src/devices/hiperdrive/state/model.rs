@@ -4,16 +4,22 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use super::{Action, Unit};
+use crate::app::action::Opened;
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::Saved;
 use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, MotionControl, Tab};
+use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Unit {
     const TAB: Tab = Tab::Hiperdrive;
     type Action = Action;
     type Done = Infallible;
+
+    fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
+        Unit::connect(self, opened, services);
+    }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Unit::act(self, action, context.services);

@@ -6,7 +6,7 @@ use super::drafts::Edits;
 use super::job;
 use super::review::ReviewState;
 use super::unit::Unit;
-use crate::app::action::{Attempt, Done, Opened};
+use crate::app::action::Opened;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
@@ -49,10 +49,6 @@ impl Kind for Hiperdrive {
 
     fn opener(world: &World) -> &Opener<Self> {
         &world.open_hiperdrive
-    }
-
-    fn opened(attempt: Attempt<Self>) -> Done {
-        Done::OpenedHiperdrive(attempt)
     }
 
     fn job(job: &HiperdriveJob) -> Text {

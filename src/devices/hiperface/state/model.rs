@@ -4,16 +4,31 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use super::{Action, Encoder};
+use crate::app::action::Opened;
 use crate::app::recorder::Recorder;
-use crate::app::services::Services;
+use crate::app::services::{Services, World};
 use crate::app::session::Saved;
-use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, SineCosineSource, Tab};
+use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Prepare, SineCosineSource, Tab};
+use crate::devices::hiperface::jobs::Hiperface;
 use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Hiperface;
     type Action = Action;
     type Done = Infallible;
+
+    fn prepare(&self, world: &World) -> Prepare<Hiperface> {
+        let codes = world.codes.clone();
+        Box::new(move |session| {
+            for (number, code) in codes {
+                session.codes_mut().set(number, code);
+            }
+        })
+    }
+
+    fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
+        Encoder::connect(self, opened, services);
+    }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context.services);

@@ -4,7 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::words;
-use crate::app::action::{Attempt, Done, OpenFailed, Opened};
+use crate::app::action::{OpenFailed, Opened};
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
@@ -29,10 +29,6 @@ impl Kind for Hiperface {
 
     fn opener(world: &World) -> &Opener<Self> {
         &world.open_hiperface
-    }
-
-    fn opened(attempt: Attempt<Self>) -> Done {
-        Done::OpenedHiperface(attempt)
     }
 
     fn open_failed(failed: &OpenFailed) -> Text {

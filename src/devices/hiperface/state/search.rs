@@ -144,7 +144,8 @@ impl Studio {
         };
         let number = self.new_number();
         let done = move |result| Done::OpenedForSearch { number, result };
-        let over = self.open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
+        self.signals.source.free_wire(&url, &mut self.services);
+        let over = self.services.open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
         let search = Search { number, url, options, line: None, over, found: Vec::new(), end: None };
         if let Some(connect) = &mut self.connect {
             connect.search = Some(search);

@@ -3,16 +3,22 @@
 use std::path::PathBuf;
 
 use super::{Action, Done, Encoder};
+use crate::app::action::Opened;
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::Saved;
 use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Tab};
+use crate::devices::interbus::jobs::Interbus;
 use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Interbus;
     type Action = Action;
     type Done = Done;
+
+    fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
+        Encoder::connect(self, opened, services);
+    }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context.services);

@@ -4,7 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::job;
 use super::trace::Meaning;
-use crate::app::action::{Attempt, Done, Opened};
+use crate::app::action::Opened;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Cut, Kind, OnLine, Saved, WithMemory};
@@ -28,10 +28,6 @@ impl Kind for Interbus {
 
     fn opener(world: &World) -> &Opener<Self> {
         &world.open_interbus
-    }
-
-    fn opened(attempt: Attempt<Self>) -> Done {
-        Done::OpenedInterbus(attempt)
     }
 
     fn job(job: &InterbusJob) -> Text {

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use super::design::Edit;
 use super::{Action, Done, Encoder};
+use crate::app::action::Opened;
 use crate::app::recorder::Recorder;
-use crate::app::services::Services;
-use crate::app::{ActContext, DeviceCommand, DeviceModel, Tab};
+use crate::app::services::{Services, World};
+use crate::app::{ActContext, DeviceCommand, DeviceModel, Prepare, Tab};
+use crate::devices::ssi::jobs::Ssi;
 use crate::link::LinkUrl;
 use crate::profile::{Body, ProfileError};
 
@@ -14,6 +16,15 @@ impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Ssi;
     type Action = Action;
     type Done = Done;
+
+    fn prepare(&self, _world: &World) -> Prepare<Ssi> {
+        let asking = self.asking();
+        Box::new(move |session| session.ask_like(asking))
+    }
+
+    fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
+        Encoder::connect(self, opened, services);
+    }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context);

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::{trace, words};
-use crate::app::action::{Attempt, Done, Opened};
+use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Opener, Services, World};
 use crate::app::session::{Drafted, Kind, OnLine};
 use crate::app::{Severity, Text};
@@ -29,10 +29,6 @@ impl Kind for Ssi {
 
     fn opener(world: &World) -> &Opener<Self> {
         &world.open_ssi
-    }
-
-    fn opened(attempt: Attempt<Self>) -> Done {
-        Done::OpenedSsi(attempt)
     }
 
     fn job(job: &SsiJob) -> Text {
