@@ -1,33 +1,33 @@
 //! encoder-studio: configure position encoders and small drives at a desk.
 //!
-//! ARCHITECTURE.md describes the house: six floors, and a file uses only what lies below its own.
+//! ARCHITECTURE.md describes the layers: a module uses only what stands in its own layer or below, and the core knows no
+//! device.
 
-// floor 1: words and numbers
-pub mod analysis;
-pub mod bits;
+// which devices there are, and all that is known of each
+pub mod kinds;
+
 pub mod buses;
 pub mod devices;
 pub mod signals;
-pub mod units;
 
-// floor 2: bytes ↔ meaning, and what is saved
-pub mod profile;
+// the core, highest first: drawing
+pub mod ui;
 
-// floor 3: the world outside
+// the program without drawing
+pub mod app;
+pub mod cli;
+
+// a device's session, and what procedures share
+pub mod device;
+pub mod worker;
+
+// wires, virtual devices, files
 pub mod link;
 pub mod sim;
 pub mod store;
 
-// floor 4: what one does with a device
-pub mod device;
-pub mod worker;
-
-// floor 5: what the program can do, without drawing
-pub mod app;
-pub mod cli;
-
-// floor 6: drawing
-pub mod ui;
-
-// above all: which devices there are
-pub mod kinds;
+// what is saved, and what numbers and samples mean; no I/O
+pub mod analysis;
+pub mod bits;
+pub mod profile;
+pub mod units;
