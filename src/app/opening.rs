@@ -217,7 +217,11 @@ fn open<D: Kind>(
     turn: Sender<()>,
 ) -> Result<Box<Opened<D>>, Box<OpenFailed>> {
     let began = (world.now)();
-    let mut session = D::opener(world)(url, world.store.clone()).map_err(|error| Box::new(OpenFailed::Link(error)))?;
+    let mut session = world
+        .openers
+        .get::<D>()
+        .map_or_else(|| D::open(url, world.store.clone()), |open| open(url, world.store.clone()))
+        .map_err(|error| Box::new(OpenFailed::Link(error)))?;
     prepare(&mut session);
     let (is_virtual, aside) = (session.is_virtual(), D::aside(&session));
     let trace: Ring<TraceEntry> = Ring::new(FRAMES);

@@ -10,40 +10,25 @@ use super::action::{Action, Done, FileQuestion};
 use super::brakes::Brakes;
 use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
+use super::openers::Openers;
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
-use crate::devices::biss::jobs::{self as biss, Biss};
-use crate::devices::hiperdrive::jobs::{self as hiperdrive, Hiperdrive};
 use crate::devices::hiperdrive::procedures::{Error as DriveError, Found};
-use crate::devices::hiperface::jobs::{self as hiperface, Hiperface};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes};
 use crate::devices::hiperface::state::explain as hiperface_words;
-use crate::devices::interbus::jobs::{self as interbus, Interbus};
-use crate::devices::ssi::jobs::{self as ssi, Ssi};
 use crate::devices::ssi::protocol::Families;
-use crate::link::{LinkError, LinkUrl, PortInfo};
+use crate::link::{LinkError, PortInfo};
 use crate::profile::Formats;
 use crate::store::{Folders, Store, StoreError};
-use crate::worker::{JobId, OpenError, Session};
-
-/// Opens links to a kind of device.
-pub type Opener<D> = Arc<dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync>;
+use crate::worker::JobId;
 
 /// The world outside, as the studio reaches it; a test has one of its own.
 #[derive(Clone)]
 pub struct World {
     /// Backups, logbook, drafts, settings.
     pub store: Store,
-    /// Opens links to HIPERFACE encoders.
-    pub open_hiperface: Opener<Hiperface>,
-    /// Opens links to BiSS encoders.
-    pub open_biss: Opener<Biss>,
-    /// Opens links to SSI encoders.
-    pub open_ssi: Opener<Ssi>,
-    /// Opens links to INTERBUS encoders.
-    pub open_interbus: Opener<Interbus>,
-    /// Opens links to HIPERDRIVE drives.
-    pub open_hiperdrive: Opener<Hiperdrive>,
+    /// What opens links in place of a kind's own way.
+    pub openers: Openers,
     /// Asks who is there in this network.
     pub discover: Arc<dyn Fn() -> Result<Vec<Found>, DriveError> + Send + Sync>,
     /// The formats of profiles that can be read.
@@ -65,11 +50,7 @@ impl World {
     pub fn real(store: Store, formats: Formats) -> Self {
         World {
             store,
-            open_hiperface: Arc::new(hiperface::open),
-            open_biss: Arc::new(biss::open),
-            open_ssi: Arc::new(ssi::open),
-            open_interbus: Arc::new(interbus::open),
-            open_hiperdrive: Arc::new(hiperdrive::open),
+            openers: Openers::default(),
             discover: Arc::new(crate::devices::hiperdrive::state::ask_all),
             formats,
             ports: Arc::new(crate::link::ports),
@@ -144,7 +125,7 @@ impl Services {
         if !std::mem::replace(&mut self.families_asked, true) {
             let store = self.world.store.clone();
             self.tasks.run("families", move || {
-                let (families, broken) = ssi::families(&store);
+                let (families, broken) = crate::devices::ssi::jobs::families(&store);
                 Action::Done(Done::Families(Arc::new(families), broken))
             });
         }

@@ -2,6 +2,7 @@
 
 use crate::hiperdrive::command;
 use encoder_studio::app::DeviceCommand;
+use encoder_studio::app::Openers;
 use std::net::Ipv4Addr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -107,7 +108,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
     let outside = Outside::new("");
     let is_bad = bad.clone();
     let world = World {
-        open_hiperdrive: Arc::new(move |url, store| {
+        openers: Openers::default().with(move |url, store| {
             let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
             let target = Target::new(&Config::from_pairs(&[]).unwrap());
             let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));

@@ -1,6 +1,7 @@
 //! A desk for the window's state: a studio in a world of the test's own, with two cables and a link that hangs for ever.
 
 use encoder_studio::app::DeviceCommand;
+use encoder_studio::app::Openers;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -101,47 +102,50 @@ impl Outside {
         let (wires, opens, found) = (self.wires.clone(), self.opens.clone(), self.found.clone());
         let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
         World {
-            open_biss: Arc::new(move |url, store| {
-                let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
-                let way = if url.scheme == Scheme::Bridge { Way::Adapter } else { Way::ConfigPin };
-                let station = encoder_studio::devices::biss::procedures::Station::from_query(&url.query, way, MARGIN)?;
-                let link = Box::new(TestLink::plug_into(wire)?);
-                Ok(Session::over(link, wire.clock(), station, store, None))
-            }),
-            open_interbus: Arc::new(move |url, store| {
-                let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };
-                let station = encoder_studio::devices::interbus::procedures::Station::from_query(&url.query, MARGIN)?;
-                Ok(Session::to_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
-            }),
-            open_hiperdrive: Arc::new(move |url, store| {
-                if url.scheme == Scheme::Sim {
-                    return crate::unhurried::open(url, store);
-                }
-                let Some(wire) = drives.get(&url.target) else { return hiperdrive::open(url, store) };
-                let station =
-                    encoder_studio::devices::hiperdrive::procedures::Station::from_query(&url.query, None, MARGIN)?;
-                let link = Box::new(TestLink::plug_into(wire)?);
-                let way = hiperdrive::Way { wire: link, port: None, station, target: None };
-                Ok(Session::to_target(way, wire.clock(), store))
-            }),
-            open_hiperface: Arc::new(move |url, store| {
-                if url.to_string() == HANGING {
-                    loop {
-                        std::thread::park();
+            openers: Openers::default()
+                .with(move |url, store| {
+                    let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
+                    let way = if url.scheme == Scheme::Bridge { Way::Adapter } else { Way::ConfigPin };
+                    let station =
+                        encoder_studio::devices::biss::procedures::Station::from_query(&url.query, way, MARGIN)?;
+                    let link = Box::new(TestLink::plug_into(wire)?);
+                    Ok(Session::over(link, wire.clock(), station, store, None))
+                })
+                .with(move |url, store| {
+                    let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };
+                    let station =
+                        encoder_studio::devices::interbus::procedures::Station::from_query(&url.query, MARGIN)?;
+                    Ok(Session::to_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
+                })
+                .with(move |url, store| {
+                    if url.scheme == Scheme::Sim {
+                        return crate::unhurried::open(url, store);
                     }
-                }
-                while url.to_string() == SLOW && !opens.load(Ordering::SeqCst) {
-                    std::thread::sleep(Duration::from_millis(1));
-                }
-                let leads_to_port = url.scheme == Scheme::Sim || url.target == SLOW.trim_start_matches("tcp:");
-                let target = if leads_to_port { PORT } else { &url.target };
-                let wire = wires.get(target).ok_or_else(|| LinkError::new(target, LinkErrorKind::NotFound))?;
-                let station = Station::from_query(&url.query, MARGIN)?;
-                let mut link = TestLink::plug_into(wire)?;
-                link.set_format(station.format)?;
-                let is_virtual = url.scheme == Scheme::Sim;
-                Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
-            }),
+                    let Some(wire) = drives.get(&url.target) else { return hiperdrive::open(url, store) };
+                    let station =
+                        encoder_studio::devices::hiperdrive::procedures::Station::from_query(&url.query, None, MARGIN)?;
+                    let link = Box::new(TestLink::plug_into(wire)?);
+                    let way = hiperdrive::Way { wire: link, port: None, station, target: None };
+                    Ok(Session::to_target(way, wire.clock(), store))
+                })
+                .with(move |url, store| {
+                    if url.to_string() == HANGING {
+                        loop {
+                            std::thread::park();
+                        }
+                    }
+                    while url.to_string() == SLOW && !opens.load(Ordering::SeqCst) {
+                        std::thread::sleep(Duration::from_millis(1));
+                    }
+                    let leads_to_port = url.scheme == Scheme::Sim || url.target == SLOW.trim_start_matches("tcp:");
+                    let target = if leads_to_port { PORT } else { &url.target };
+                    let wire = wires.get(target).ok_or_else(|| LinkError::new(target, LinkErrorKind::NotFound))?;
+                    let station = Station::from_query(&url.query, MARGIN)?;
+                    let mut link = TestLink::plug_into(wire)?;
+                    link.set_format(station.format)?;
+                    let is_virtual = url.scheme == Scheme::Sim;
+                    Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
+                }),
             ports: Arc::new(|| Ok(Vec::new())),
             discover: Arc::new(move || Ok(found.clone())),
             patience: self.patience,

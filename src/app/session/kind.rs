@@ -1,9 +1,12 @@
 //! What a kind of device tells the studio of its types, so that opening, leaving and running are the same for all.
 
 use crate::app::action::OpenFailed;
-use crate::app::services::{JobEnd, Opener, World};
+use crate::app::services::JobEnd;
 use crate::app::session::{DraftEdits, first};
 use crate::app::{Severity, Text, explain};
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::worker::OpenError;
 use crate::worker::{Device, Event, JobId, Session};
 
 /// A kind of device on the desk.
@@ -21,7 +24,10 @@ pub trait Kind: Device + Sized {
     fn aside(session: &Session<Self>) -> Self::Aside;
 
     /// Opens links to such devices.
-    fn opener(world: &World) -> &Opener<Self>;
+    ///
+    /// # Errors
+    /// The link cannot be opened, or says what is not for such a device.
+    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
     /// Why a link could not be opened, and what to do.
     fn open_failed(failed: &OpenFailed) -> Text {

@@ -5,15 +5,18 @@ use super::encoder::Encoder;
 use super::words;
 use crate::app::action::Opened;
 use crate::app::review::told;
-use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory, first};
 use crate::app::{Severity, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, JobError, Remark};
 use crate::devices::biss::procedures::{Error, Sample};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::state::explain as explained;
+use crate::link::LinkUrl;
 use crate::link::TraceEntry;
 use crate::sim::Motor;
+use crate::store::Store;
+use crate::worker::OpenError;
 use crate::worker::Session;
 
 impl Kind for Biss {
@@ -25,8 +28,8 @@ impl Kind for Biss {
         session.motor()
     }
 
-    fn opener(world: &World) -> &Opener<Self> {
-        &world.open_biss
+    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
+        crate::devices::biss::jobs::open(url, store)
     }
 
     fn job(job: &BissJob) -> Text {

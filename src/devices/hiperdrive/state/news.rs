@@ -8,7 +8,7 @@ use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::action::Opened;
 use crate::app::review::told;
-use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark};
@@ -17,7 +17,10 @@ use crate::devices::hiperdrive::procedures::dead_man::Ended;
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
 use crate::devices::hiperdrive::sim::Target;
 use crate::devices::hiperdrive::state::explain as words;
+use crate::link::LinkUrl;
 use crate::link::TraceEntry;
+use crate::store::Store;
+use crate::worker::OpenError;
 use crate::worker::Session;
 
 /// How often a drive is asked where it is, to begin with.
@@ -47,8 +50,8 @@ impl Kind for Hiperdrive {
         Aside { motion: session.motion(), target: session.target() }
     }
 
-    fn opener(world: &World) -> &Opener<Self> {
-        &world.open_hiperdrive
+    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
+        crate::devices::hiperdrive::jobs::open(url, store)
     }
 
     fn job(job: &HiperdriveJob) -> Text {

@@ -6,7 +6,7 @@ use super::review::Review;
 use super::words;
 use crate::app::action::{OpenFailed, Opened};
 use crate::app::review::told;
-use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
 use crate::app::{Severity, Text};
 use crate::devices::hiperface::jobs::{
@@ -16,8 +16,11 @@ use crate::devices::hiperface::procedures::{Error, Sample, Station};
 use crate::devices::hiperface::profile::{Item, Op};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, KIND, StatusCode};
 use crate::devices::hiperface::state::explain as explained;
+use crate::link::LinkUrl;
 use crate::link::TraceEntry;
 use crate::profile::Body;
+use crate::store::Store;
+use crate::worker::OpenError;
 use crate::worker::{JobId, Session};
 
 impl Kind for Hiperface {
@@ -27,8 +30,8 @@ impl Kind for Hiperface {
 
     fn aside(_session: &Session<Self>) {}
 
-    fn opener(world: &World) -> &Opener<Self> {
-        &world.open_hiperface
+    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
+        crate::devices::hiperface::jobs::open(url, store)
     }
 
     fn open_failed(failed: &OpenFailed) -> Text {

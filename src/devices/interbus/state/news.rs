@@ -6,15 +6,18 @@ use super::job;
 use super::trace::Meaning;
 use crate::app::action::Opened;
 use crate::app::review::told;
-use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, Saved, WithMemory};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::KIND;
 use crate::devices::interbus::state::explain as words;
+use crate::link::LinkUrl;
 use crate::link::TraceEntry;
 use crate::sim::Motor;
+use crate::store::Store;
+use crate::worker::OpenError;
 use crate::worker::Session;
 
 impl Kind for Interbus {
@@ -26,8 +29,8 @@ impl Kind for Interbus {
         session.motor()
     }
 
-    fn opener(world: &World) -> &Opener<Self> {
-        &world.open_interbus
+    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
+        crate::devices::interbus::jobs::open(url, store)
     }
 
     fn job(job: &InterbusJob) -> Text {

@@ -6,7 +6,7 @@ use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::{trace, words};
 use crate::app::action::Opened;
-use crate::app::services::{JobEnd, Opener, Services, World};
+use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Drafted, Kind, OnLine};
 use crate::app::{Severity, Text};
 use crate::buses::bridge::procedures::AdapterError;
@@ -14,8 +14,11 @@ use crate::devices::ssi::jobs::{JobError, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{Identity, Words};
 use crate::devices::ssi::protocol::KIND;
 use crate::devices::ssi::state::explain as explained;
+use crate::link::LinkUrl;
 use crate::link::TraceEntry;
 use crate::sim::Motor;
+use crate::store::Store;
+use crate::worker::OpenError;
 use crate::worker::{JobId, Session};
 
 impl Kind for Ssi {
@@ -27,8 +30,8 @@ impl Kind for Ssi {
         session.motor()
     }
 
-    fn opener(world: &World) -> &Opener<Self> {
-        &world.open_ssi
+    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
+        crate::devices::ssi::jobs::open(url, store)
     }
 
     fn job(job: &SsiJob) -> Text {
