@@ -204,7 +204,7 @@ pub enum Done {
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
     },
-    /// A task of one kind of device, for one session; see [`Done::device`].
+    /// A task of one kind of device, for one session; see `Done::device`.
     Device(SessionId, Payload),
     /// In the Signals tab.
     Signals(signals::Done),

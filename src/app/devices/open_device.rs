@@ -22,7 +22,7 @@ use crate::store::FileError;
 /// A device, or a profile of one, of whatever kind.
 pub type AnyDevice = dyn OpenDevice;
 
-/// What is asked of every device. [`DeviceModel`] is what a kind implements; this follows from it.
+/// What is asked of every device. `DeviceModel` is what a kind implements; this follows from it.
 #[allow(private_interfaces, reason = "devices within this crate alone see these types")]
 pub trait OpenDevice: Any {
     /// Returns what is the same of every session.
