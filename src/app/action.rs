@@ -240,7 +240,7 @@ pub struct Opened<D: Kind> {
 
 /// A session on its thread, of a kind of device that is not known on the way.
 pub(super) trait AnyOpened: Any + Send {
-    /// Lets it go: nobody wants it any more.
+    /// Closes the session that is no longer needed.
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
 
     fn into_any(self: Box<Self>) -> Box<dyn Any>;

@@ -23,7 +23,7 @@ impl Studio {
         self.motions().any(MotionControl::is_moving)
     }
 
-    /// Something is under way that was asked for here: whoever presses Esc in a fright means that.
+    /// A motion from this window is under way. Escape stops it before anything else.
     pub fn moves_by_hand(&self) -> bool {
         self.motions().any(MotionControl::moves_by_hand)
     }

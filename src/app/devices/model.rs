@@ -41,13 +41,13 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
     /// Does what every device can be asked for, opening a link and writing into another device aside.
     fn command(&mut self, command: DeviceCommand, services: &mut Services);
 
-    /// Takes what a task of its own comes back with.
+    /// Handles the result of a task that this device started.
     fn done(&mut self, done: Self::Done, services: &mut Services);
 
     /// Returns the profile as the user wants it, to be written into another device; `None` where there is none.
     fn wanted_body(&self) -> Option<Body>;
 
-    /// Takes over a profile: shows what writing it would do, or edits what it says.
+    /// Takes over a profile: opens the review of a write, or edits the layout to match it.
     ///
     /// # Errors
     /// It is of another kind of device.
@@ -105,7 +105,7 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
         self.session_mut().stop(services);
     }
 
-    /// Another link leads to the wire from now on.
+    /// Switches to another link for the same wire.
     fn take_link(&mut self, _url: &LinkUrl) {}
 
     /// Returns its memory; `None` for a kind into which nothing is written.

@@ -33,7 +33,7 @@ impl Encoder {
                         run.data = profile.and_then(|body| body.into_profile().ok()).map(Box::new);
                         self.plan(Change::Guided { run: *run, motor }, context.services);
                     }
-                    Err(refusal) => context.services.tell(Severity::Error, vec![refusal], Some(&self.session.name())),
+                    Err(refusal) => context.services.tell(Severity::Error, vec![refusal], None),
                 }
             }
             Action::ReadStatus => self.submit(BissJob::Status, services),
