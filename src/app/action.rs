@@ -4,7 +4,6 @@ use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::connect;
 use super::devices::DeviceCommand;
 use super::diverged::{Diverged, Resolve};
 use super::keep::{SettingsRead, SettingsWritten};
@@ -16,7 +15,7 @@ use super::services::Services;
 use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
 use super::studio::SessionId;
 use super::tab::Tab;
-use super::{Language, Picture, Settings, Text, Theme};
+use super::{Language, Picture, Settings, Text, Theme, connect};
 use crate::devices::biss::protocol::Descriptions;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;

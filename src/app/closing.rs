@@ -1,14 +1,12 @@
 //! Closing a session or the window: what would be lost or cut off is asked about once, and waited for.
 
-use super::AnyDevice;
-use super::Text;
 use super::action::{Action, Done, Waited};
 use super::brakes::Brakes;
 use super::question::{Question, Then};
-use super::recorder;
 use super::services::JobEnd;
 use super::session::Source;
 use super::studio::{SessionId, Studio};
+use super::{AnyDevice, Text, recorder};
 
 /// Nanoseconds of a recording that nobody wants to lose by a click.
 pub(super) const MUCH: i64 = 120_000_000_000;

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, Desk, Done, FileQuestion};
 use super::closing::MUCH;
-use super::connect;
 use super::question::{Question, Then};
 use super::recorder::{self, Exported, Recorder};
 use super::studio::{SessionId, Studio};
-use super::{Picture, Severity, Text, explain};
+use super::{Picture, Severity, Text, connect, explain};
 use crate::devices::hiperdrive::state as hiperdrive;
 use crate::devices::interbus::state as interbus;
 use crate::devices::ssi::state as ssi;

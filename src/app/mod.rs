@@ -65,5 +65,5 @@ pub use sine_cosine::{SineCosineOrigin, SineCosineRange, SineCosineReading, Sine
 pub use studio::{SessionId, Studio};
 pub use tab::Tab;
 pub use tasks::{Mailbox, Tasks, Wake};
-pub use texts::{Language, Text, Texts, decimal};
+pub use texts::{COMMON, Catalogue, Language, Text, decimal};
 pub use trace::{Explained, TraceFault, TraceLine, TraceLog};

@@ -123,8 +123,13 @@ mod tests {
 
     #[test]
     fn what_went_well_does_not_push_away_what_somebody_has_to_read() {
-        let notice =
-            |severity| Notice { at: Zoned::now(), severity, texts: vec![Text::new("x")], about: None, part: None };
+        let notice = |severity| Notice {
+            at: Zoned::now(),
+            severity,
+            texts: vec![Text::new("session.busy")],
+            about: None,
+            part: None,
+        };
         let cases = [
             (Severity::Note, Severity::Good, true),
             (Severity::Good, Severity::Note, true),

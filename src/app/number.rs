@@ -14,14 +14,15 @@ pub fn number(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| plain && value.is_finite())
 }
 
-/// A number from `least` to `most`; `what` is the name of the entry in the table of texts.
+/// A number from `least` to `most`; `what` names the entry.
 ///
 /// # Errors
 /// In words.
-pub(crate) fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, Text> {
-    filled(what, text)?;
+pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
+    let what = what.into();
+    filled(&what, text)?;
     let refused = || {
-        let refusal = Text::new("entry.number").with_text("what", Text::new(what)).with("entry", text.trim());
+        let refusal = Text::new("entry.number").with_text("what", what.clone()).with("entry", text.trim());
         refusal.with_number("least", least, decimals(least)).with_number("most", most, decimals(most))
     };
     number(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
@@ -31,8 +32,9 @@ pub(crate) fn within(what: &'static str, text: &str, least: f64, most: f64) -> R
 ///
 /// # Errors
 /// In words.
-pub(crate) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Result<u32, Text> {
-    filled(what, text)?;
+pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) -> Result<u32, Text> {
+    let what = what.into();
+    filled(&what, text)?;
     let digits = text.trim();
     let value = match digits.strip_prefix("0x") {
         Some(hex) if hex.bytes().all(|c| c.is_ascii_hexdigit()) => u32::from_str_radix(hex, 16).ok(),
@@ -40,7 +42,7 @@ pub(crate) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Re
         _ => None,
     };
     let refused = || {
-        let refusal = Text::new("entry.whole").with_text("what", Text::new(what)).with("entry", digits);
+        let refusal = Text::new("entry.whole").with_text("what", what.clone()).with("entry", digits);
         refusal.with("least", least).with("most", most)
     };
     value.filter(|value| (least..=most).contains(value)).ok_or_else(refused)
@@ -50,8 +52,9 @@ pub(crate) fn whole(what: &'static str, text: &str, least: u32, most: u32) -> Re
 ///
 /// # Errors
 /// In words.
-pub(crate) fn number_or_hex(what: &'static str, text: &str, last: u64) -> Result<u64, Text> {
-    filled(what, text)?;
+pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
+    let what = what.into();
+    filled(&what, text)?;
     let digits = text.trim();
     let hex = digits.strip_prefix("0x").or_else(|| digits.strip_suffix(['h', 'H']));
     let value = match hex {
@@ -60,7 +63,7 @@ pub(crate) fn number_or_hex(what: &'static str, text: &str, last: u64) -> Result
         _ => None,
     };
     let refused = || {
-        let refusal = Text::new("entry.position_range").with_text("what", Text::new(what));
+        let refusal = Text::new("entry.position_range").with_text("what", what.clone());
         refusal.with("entry", digits).with("last", last)
     };
     value.filter(|value| *value <= last).ok_or_else(refused)
@@ -103,21 +106,22 @@ fn quantity(text: &str) -> Option<f64> {
 /// # Errors
 /// In words.
 pub(crate) fn quantity_within(
-    what: &'static str,
+    what: impl Into<Text>,
     text: &str,
     (least, most): (f64, f64),
     range: (&'static str, &'static str),
 ) -> Result<f64, Text> {
-    filled(what, text)?;
+    let what = what.into();
+    filled(&what, text)?;
     let refused = || {
-        let refusal = Text::new("entry.quantity").with_text("what", Text::new(what)).with("entry", text.trim());
+        let refusal = Text::new("entry.quantity").with_text("what", what.clone()).with("entry", text.trim());
         refusal.with("least", range.0).with("most", range.1)
     };
     quantity(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-fn filled(what: &'static str, text: &str) -> Result<(), Text> {
-    if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", Text::new(what))) } else { Ok(()) }
+fn filled(what: &Text, text: &str) -> Result<(), Text> {
+    if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", what.clone())) } else { Ok(()) }
 }
 
 /// As many decimals as a limit needs, three at most.
@@ -192,14 +196,14 @@ mod tests {
 
     #[test]
     fn a_refusal_names_the_entry_and_the_range() {
-        let refusal = within("commutation.limit", "91", 0.1, 90.0).unwrap_err();
-        assert_eq!(refusal.words(Language::English), "Friction limit (°): \"91\" is no number from 0.1 to 90.");
+        let refusal = within("connect.tcp_port", "91", 0.1, 90.0).unwrap_err();
+        assert_eq!(refusal.words(Language::English), "TCP port: \"91\" is no number from 0.1 to 90.");
         assert!(refusal.words(Language::German).ends_with("keine Zahl von 0,1 bis 90."));
-        assert_eq!(within("commutation.limit", "90", 0.1, 90.0), Ok(90.0));
-        assert_eq!(within("commutation.limit", "  ", 0.1, 90.0).unwrap_err().id(), "entry.missing");
+        assert_eq!(within("connect.tcp_port", "90", 0.1, 90.0), Ok(90.0));
+        assert_eq!(within("connect.tcp_port", "  ", 0.1, 90.0).unwrap_err().id(), "entry.missing");
         for text in ["-1", "1.5", "4294967296", "99999999999999999999999", "0x", "0xG", "+1", "0", "501"] {
-            assert_eq!(whole("commutation.pole_pairs", text, 1, 500).unwrap_err().id(), "entry.whole", "{text}");
+            assert_eq!(whole("connect.margin", text, 1, 500).unwrap_err().id(), "entry.whole", "{text}");
         }
-        assert_eq!(whole("commutation.pole_pairs", "0x10", 1, 500), Ok(16));
+        assert_eq!(whole("connect.margin", "0x10", 1, 500), Ok(16));
     }
 }

@@ -1,8 +1,10 @@
-//! Texts in English and German from one table (`assets/texts.ron`).
+//! Texts in English and German from catalogues (`assets/texts`): a common one, and one of each device, of the adapter and
+//! of Signals. A text carries the catalogue that it stands in.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
@@ -15,9 +17,10 @@ pub enum Language {
     German,
 }
 
-/// A text of the table with its arguments: what is said, before it is known in which language.
+/// A text of a catalogue with its arguments: what is said, before it is known in which language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
+    catalogue: &'static Catalogue,
     id: &'static str,
     arguments: Vec<(&'static str, Argument)>,
 }
@@ -45,9 +48,14 @@ impl Argument {
     }
 }
 
-/// The table.
-#[derive(Debug)]
-pub struct Texts(BTreeMap<String, Row>);
+/// A table of texts.
+pub struct Catalogue {
+    source: &'static str,
+    rows: OnceLock<BTreeMap<String, Row>>,
+}
+
+/// The texts that belong to no device, or to several.
+pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/common.ron"));
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -66,15 +74,10 @@ enum Place {
     Terminal,
 }
 
-static BUILT_IN: LazyLock<Texts> = LazyLock::new(|| {
-    // That it parses is tested; without it every text would be its own name.
-    Texts(ron::from_str(Texts::SOURCE).unwrap_or_default())
-});
-
 impl Text {
-    /// The text of that name in the table.
+    /// The common text of that name.
     pub fn new(id: &'static str) -> Self {
-        Text { id, arguments: Vec::new() }
+        COMMON.text(id)
     }
 
     /// With words, a number or a name for `{name}`.
@@ -112,25 +115,6 @@ impl Text {
         self
     }
 
-    /// The text of that name with the arguments with which it is `words` in English; nothing where it cannot be.
-    pub(crate) fn recognised(id: &'static str, words: &str) -> Option<Self> {
-        let mut text = Text::new(id);
-        let (mut template, mut rest) = (BUILT_IN.0.get(id)?.en.as_str(), words);
-        while let Some((before, after)) = template.split_once('{') {
-            let (name, behind) = after.split_once('}')?;
-            rest = rest.strip_prefix(before)?;
-            // An argument ends where what stands behind it begins; the last one, where that is the end.
-            let length = match behind.split_once('{') {
-                Some((literal, _)) => rest.find(literal)?,
-                None => rest.strip_suffix(behind)?.len(),
-            };
-            let (argument, remaining) = rest.split_at_checked(length)?;
-            text = text.with(name, argument);
-            (template, rest) = (behind, remaining);
-        }
-        (template == rest).then_some(text)
-    }
-
     /// It is about this file.
     pub(super) fn is_about(&self, path: &Path) -> bool {
         let name = path.display().to_string();
@@ -140,7 +124,7 @@ impl Text {
         self.arguments.iter().any(is_it)
     }
 
-    /// The text's name in the table.
+    /// The text's name in its catalogue.
     pub fn id(&self) -> &'static str {
         self.id
     }
@@ -156,7 +140,7 @@ impl Text {
     }
 
     fn said(&self, place: Place) -> String {
-        let Some(row) = BUILT_IN.0.get(self.id) else { return self.id.to_owned() };
+        let Some(row) = self.catalogue.rows().get(self.id) else { return self.id.to_owned() };
         let template = match place {
             Place::Window(Language::German) => &row.de,
             Place::Terminal if !row.terminal.is_empty() => &row.terminal,
@@ -189,18 +173,73 @@ pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
     Argument::Number(format!("{value:.decimals$}")).said(Place::Window(language))
 }
 
-impl Texts {
-    /// The table's source.
-    pub const SOURCE: &'static str = include_str!("../../assets/texts.ron");
+impl From<&'static str> for Text {
+    fn from(id: &'static str) -> Self {
+        Text::new(id)
+    }
+}
 
-    /// The table that ships with the program.
-    pub fn built_in() -> &'static Texts {
-        &BUILT_IN
+impl Catalogue {
+    /// The catalogue that this RON is.
+    pub const fn new(source: &'static str) -> Self {
+        Catalogue { source, rows: OnceLock::new() }
+    }
+
+    /// The text of that name: of this catalogue, or else of the common one.
+    pub fn text(&'static self, id: &'static str) -> Text {
+        let is_own = *self != COMMON && self.rows().contains_key(id);
+        let catalogue = if is_own { self } else { &COMMON };
+        // The tests find a name that stands nowhere; the window would show it instead of words.
+        debug_assert!(catalogue.rows().contains_key(id), "no text {id}");
+        Text { catalogue, id, arguments: Vec::new() }
+    }
+
+    /// The text of that name with the arguments with which it is `words` in English; nothing where it cannot be.
+    pub(crate) fn recognised(&'static self, id: &'static str, words: &str) -> Option<Text> {
+        let mut text = self.text(id);
+        let (mut template, mut rest) = (text.catalogue.rows().get(id)?.en.as_str(), words);
+        while let Some((before, after)) = template.split_once('{') {
+            let (name, behind) = after.split_once('}')?;
+            rest = rest.strip_prefix(before)?;
+            // An argument ends where what stands behind it begins; the last one, where that is the end.
+            let length = match behind.split_once('{') {
+                Some((literal, _)) => rest.find(literal)?,
+                None => rest.strip_suffix(behind)?.len(),
+            };
+            let (argument, remaining) = rest.split_at_checked(length)?;
+            text = text.with(name, argument);
+            (template, rest) = (behind, remaining);
+        }
+        (template == rest).then_some(text)
     }
 
     /// Names of all texts.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
-        self.0.keys().map(String::as_str)
+        self.rows().keys().map(String::as_str)
+    }
+
+    /// The RON.
+    pub fn source(&self) -> &'static str {
+        self.source
+    }
+
+    fn rows(&self) -> &BTreeMap<String, Row> {
+        // That it parses is tested; without it every text would be its own name.
+        self.rows.get_or_init(|| ron::from_str(self.source).unwrap_or_default())
+    }
+}
+
+impl PartialEq for Catalogue {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+impl Eq for Catalogue {}
+
+impl fmt::Debug for Catalogue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Catalogue({} rows)", self.rows().len())
     }
 }
 
@@ -216,23 +255,42 @@ mod tests {
         places
     }
 
+    /// The files of texts by their names.
+    fn catalogues() -> BTreeMap<String, String> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/texts");
+        let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        files.map(|path| (path.display().to_string(), std::fs::read_to_string(&path).unwrap())).collect()
+    }
+
+    fn rows(source: &str) -> BTreeMap<String, Row> {
+        ron::from_str(source).unwrap()
+    }
+
     #[test]
     fn both_languages_say_the_same_things() {
-        let table: BTreeMap<String, Row> = ron::from_str(Texts::SOURCE).unwrap();
-        assert!(!table.is_empty());
-        for (id, row) in &table {
-            assert!(!row.en.is_empty() && !row.de.is_empty(), "{id}");
-            assert_eq!(places(&row.en), places(&row.de), "{id}");
-            assert!(places(&row.terminal).iter().all(|place| places(&row.en).contains(place)), "{id}");
+        for (file, source) in catalogues() {
+            let table = rows(&source);
+            assert!(!table.is_empty(), "{file}");
+            for (id, row) in &table {
+                assert!(!row.en.is_empty() && !row.de.is_empty(), "{id}");
+                assert_eq!(places(&row.en), places(&row.de), "{id}");
+                assert!(places(&row.terminal).iter().all(|place| places(&row.en).contains(place)), "{id}");
+            }
         }
     }
 
     #[test]
     fn no_row_hides_another() {
-        let names =
-            Texts::SOURCE.lines().filter_map(|line| line.strip_prefix("    \"")?.split_once("\": (")).map(|row| row.0);
-        let names: Vec<&str> = names.collect();
-        assert_eq!(names.len(), Texts::built_in().ids().count(), "a name stands twice");
+        let (catalogues, mut names) = (catalogues(), std::collections::BTreeSet::new());
+        for (file, source) in &catalogues {
+            let own =
+                source.lines().filter_map(|line| line.strip_prefix("    \"")?.split_once("\": (")).map(|row| row.0);
+            let own: Vec<&str> = own.collect();
+            assert_eq!(own.len(), rows(source).len(), "a name stands twice in {file}");
+            for name in own {
+                assert!(names.insert(name), "{name} stands in two files");
+            }
+        }
     }
 
     #[test]
@@ -248,15 +306,15 @@ mod tests {
         assert!(text.words(Language::English).starts_with("1.2 is"));
         assert!(text.words(Language::German).starts_with("1,2 wird"));
         assert!(text.terminal().starts_with("1.2 is"));
-        let list = [Text::new("status.code_09"), Text::new("status.code_0a")];
-        let text = Text::new("encoder.rejected").with("command", "reset").with_list("codes", list);
-        assert!(text.words(Language::German).ends_with("abgelehnt: Paritätsfehler, Prüfsummenfehler."));
+        let list = [Text::new("parity.even"), Text::new("parity.odd")];
+        let text = Text::new("link.other").with("target", "COM3").with_list("why", list);
+        assert!(text.words(Language::German).contains("gerade, ungerade"), "{}", text.words(Language::German));
     }
 
     #[test]
     fn the_command_line_has_hints_of_its_own() {
         let cause = Text::new("link.not_found").with("target", "COM3");
-        let text = Text::new("encoder.unclear").with("command", "reset").with_text("cause", cause);
+        let text = Text::new("link.other").with("target", "COM3").with_text("why", cause);
         assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
         assert!(text.words(Language::English).contains("Connect… lists"), "{}", text.words(Language::English));
         assert_eq!(Text::new("encoder.cancelled").terminal(), Text::new("encoder.cancelled").words(Language::English));
@@ -264,7 +322,7 @@ mod tests {
 
     #[test]
     fn a_text_is_recognised_by_its_english_words() {
-        let recognised = |id, words| Text::recognised(id, words).map(|text| text.words(Language::German));
+        let recognised = |id, words| COMMON.recognised(id, words).map(|text| text.words(Language::German));
         assert_eq!(recognised("phrase.number", "a number from 1 to 8").unwrap(), "eine Zahl von 1 bis 8");
         assert_eq!(recognised("phrase.text", "a text").unwrap(), "ein Text");
         assert_eq!(recognised("phrase.twice", "a {b} stands twice").unwrap(), "a {b} steht zweimal da");
@@ -275,10 +333,11 @@ mod tests {
 
     #[test]
     fn the_window_says_nothing_about_the_command_line() {
-        let table: BTreeMap<String, Row> = ron::from_str(Texts::SOURCE).unwrap();
-        for (id, row) in &table {
-            for hint in ["--", "encoder-studio ", "=HEX", "echo=", "do hiperface"] {
-                assert!(!row.en.contains(hint) && !row.de.contains(hint), "{id}: {hint}");
+        for source in catalogues().values() {
+            for (id, row) in &rows(source) {
+                for hint in ["--", "encoder-studio ", "=HEX", "echo=", "do hiperface"] {
+                    assert!(!row.en.contains(hint) && !row.de.contains(hint), "{id}: {hint}");
+                }
             }
         }
     }

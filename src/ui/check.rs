@@ -2,16 +2,16 @@
 
 use egui::{RichText, Ui};
 
-use super::Skin;
 use super::controls::paragraph;
-use super::icons;
+use super::{Skin, icons};
+use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
 use crate::device::check::Verdict;
 
 /// Draws the lines of the last check, or what one would do.
-pub(crate) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, nothing: &'static str) {
+pub(crate) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {
     let Some(lines) = lines else {
-        paragraph(ui, skin.label(skin.say(nothing)));
+        paragraph(ui, skin.label(skin.words(&nothing.into())));
         return;
     };
     let palette = skin.palette;

@@ -6,6 +6,7 @@ use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use super::{Skin, icons};
 use crate::analysis::quality::Verdict;
+use crate::app::Text;
 
 /// Inside a line of text, so that it is as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
@@ -20,7 +21,7 @@ pub(crate) fn fill(ui: &mut Ui) {
 }
 
 /// A card with a heading.
-pub(crate) fn card<R>(ui: &mut Ui, skin: &Skin, title: &'static str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub(crate) fn card<R>(ui: &mut Ui, skin: &Skin, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, skin, title, |_| {}, content)
 }
 
@@ -28,15 +29,16 @@ pub(crate) fn card<R>(ui: &mut Ui, skin: &Skin, title: &'static str, content: im
 pub(crate) fn card_with<R>(
     ui: &mut Ui,
     skin: &Skin,
-    title: &'static str,
+    title: impl Into<Text>,
     aside: impl FnOnce(&mut Ui),
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
+    let title = title.into();
     skin.card()
         .show(ui, |ui| {
             fill(ui);
             ui.horizontal(|ui| {
-                ui.label(skin.heading(skin.say(title)));
+                ui.label(skin.heading(skin.words(&title)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
             });
             ui.add_space(skin.space.inside);
@@ -322,12 +324,12 @@ pub(crate) fn spinner(ui: &mut Ui, skin: &Skin) {
 pub(crate) fn labelled_entry(
     ui: &mut Ui,
     skin: &Skin,
-    id: &'static str,
+    what: impl Into<Text>,
     text: &mut String,
     width: f32,
     hint: &str,
 ) -> Response {
-    let word = skin.say(id);
+    let word = skin.words(&what.into());
     entry(ui, skin, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 

@@ -6,9 +6,8 @@ use super::controls::{badge, button, dot, enabled_button, icon_button, name, sev
 use super::page::apart;
 use super::stopping::{goes_down, means_motion, pressed_at};
 use super::{Skin, Views, icons};
-use crate::app::connect;
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme};
+use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme, connect};
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;

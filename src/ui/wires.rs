@@ -4,35 +4,41 @@ use egui::Ui;
 
 use super::Skin;
 use super::controls::paragraph;
+use crate::app::Catalogue;
 
-/// Draws them; their names stand in a column of this width.
-pub(crate) fn wires_ui(ui: &mut Ui, skin: &Skin, width: f32, wires: &[(&str, &'static str)]) {
+/// Draws them, with words of this catalogue; their names stand in a column of this width.
+pub(crate) fn wires_ui(
+    ui: &mut Ui,
+    skin: &Skin,
+    texts: &'static Catalogue,
+    width: f32,
+    wires: &[(&str, &'static str)],
+) {
     for (wire, words) in wires {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
             let name = ui.label(skin.mono(*wire));
             ui.add_space((width - name.rect.width()).max(0.0));
-            paragraph(ui, skin.label(skin.say(words)));
+            paragraph(ui, skin.label(skin.words(&texts.text(words))));
         });
     }
 }
 
 /// Each wire has this name, and its words say this, in English; in German it has other words.
 #[cfg(test)]
-pub(crate) fn check_wires(wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
+pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
     assert_eq!(wires.len(), expected.len());
     for ((wire, id), (name, facts)) in wires.iter().zip(expected) {
         assert_eq!(wire, name);
-        check_notes(&[*id], facts);
+        check_notes(texts, &[*id], facts);
     }
 }
 
 /// The notes of a card say this, in English; in German they have other words.
 #[cfg(test)]
-pub(crate) fn check_notes(notes: &[&'static str], facts: &[&str]) {
+pub(crate) fn check_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};
-    use crate::app::Text;
-    let said = |language| notes.iter().map(|id| Text::new(id).words(language)).collect::<Vec<_>>().join(" ");
+    let said = |language| notes.iter().map(|id| texts.text(id).words(language)).collect::<Vec<_>>().join(" ");
     let (english, german) = (said(English), said(German));
     for fact in facts {
         assert!(english.contains(fact), "{fact}: {english}");

@@ -8,9 +8,8 @@ use super::page::apart;
 use super::panels::plot_ui;
 use super::views::shown_in;
 use super::{Skin, Views, icons};
-use crate::app::connect;
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, DeviceCommand, Studio};
+use crate::app::{Action, AnyDevice, DeviceCommand, Studio, connect};
 
 /// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {

@@ -34,10 +34,11 @@ pub use open::OpenError;
 pub use ring::Ring;
 pub use session::{Desk, Session};
 
-use crate::link::{Cancel, LinkError};
 use live::{Live, Watches};
 use outbox::{CAPACITY, Outbox};
 use thread::{Bench, Never, Order};
+
+use crate::link::{Cancel, LinkError};
 
 /// A kind of device at the end of a session: its wire, what is known about it, and what can be done with it.
 pub trait Device: Send + 'static {

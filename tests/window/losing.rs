@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Desk as Of, JobEnd, Language, Severity, Studio, Text, recorder};
+use encoder_studio::app::{Action, Desk as Of, JobEnd, Language, Severity, Studio, recorder};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::protocol::CodeNumber;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
@@ -58,7 +58,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     desk.until("it has ended", failed);
     let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
     // The exchange that was on its way is completed; nothing after it is begun.
-    assert_eq!(texts[0], Text::new("write.cancelled").with("done", 2).with("planned", 4));
+    assert_eq!(texts[0], crate::texts::text("write.cancelled").with("done", 2).with("planned", 4));
     assert_eq!(texts[1].id(), "write.backup");
     // Issue 22.14: the list of operations stays, with those that are done.
     let sheet = desk.studio.shown().unwrap().sheet().unwrap();

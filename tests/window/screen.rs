@@ -117,7 +117,7 @@ impl Screen {
     }
 
     pub(crate) fn say(&self, id: &'static str) -> String {
-        Text::new(id).words(self.language())
+        crate::texts::text(id).words(self.language())
     }
 
     pub(crate) fn words(&self, text: &Text) -> String {

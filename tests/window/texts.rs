@@ -6,9 +6,13 @@ use std::sync::LazyLock;
 
 use encoder_studio::app::review::OpWords;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{JobEnd, Language, Notice, Studio, Text, Texts};
+use encoder_studio::app::{COMMON, Catalogue};
+use encoder_studio::app::{JobEnd, Language, Notice, Studio, Text};
+use encoder_studio::buses::bridge;
 use encoder_studio::devices::hiperface::state::explain as words;
 use encoder_studio::devices::hiperface::state::{Encoder, ReviewState};
+use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
+use encoder_studio::signals;
 
 #[derive(serde::Deserialize)]
 struct Row {
@@ -18,7 +22,30 @@ struct Row {
     terminal: String,
 }
 
-static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| ron::from_str(Texts::SOURCE).unwrap());
+/// All catalogues of texts.
+const CATALOGUES: [&Catalogue; 8] = [
+    &COMMON,
+    &hiperface::state::TEXTS,
+    &biss::state::TEXTS,
+    &ssi::state::TEXTS,
+    &interbus::state::TEXTS,
+    &hiperdrive::state::TEXTS,
+    &bridge::state::TEXTS,
+    &signals::state::TEXTS,
+];
+
+/// The rows of all of them.
+static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| {
+    let rows = CATALOGUES.map(|own| ron::from_str::<BTreeMap<String, Row>>(own.source()).unwrap());
+    rows.into_iter().flatten().collect()
+});
+
+/// The text of that name, whosever it is.
+#[track_caller]
+pub(crate) fn text(id: &'static str) -> Text {
+    let own = CATALOGUES.into_iter().find(|own| own.ids().any(|known| known == id));
+    own.unwrap_or_else(|| panic!("there is no text {id}")).text(id)
+}
 
 fn places(template: &str) -> impl Iterator<Item = &str> {
     template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name)
@@ -118,7 +145,7 @@ pub(crate) fn foreign_to(language: Language) -> BTreeSet<&'static str> {
 #[test]
 fn no_name_stands_twice_in_the_table() {
     let mut names = BTreeSet::new();
-    for line in Texts::SOURCE.lines() {
+    for line in CATALOGUES.into_iter().flat_map(|own| own.source().lines()) {
         let name = line.strip_prefix("    \"").and_then(|line| line.split_once("\": (")).map(|(name, _)| name);
         if let Some(name) = name {
             assert!(names.insert(name), "{name} stands twice");

@@ -264,7 +264,7 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
         let search = studio.connect.as_ref().and_then(|dialog| dialog.search.as_ref());
         search.is_some_and(|search| !search.is_running())
     });
-    let choose = screen.words(&encoder_studio::app::Text::new("find.choose").with("address", "44h"));
+    let choose = screen.words(&crate::texts::text("find.choose").with("address", "44h"));
     screen.harness.get_by_label(&choose).click();
     screen.until("it is read", |studio| {
         studio.hiperface().and_then(|encoder| encoder.identity.as_ref()).is_some_and(|own| own.address == 0x44)

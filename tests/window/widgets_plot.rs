@@ -7,7 +7,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
 use encoder_studio::app::{Action, FileQuestion};
-use encoder_studio::app::{Desk as Of, Language, Text, recorder};
+use encoder_studio::app::{Desk as Of, Language, recorder};
 
 use crate::screen::Screen;
 use crate::support::Outside;
@@ -177,7 +177,7 @@ fn a_trigger_is_typed_armed_and_switched_off() {
         screen.click("trigger.arm");
         assert_eq!(recorder(&screen).trigger().is_some(), works, "{level:?}");
         if !works {
-            assert!(screen.shows(&Text::new("trigger.no_level").words(Language::English)), "{level:?}");
+            assert!(screen.shows(&crate::texts::text("trigger.no_level").words(Language::English)), "{level:?}");
             screen.key(Key::Escape);
         }
     }

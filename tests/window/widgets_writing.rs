@@ -4,7 +4,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Language, Text};
+use encoder_studio::app::{Action, Language};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 
 use crate::screen::Screen;
@@ -15,7 +15,7 @@ const SIZE: [f32; 2] = [1280.0, 800.0];
 /// Types into the hex editor of data field 0.
 fn type_bytes(screen: &mut Screen, digits: &str) {
     screen.click("page.memory");
-    let editor = screen.words(&Text::new("memory.bytes").with("number", 0));
+    let editor = screen.words(&crate::texts::text("memory.bytes").with("number", 0));
     screen.harness.get_by_label(&editor).focus();
     screen.steps();
     for digit in digits.chars() {
@@ -35,7 +35,7 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
 
     screen.click("memory.review");
     screen.until("the plan is ready", |studio| is_review(studio, |state| matches!(state, ReviewState::Ready(_))));
-    let byte = screen.words(&Text::new("op.byte").with("field", 0).with("first", 0));
+    let byte = screen.words(&crate::texts::text("op.byte").with("field", 0).with("first", 0));
     for words in [byte.as_str(), "45  →  58"] {
         screen.harness.query_all_by_label(words).next().unwrap_or_else(|| panic!("{words} is not in the review"));
     }
@@ -49,12 +49,12 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
         is_review(studio, |state| matches!(state, ReviewState::Done(..)))
             && studio.hiperface().unwrap().session.is_ready()
     });
-    let verified = Text::new("review.verified").with("verified", 1).with("cycles", 1);
+    let verified = crate::texts::text("review.verified").with("verified", 1).with("cycles", 1);
     assert!(screen.shows(&screen.words(&verified)));
     assert_eq!(screen.outside.wire(PORT).field(0)[0], 0x58);
     screen.click("review.close");
     assert!(screen.encoder().review.is_none() && !screen.encoder().staged.is_dirty());
-    let editor = screen.words(&Text::new("memory.bytes").with("number", 0));
+    let editor = screen.words(&crate::texts::text("memory.bytes").with("number", 0));
     // The cursor stands behind the byte that was typed.
     assert!(screen.harness.get_by_label(&editor).value().unwrap().starts_with("0x01: 4D"));
 }
@@ -120,7 +120,7 @@ fn what_a_field_does_not_allow_cannot_be_pressed() {
     screen.click("review.close");
     type_bytes(&mut screen, "58");
     assert!(!screen.encoder().staged.is_dirty());
-    assert!(screen.shows(&screen.words(&Text::new("plan.write_protected").with("field", 0))));
+    assert!(screen.shows(&screen.words(&crate::texts::text("plan.write_protected").with("field", 0))));
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn a_restore_is_stopped_half_way_by_click() {
         is_review(studio, |state| matches!(state, ReviewState::Failed { begun: true, .. }))
             && studio.hiperface().unwrap().session.is_ready()
     });
-    let words = Text::new("write.cancelled").with("done", 2).with("planned", 3);
+    let words = crate::texts::text("write.cancelled").with("done", 2).with("planned", 3);
     assert!(screen.shows(&screen.words(&words)));
     screen.click("review.close");
     assert_eq!(screen.encoder().staged.edits().collect::<Vec<_>>(), [(0, 4, 0)]);

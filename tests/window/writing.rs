@@ -207,7 +207,7 @@ fn what_would_discard_edits_is_refused_until_they_are_written_or_taken_back() {
     let (memory, first) = (desk.encoder().identity.as_ref().unwrap().memory.unwrap(), desk.encoder().field(0).unwrap());
     let offered = rules::delete(memory, first, &desk.encoder().staged);
     let small = FieldSize::from_bytes(16).unwrap();
-    let why = Text::new("rules.edits").with("field", 0).with("count", 1);
+    let why = crate::texts::text("rules.edits").with("field", 0).with("count", 1);
     assert_eq!(offered, Err(why.clone()));
     assert_eq!(rules::resize(memory, first, small, &desk.encoder().staged), Err(why.clone()));
     assert_eq!(refused(&mut desk, Change::DeleteField { number: 0 }), why);
@@ -222,7 +222,7 @@ fn what_would_discard_edits_is_refused_until_they_are_written_or_taken_back() {
 #[test]
 fn a_field_whose_access_code_is_not_known_is_left_as_it_is() {
     let mut desk = Desk::at_port("codes=0:9D");
-    let why = Text::new("rules.code_unknown").with("field", 0).with("number", CodeNumber::ZERO);
+    let why = crate::texts::text("rules.code_unknown").with("field", 0).with("number", CodeNumber::ZERO);
     let small = FieldSize::from_bytes(16).unwrap();
     let sent = desk.wire().sent();
     for change in [
@@ -327,7 +327,7 @@ fn what_the_rules_of_the_fields_forbid_is_refused_with_the_reason() {
         Err(not_last.clone()),
         "the button says the same"
     );
-    assert_eq!(not_last, Text::new("plan.not_last").with("field", 0).with("last", 1));
+    assert_eq!(not_last, crate::texts::text("plan.not_last").with("field", 0).with("last", 1));
     assert_ne!(not_last.words(Language::English), not_last.words(Language::German));
     assert_eq!(refused(&mut desk, Change::ResizeField { number: 0, size: larger }), not_last);
     assert_eq!(rules::resize(memory, &first, larger, &desk.encoder().staged), Err(not_last));

@@ -23,10 +23,11 @@ pub use number::Value;
 pub use picture::{Cut, Grid, Picture, Pixel, Reduced};
 pub use statistics::Statistics;
 
-use super::Time;
 use number::Number;
 use series::Series;
 use times::Times;
+
+use super::Time;
 
 /// Samples in a block: what is allocated and evicted at once.
 const BLOCK: usize = 4096;

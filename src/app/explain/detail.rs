@@ -5,7 +5,7 @@
 mod tests;
 
 use super::{file, plain};
-use crate::app::Text;
+use crate::app::{COMMON, Text};
 use crate::devices::ssi::state::explain as ssi;
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
@@ -141,12 +141,41 @@ const PHRASES: &[&str] = &[
     "phrase.item_encoder",
     "phrase.item_fields",
     "phrase.another_status",
+    "phrase.ssi_position",
+    "phrase.ssi_parity",
+    "phrase.ssi_error_bits",
+    "phrase.ssi_patterns",
+    "phrase.ssi_clocks",
+    "phrase.ssi_area",
+    "phrase.ssi_wide",
+    "phrase.ssi_between",
+    "phrase.ssi_overlap",
+    "phrase.ssi_behind",
+    "phrase.ssi_many",
+    "phrase.ssi_not_gray",
+    "phrase.ssi_inside_coded",
+    "phrase.ssi_inside_shifted",
+    "phrase.ssi_lost",
+    "phrase.ssi_repeat",
+    "phrase.ssi_pattern_bits",
+    "phrase.ssi_field_bits",
+    "phrase.ssi_single",
+    "phrase.ssi_revolutions",
+    "phrase.ssi_odd",
+    "phrase.ssi_digits",
+    "phrase.ssi_lc_form",
+    "phrase.ssi_lc_kind",
+    "phrase.ssi_lc_two",
+    "phrase.ssi_lc_none",
+    "phrase.ssi_lc_long",
+    "phrase.ssi_lc_gray_over",
+    "phrase.ssi_lc_between",
+    "phrase.ssi_lc_inverted",
 ];
 
 /// A phrase of a lower floor, which speaks English: recognised by its words.
 pub fn phrase(words: &str) -> Text {
-    let all = PHRASES.iter().chain(ssi::PHRASES);
-    all.copied().find_map(|id| Text::recognised(id, words)).unwrap_or_else(|| plain(words))
+    PHRASES.iter().find_map(|id| COMMON.recognised(id, words)).unwrap_or_else(|| plain(words))
 }
 
 /// A text that is no link, or a parameter that it does not take.

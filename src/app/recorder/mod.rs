@@ -20,10 +20,11 @@ pub use line::{Line, LineId, Scale};
 pub use trigger::{Trigger, TriggerState, When};
 pub use view::View;
 
+use trigger::Watch;
+
 use crate::analysis::Time;
 use crate::analysis::history::{History, Kind, Part, Refused, Sample};
 use crate::app::Text;
-use trigger::Watch;
 
 /// Something that is done with a recorder.
 #[derive(Clone, Debug, PartialEq)]

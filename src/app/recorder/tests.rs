@@ -112,7 +112,7 @@ fn a_cursor_where_nothing_was_recorded_reads_nothing() {
     let (mut recorder, group, [counts, _]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Whole], 100, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
-    let late = recorder.add_line(Line::of(slow, 0, Text::new("recorder.counter"), "counter", scales));
+    let late = recorder.add_line(Line::of(slow, 0, Text::new("recorder.speed"), "counter", scales));
     ramp(&mut recorder, group, 0, 1000);
     recorder.append(slow, &[at(700), at(900)], &[Part::whole(&[7, 9])]).unwrap();
     recorder.act(Action::SetCursor(Cursor::A, Some(at(500))));

@@ -6,8 +6,7 @@ use crate::app::session::{DraftEdits, first};
 use crate::app::{Severity, Text, explain};
 use crate::link::LinkUrl;
 use crate::store::Store;
-use crate::worker::OpenError;
-use crate::worker::{Device, Event, JobId, Session};
+use crate::worker::{Device, Event, JobId, OpenError, Session};
 
 /// A kind of device on the desk.
 pub trait Kind: Device + Sized {

@@ -4,6 +4,8 @@ mod args;
 
 use std::sync::atomic::AtomicBool;
 
+use crate::signals::state::TEXTS;
+
 use clap::{ArgMatches, Args};
 use serde_json::{Value as Json, json};
 
@@ -14,7 +16,7 @@ use crate::analysis::position_error::{Basis, Samples, harmonics};
 use crate::analysis::quality::Family;
 use crate::analysis::revolution::Revolution;
 use crate::analysis::signal_analysis::Analysis;
-use crate::app::{Text, explain};
+use crate::app::explain;
 use crate::cli::args::Common;
 use crate::cli::commands::{OwnCommand, parse};
 use crate::cli::output::{Lines, Output};
@@ -77,7 +79,7 @@ fn analyse(output: &Output, arguments: &Analyse) -> Result {
 /// What is to be known of how the table was read.
 fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     if let Some(clock) = layout.clock {
-        let text = Text::new("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
+        let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
         output.remark(&text.terminal());
     }
     if capture.left_out > 0 {

@@ -11,9 +11,9 @@ use crate::analysis::capture::Wishes;
 use crate::analysis::diagnosis::{Changes, Finding, compare};
 use crate::analysis::quality::Family;
 use crate::app::number::MOST_PERIODS;
-use crate::app::recorder;
 use crate::app::services::Services;
-use crate::app::{Severity, SineCosineSource, Studio, Tab, Text, explain};
+use crate::app::{Severity, SineCosineSource, Studio, Tab, Text, explain, recorder};
+use crate::signals::state::TEXTS;
 use crate::store::ReadCaptureError;
 
 /// All that the Signals tab knows.
@@ -253,7 +253,7 @@ impl Signals {
             Failed::Judge => "signals.judging_failed",
             Failed::Read(_) | Failed::Measure(_) => return,
         };
-        services.tell(Severity::Error, vec![Text::new(what)], None);
+        services.tell(Severity::Error, vec![TEXTS.text(what)], None);
     }
 
     /// Other samples: a table of those before that is still being written cannot be ended.

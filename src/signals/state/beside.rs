@@ -11,6 +11,7 @@ use crate::analysis::revolution::{Revolution, RevolutionError};
 use crate::analysis::signal_analysis::Analysis;
 use crate::analysis::synchronise::{STEPS, measure_offset};
 use crate::app::Text;
+use crate::signals::state::TEXTS;
 
 /// DNL and INL, as measured and corrected.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +60,7 @@ pub enum NoOffset {
 impl NoOffset {
     /// The reason in words.
     pub fn text(self) -> Text {
-        Text::new(match self {
+        TEXTS.text(match self {
             NoOffset::NoSignal => "synchronise.no_signal",
             NoOffset::Scattered => "synchronise.scattered",
         })

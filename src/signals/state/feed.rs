@@ -3,6 +3,8 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use crate::signals::state::TEXTS;
+
 use crossbeam_channel::Receiver;
 
 use crate::analysis::wires::Wires;
@@ -77,7 +79,7 @@ impl AdapterLink {
     /// It leads to no adapter: why.
     pub(super) fn read(text: &str) -> Result<Self, Text> {
         let url: LinkUrl =
-            text.parse().map_err(|why| Text::new("adapter.link").with_text("why", explain::url(&why)))?;
+            text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
         let (margin, open) = open_adapter(&url, clock.clone()).map_err(|error| refused(&error))?;
         Ok(AdapterLink { url, clock, margin, open })
@@ -154,11 +156,11 @@ impl Feed {
     /// Why it has ended by itself.
     pub(super) fn why_ended(&self) -> Text {
         match self {
-            Feed::Virtual(stream) if stream.take_error().is_some() => Text::new("virtual.forgotten"),
-            Feed::Virtual(_) => Text::new("virtual.ended"),
+            Feed::Virtual(stream) if stream.take_error().is_some() => TEXTS.text("virtual.forgotten"),
+            Feed::Virtual(_) => TEXTS.text("virtual.ended"),
             Feed::Adapter { stream, .. } => match stream.take_error() {
                 Some(error) => failed(&error),
-                None => Text::new("virtual.ended"),
+                None => TEXTS.text("virtual.ended"),
             },
         }
     }
@@ -220,15 +222,15 @@ fn failed(error: &BridgeError) -> Text {
         BridgeError::Open(error) => refused(error),
         BridgeError::Tap(TapError::Link(error)) => explain::link(error),
         BridgeError::Tap(TapError::Adapter(error)) => bridge::adapter(error),
-        BridgeError::Tap(TapError::Cancelled) => Text::new("virtual.ended"),
+        BridgeError::Tap(TapError::Cancelled) => TEXTS.text("virtual.ended"),
     }
 }
 
 /// A link that cannot be used is changed where it stands.
 fn refused(error: &OpenError) -> Text {
     match error {
-        OpenError::Url(why) => Text::new("adapter.link").with_text("why", explain::url(why)),
-        OpenError::Sim(why) => Text::new("adapter.link").with_text("why", explain::setting(why)),
+        OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url(why)),
+        OpenError::Sim(why) => TEXTS.text("adapter.link").with_text("why", explain::setting(why)),
         other => explain::open(other),
     }
 }

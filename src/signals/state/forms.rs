@@ -2,13 +2,14 @@
 
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole};
+use crate::signals::state::TEXTS;
 
 /// Signal periods in a revolution.
 ///
 /// # Errors
 /// In words.
 pub fn periods(text: &str) -> Result<u32, Text> {
-    whole("quality.periods_per_turn", text, 1, MOST_PERIODS)
+    whole(TEXTS.text("quality.periods_per_turn"), text, 1, MOST_PERIODS)
 }
 
 /// A number with a point or a comma; finite.
@@ -16,7 +17,7 @@ pub fn periods(text: &str) -> Result<u32, Text> {
 /// # Errors
 /// In words.
 pub fn number(text: &str) -> Result<f64, Text> {
-    crate::app::number(text).ok_or_else(|| Text::new("signals.bad_number").with("entry", text))
+    crate::app::number(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
 }
 
 /// Volts in one unit of a table.
@@ -24,7 +25,7 @@ pub fn number(text: &str) -> Result<f64, Text> {
 /// # Errors
 /// In words.
 pub fn volts_per_unit(text: &str) -> Result<f64, Text> {
-    let refused = || Text::new("signals.bad_volts").with("entry", text);
+    let refused = || TEXTS.text("signals.bad_volts").with("entry", text);
     number(text).ok().filter(|volts| *volts != 0.0).ok_or_else(refused)
 }
 

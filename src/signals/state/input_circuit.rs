@@ -4,6 +4,7 @@
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, quantity_within, whole, within};
+use crate::signals::state::TEXTS;
 
 /// The entries, as typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,10 +61,11 @@ impl Form {
     /// # Errors
     /// The first entry that cannot be used, in words.
     pub fn circuit(&self) -> Result<Circuit, Text> {
-        let periods = whole("input.periods", &self.periods, 1, MOST_PERIODS)?;
-        let speed_rpm = within("input.speed", &self.speed, 0.0, MOST_RPM)?;
-        let ohms = quantity_within("input.resistance", &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
-        let farads = quantity_within("input.capacitance", &self.capacitance, (1e-15, 1e-3), ("1 fF", "1 mF"))?;
+        let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
+        let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
+        let ohms = quantity_within(TEXTS.text("input.resistance"), &self.resistance, (1.0, 1e9), ("1 Ω", "1 GΩ"))?;
+        let farads =
+            quantity_within(TEXTS.text("input.capacitance"), &self.capacitance, (1e-15, 1e-3), ("1 fF", "1 mF"))?;
         let filter = InputFilter { resistance_ohm: ohms, capacitance_f: farads };
         let most_rpm = speed_rpm_at(periods, BANDWIDTH_HZ).unwrap_or(MOST_RPM);
         let corner_hz = 1.0 / (std::f64::consts::TAU * ohms * farads);

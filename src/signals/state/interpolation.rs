@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use super::forms;
 use crate::analysis::arctan::{self, DEGREES, OctantTable, Phase};
 use crate::app::Text;
+use crate::signals::state::TEXTS;
 
 /// Sizes of tables that are told about.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
@@ -61,7 +62,7 @@ fn table_error(intervals: usize) -> TableError {
 pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpolated, Text> {
     let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
     let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));
-    let (exact, table) = both.ok_or_else(|| Text::new("octant.no_signal"))?;
+    let (exact, table) = both.ok_or_else(|| TEXTS.text("octant.no_signal"))?;
     let apart = table.degrees() - exact.degrees();
     let difference_deg = apart - DEGREES * (apart / DEGREES).round();
     Ok(Interpolated { exact, table, difference_deg })

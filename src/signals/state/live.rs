@@ -3,11 +3,13 @@
 
 use std::sync::Arc;
 
+use crate::signals::state::TEXTS;
+
+use crossbeam_channel::Receiver;
+
 use super::feed::{AdapterLink, Feed};
 use super::recent::{MOST, Recent};
 use super::{Done, Failed, Measurement, Origin, Scope, Signals, promise};
-use crossbeam_channel::Receiver;
-
 use crate::analysis::Time;
 use crate::analysis::quality::Family;
 use crate::analysis::wires::Wire;
@@ -257,7 +259,7 @@ impl Source {
         let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if same_wire(own, url));
         if self.live.as_ref().is_some_and(holds) {
             self.stop(services);
-            self.refuse(Text::new("adapter.let_go"));
+            self.refuse(TEXTS.text("adapter.let_go"));
         }
     }
 

@@ -16,6 +16,7 @@ use crate::analysis::revolution::RevolutionError;
 use crate::analysis::signal_analysis::{Analysis, AnalysisError};
 use crate::analysis::spectrum::SpectrumError;
 use crate::app::{Language, Text, explain};
+use crate::signals::state::TEXTS;
 
 /// Where a capture comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,9 +47,9 @@ impl Origin {
     /// Its name, short: without folders.
     pub fn name(&self) -> Text {
         match self {
-            Origin::Virtual => Text::new("signals.virtual"),
-            Origin::Adapter { is_virtual: true, .. } => Text::new("signals.virtual_adapter"),
-            Origin::Adapter { name, .. } => Text::new("signals.adapter").with("name", name),
+            Origin::Virtual => TEXTS.text("signals.virtual"),
+            Origin::Adapter { is_virtual: true, .. } => TEXTS.text("signals.virtual_adapter"),
+            Origin::Adapter { name, .. } => TEXTS.text("signals.adapter").with("name", name),
             Origin::Table(place) => place.name(),
         }
     }

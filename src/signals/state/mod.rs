@@ -19,6 +19,9 @@ mod scope;
 mod spectra;
 pub mod synchronise;
 mod table;
+mod texts;
+
+pub use texts::TEXTS;
 
 pub use act::Signals;
 pub use action::{Action, Done, Failed, Read};

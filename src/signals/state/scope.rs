@@ -6,8 +6,8 @@ use crate::analysis::Time;
 use crate::analysis::capture::Capture;
 use crate::analysis::history::{Kind, Part, Refused};
 use crate::analysis::wires::Wires;
-use crate::app::Text;
 use crate::app::recorder::{self, GroupId, Line, Recorder, SAMPLE, Scale};
+use crate::signals::state::TEXTS;
 use crate::worker::stream::Batch;
 
 /// A recorder with the signals.
@@ -80,7 +80,7 @@ impl Scope {
         let group = recorder.add_group(&columns, capacity, None);
         for (column, (name, heading)) in DIFFERENCES.iter().chain(wires).enumerate() {
             let scales = vec![Scale::new("unit.volts", 1.0, 4), Scale::new("unit.millivolts", 1e3, 1)];
-            let line = Line::of(group, column, Text::new(name), *heading, scales);
+            let line = Line::of(group, column, TEXTS.text(name), *heading, scales);
             let derived = *name == "scope.vector";
             let line = if derived { line.derived() } else { line };
             recorder.add_line(if column < DIFFERENCES.len() { line } else { line.hidden() });

@@ -7,6 +7,7 @@ use crate::analysis::quality::{Limits, Verdict};
 use crate::analysis::synchronise::{STEPS, Synchronised, Synchroniser, Unsynchronisable, measure_offset};
 use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
+use crate::signals::state::TEXTS;
 
 /// What can be done.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,7 +125,7 @@ impl Form {
     pub fn told(&self) -> Result<Told, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
-        let absolute = number_or_hex("synchronise.absolute", &self.absolute, last)?;
+        let absolute = number_or_hex(TEXTS.text("synchronise.absolute"), &self.absolute, last)?;
         let phase = self.phase()?;
         let step = absolute % STEPS;
         Ok(Told {
@@ -148,7 +149,7 @@ impl Form {
         }
         let (_, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * 4 - 1;
-        let quarters = number_or_hex("synchronise.quarters", &self.quarters, last)?;
+        let quarters = number_or_hex(TEXTS.text("synchronise.quarters"), &self.quarters, last)?;
         let (period, phase) = synchroniser.with_quadrature(quarters, self.phase()?);
         Ok(Some(period as f64 + phase.periods()))
     }
@@ -160,27 +161,29 @@ impl Form {
     /// The first entry that cannot be used, in words.
     pub fn unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.synchroniser()?;
-        let jitter_ms = within("synchronise.jitter", &self.jitter_ms, 0.001, 10_000.0)?;
+        let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
         Ok(0.5 * 60.0 / (f64::from(periods) * jitter_ms / 1e3))
     }
 
     fn synchroniser(&self) -> Result<(u32, Synchroniser), Text> {
-        let periods = whole("synchronise.periods", &self.periods, 1, MOST_PERIODS)?;
-        let turns = whole("synchronise.turns", &self.turns, 1, MOST_TURNS)?;
-        let offset_steps = within("synchronise.offset", &self.offset, -32.0, 32.0)?;
+        let periods = whole(TEXTS.text("synchronise.periods"), &self.periods, 1, MOST_PERIODS)?;
+        let turns = whole(TEXTS.text("synchronise.turns"), &self.turns, 1, MOST_TURNS)?;
+        let offset_steps = within(TEXTS.text("synchronise.offset"), &self.offset, -32.0, 32.0)?;
         let half_step = self.half_step;
         let whole = Synchroniser::new(u64::from(periods) * u64::from(turns));
         Ok((periods, Synchroniser { offset_steps, half_step, ..whole }))
     }
 
     fn phase(&self) -> Result<Phase, Text> {
-        let no_signal = || Text::new("synchronise.no_signal");
+        let no_signal = || TEXTS.text("synchronise.no_signal");
         match self.told_as {
-            ToldAs::Periods => Phase::of_periods(within("synchronise.in_periods", &self.phase, 0.0, 1.0)?),
-            ToldAs::Degrees => Phase::of_periods(within("synchronise.in_degrees", &self.phase, 0.0, 360.0)? / 360.0),
+            ToldAs::Periods => Phase::of_periods(within(TEXTS.text("synchronise.in_periods"), &self.phase, 0.0, 1.0)?),
+            ToldAs::Degrees => {
+                Phase::of_periods(within(TEXTS.text("synchronise.in_degrees"), &self.phase, 0.0, 360.0)? / 360.0)
+            }
             ToldAs::Volts => exact(
-                within("synchronise.sine", &self.sine_v, -10.0, 10.0)?,
-                within("synchronise.cosine", &self.cosine_v, -10.0, 10.0)?,
+                within(TEXTS.text("synchronise.sine"), &self.sine_v, -10.0, 10.0)?,
+                within(TEXTS.text("synchronise.cosine"), &self.cosine_v, -10.0, 10.0)?,
             ),
         }
         .ok_or_else(no_signal)
@@ -197,7 +200,7 @@ impl Told {
     /// The verdict in words.
     pub fn words(&self) -> (Verdict, Text) {
         match self.result {
-            Err(Unsynchronisable) => (Verdict::Fault, Text::new("synchronise.impossible")),
+            Err(Unsynchronisable) => (Verdict::Fault, TEXTS.text("synchronise.impossible")),
             Ok(fine) => {
                 let id = match fine.verdict {
                     Verdict::Ok => "synchronise.good",
@@ -205,7 +208,7 @@ impl Told {
                     Verdict::Fault => "synchronise.unsure",
                 };
                 let steps = fine.residual_periods * STEPS as f64;
-                (fine.verdict, Text::new(id).with_number("steps", steps, 2))
+                (fine.verdict, TEXTS.text(id).with_number("steps", steps, 2))
             }
         }
     }
@@ -248,11 +251,11 @@ impl Synchronise {
         }
         let Some(SineCosineVolts { sine_v, cosine_v }) = reading.signals else {
             self.form.absolute = reading.position.to_string();
-            self.problem = Some(Text::new("synchronise.no_channels"));
+            self.problem = Some(TEXTS.text("synchronise.no_channels"));
             return;
         };
         let Some(SineCosineRange { periods, turns }) = range else {
-            self.problem = Some(Text::new("synchronise.no_geometry"));
+            self.problem = Some(TEXTS.text("synchronise.no_geometry"));
             return;
         };
         let form = &mut self.form;
@@ -264,7 +267,7 @@ impl Synchronise {
         match exact(sine_v, cosine_v).filter(|_| Limits::HIPERFACE.amplitude(length) != Verdict::Fault) {
             Some(phase) if reading.valid => self.readings.push((reading.position.into(), phase)),
             Some(_) => self.problem = Some(Text::new("commutation.invalid")),
-            None => self.problem = Some(Text::new("synchronise.no_signal")),
+            None => self.problem = Some(TEXTS.text("synchronise.no_signal")),
         }
     }
 

@@ -3,8 +3,9 @@
 use egui::Ui;
 
 use crate::analysis::quality::Family;
-use crate::app::{Action, Text};
-use crate::signals::state::{Action as Signals, Source, SourceAction, VIRTUAL_ADAPTER};
+use crate::app::Action;
+use crate::signals::state::{Action as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
+use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
 use crate::ui::{Skin, icons};
 
@@ -18,10 +19,10 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
     let mut ask = |action: SourceAction| actions.push(Action::Signals(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);
     let aside = |ui: &mut Ui| {
-        closed = icon_button(ui, true, icons::X, &skin.say("adapter.close")).clicked();
+        closed = icon_button(ui, true, icons::X, &say(skin, "adapter.close")).clicked();
     };
-    card_with(ui, skin, "adapter.title", aside, |ui| {
-        let word = skin.say("adapter.link_label");
+    card_with(ui, skin, TEXTS.text("adapter.title"), aside, |ui| {
+        let word = say(skin, "adapter.link_label");
         entry(ui, skin, &word, |ui| {
             let mut link = source.link().to_owned();
             let width = LINK.min(ui.available_width() - skin.space.between);
@@ -33,28 +34,28 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
                 started = true;
             }
         });
-        let word = skin.say("adapter.rate");
+        let word = say(skin, "adapter.rate");
         entry(ui, skin, &word, |ui| {
             let mut rate = source.sample_hz();
-            let rates = RATES.map(|hz| (hz, skin.words(&Text::new("adapter.kilohertz").with("count", hz / 1_000))));
+            let rates = RATES.map(|hz| (hz, skin.words(&TEXTS.text("adapter.kilohertz").with("count", hz / 1_000))));
             if choice(ui, &word, &mut rate, rates) {
                 ask(SourceAction::SetSampleRate(rate));
             }
         });
-        let word = skin.say("adapter.supply");
+        let word = say(skin, "adapter.supply");
         entry(ui, skin, &word, |ui| {
             let mut supply = source.supply();
             let families = Family::ALL.map(|family| (Some(family), supply_of(skin, family)));
-            let elsewhere = (None, skin.say("adapter.supply_elsewhere"));
+            let elsewhere = (None, say(skin, "adapter.supply_elsewhere"));
             if choice(ui, &word, &mut supply, std::iter::once(elsewhere).chain(families)) {
                 ask(SourceAction::SetSupply(supply));
             }
         });
-        paragraph(ui, skin.caption(skin.say("adapter.link_hint")));
+        paragraph(ui, skin.caption(say(skin, "adapter.link_hint")));
         problem(ui, skin, source.adapter_problem());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
-            started |= primary(ui, skin, true, icons::PLAY, &skin.say("adapter.start")).clicked();
-            if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &skin.say("adapter.use_virtual")).clicked() {
+            started |= primary(ui, skin, true, icons::PLAY, &say(skin, "adapter.start")).clicked();
+            if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &say(skin, "adapter.use_virtual")).clicked() {
                 ask(SourceAction::SetLink(VIRTUAL_ADAPTER.to_owned()));
             }
         });
@@ -72,7 +73,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
 fn supply_of(skin: &Skin, family: Family) -> String {
     let voltage = family.supply();
     let volts = |millivolt: u16| f64::from(millivolt) / 1000.0;
-    let text = Text::new("adapter.supply_of").with("family", family.name());
+    let text = TEXTS.text("adapter.supply_of").with("family", family.name());
     let text = text.with_number("volts", volts(voltage.given), 1).with_number("least", volts(voltage.least), 1);
     skin.words(&text.with_number("greatest", volts(voltage.greatest), 1))
 }

@@ -5,7 +5,8 @@ use egui::Ui;
 use super::{View, nonlinearity, numbers, octant, quality, source};
 use crate::analysis::position_error::{Basis, PositionError, harmonics};
 use crate::app::{Action, Text};
-use crate::signals::state::{Results, Signals, error_quantities};
+use crate::signals::state::{Results, Signals, TEXTS, error_quantities};
+use crate::signals::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, split};
 use crate::ui::widgets::{Chart, Trace, chart};
@@ -28,7 +29,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
         (0.5, 560.0),
         (&mut view.periods, actions),
         |ui, (periods, actions)| {
-            card(ui, skin, "error.numbers", |ui| {
+            card(ui, skin, TEXTS.text("error.numbers"), |ui| {
                 quality::periods_ui(ui, skin, signals, periods, actions);
                 ui.add_space(skin.space.inside);
                 let of = |own: &Results| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()));
@@ -50,8 +51,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
 /// What the corrected error was measured against.
 fn basis(basis: Basis) -> Text {
     match basis {
-        Basis::Motion { noise_deg } => Text::new("error.basis_motion").with_number("noise", noise_deg, 3),
-        Basis::Ellipse => Text::new("error.basis_ellipse"),
+        Basis::Motion { noise_deg } => TEXTS.text("error.basis_motion").with_number("noise", noise_deg, 3),
+        Basis::Ellipse => TEXTS.text("error.basis_ellipse"),
     }
 }
 
@@ -64,18 +65,18 @@ fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Res
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let step = 360.0 / curve.len().max(1) as f64;
         let points = curve.iter().enumerate().map(|(at, error)| (at as f64 * step, *error)).collect();
-        Trace { name: skin.say(id), points, colour, dashed }
+        Trace { name: say(skin, id), points, colour, dashed }
     };
     let traces = series(error, other(compared), trace);
-    card(ui, skin, "error.curve", |ui| {
-        let value = Text::new("error.curve_value").with_number("raw", error.raw_pp_deg(), 3).with_number(
+    card(ui, skin, TEXTS.text("error.curve"), |ui| {
+        let value = TEXTS.text("error.curve_value").with_number("raw", error.raw_pp_deg(), 3).with_number(
             "corrected",
             error.corrected_pp_deg,
             3,
         );
         let own = Chart {
             traces: &traces,
-            label: &skin.say("error.curve"),
+            label: &say(skin, "error.curve"),
             value: &skin.words(&value),
             height: 180.0,
             x_unit: "°",
@@ -85,21 +86,21 @@ fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Res
             ..Chart::default()
         };
         chart(ui, skin, &own);
-        paragraph(ui, skin.caption(skin.say("error.axes")));
+        paragraph(ui, skin.caption(say(skin, "error.axes")));
     });
 }
 
 fn bars(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Results>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
-        Trace { name: skin.say(id), points, colour, dashed }
+        Trace { name: say(skin, id), points, colour, dashed }
     };
     let traces = series(error, other(compared), trace);
-    card(ui, skin, "error.harmonics", |ui| {
+    card(ui, skin, TEXTS.text("error.harmonics"), |ui| {
         let peaks: Vec<String> = harmonics(&error.raw_deg).iter().map(|peak| skin.number(*peak, 3)).collect();
         let own = Chart {
             traces: &traces,
-            label: &skin.say("error.harmonics"),
+            label: &say(skin, "error.harmonics"),
             value: &peaks.join("; "),
             height: 150.0,
             y_unit: "°",
@@ -109,7 +110,7 @@ fn bars(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Resul
             ..Chart::default()
         };
         chart(ui, skin, &own);
-        paragraph(ui, skin.caption(skin.say("error.harmonics_axes")));
+        paragraph(ui, skin.caption(say(skin, "error.harmonics_axes")));
     });
 }
 

@@ -4,8 +4,9 @@ use egui::{RichText, Ui};
 
 use crate::analysis::input_circuit::BANDWIDTH_HZ;
 use crate::app::Text;
-use crate::signals::state::Unit;
 use crate::signals::state::input_circuit::{Circuit, Form, Point};
+use crate::signals::state::{TEXTS, Unit};
+use crate::signals::views::say;
 use crate::ui::controls::{card, labelled_entry, paragraph, problem, row, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Skin, icons};
@@ -47,23 +48,23 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, form: &mut Form) {
 }
 
 fn entries(ui: &mut Ui, skin: &Skin, form: &mut Form, refused: Option<&Text>) {
-    card(ui, skin, "input.entries", |ui| {
+    card(ui, skin, TEXTS.text("input.entries"), |ui| {
         for (id, text, hint) in [
             ("input.periods", &mut form.periods, "1024"),
             ("input.speed", &mut form.speed, "6000"),
             ("input.resistance", &mut form.resistance, "10k"),
             ("input.capacitance", &mut form.capacitance, "47p"),
         ] {
-            labelled_entry(ui, skin, id, text, ENTRY, hint);
+            labelled_entry(ui, skin, TEXTS.text(id), text, ENTRY, hint);
         }
         problem(ui, skin, refused);
     });
 }
 
 fn notes(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, "input.notes", |ui| {
+    card(ui, skin, TEXTS.text("input.notes"), |ui| {
         for id in ["input.note_resistor", "input.note_adc", "input.note_lag"] {
-            paragraph(ui, skin.label(skin.say(id)));
+            paragraph(ui, skin.label(say(skin, id)));
         }
     });
 }
@@ -71,7 +72,7 @@ fn notes(ui: &mut Ui, skin: &Skin) {
 fn here(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
     let Point { frequency_hz, response, shaft_deg, .. } = circuit.here;
     let limit_khz = BANDWIDTH_HZ / 1e3;
-    card(ui, skin, "input.here", |ui| {
+    card(ui, skin, TEXTS.text("input.here"), |ui| {
         ui.label(skin.value(format!("{} {}", skin.number(frequency_hz / 1e3, 3), Unit::Kilohertz.sign())));
         let (icon, colour, id) = match circuit.is_within() {
             true => (icons::CHECK_CIRCLE, skin.palette.good, "input.within"),
@@ -79,33 +80,33 @@ fn here(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
         };
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
-            let text = Text::new(id).with_number("limit", limit_khz, 0);
+            let text = TEXTS.text(id).with_number("limit", limit_khz, 0);
             paragraph(ui, RichText::new(skin.words(&text)).color(colour));
         });
         let number = |value, decimals, unit: &str| skin.mono(format!("{}{unit}", skin.number(value, decimals)));
         let khz = |hertz: f64| skin.mono(format!("{} {}", skin.number(hertz / 1e3, 1), Unit::Kilohertz.sign()));
-        let rpm = format!("{} {}", skin.number(circuit.most_rpm, 1), skin.say("input.rpm"));
-        row(ui, skin, &skin.say("input.most"), skin.mono(rpm));
-        row(ui, skin, &skin.say("input.lag"), number(response.phase_deg, 3, "° el."));
-        row(ui, skin, &skin.say("input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
-        row(ui, skin, &skin.say("input.lag_shaft"), number(shaft_deg, 5, "°"));
+        let rpm = format!("{} {}", skin.number(circuit.most_rpm, 1), say(skin, "input.rpm"));
+        row(ui, skin, &say(skin, "input.most"), skin.mono(rpm));
+        row(ui, skin, &say(skin, "input.lag"), number(response.phase_deg, 3, "° el."));
+        row(ui, skin, &say(skin, "input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
+        row(ui, skin, &say(skin, "input.lag_shaft"), number(shaft_deg, 5, "°"));
         let gain = format!("{}  ({} dB)", skin.number(response.gain, 5), skin.number(20.0 * response.gain.log10(), 2));
-        row(ui, skin, &skin.say("input.gain"), skin.mono(gain));
-        row(ui, skin, &skin.say("input.corner"), khz(circuit.corner_hz));
-        row(ui, skin, &skin.say("input.sampling"), khz(2.0 * frequency_hz));
-        row(ui, skin, &skin.say("input.skew"), number(circuit.degrees_per_microsecond(), 2, "° el./µs"));
+        row(ui, skin, &say(skin, "input.gain"), skin.mono(gain));
+        row(ui, skin, &say(skin, "input.corner"), khz(circuit.corner_hz));
+        row(ui, skin, &say(skin, "input.sampling"), khz(2.0 * frequency_hz));
+        row(ui, skin, &say(skin, "input.skew"), number(circuit.degrees_per_microsecond(), 2, "° el./µs"));
     });
 }
 
 fn table(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
-    card(ui, skin, "input.table", |ui| {
+    card(ui, skin, TEXTS.text("input.table"), |ui| {
         // Read, not touched.
         ui.spacing_mut().interact_size.y = skin.space.groups;
         egui::ScrollArea::horizontal().id_salt("input.table").show(ui, |ui| {
             let grid = egui::Grid::new("input.table").spacing([skin.space.groups, skin.space.inside]);
             grid.show(ui, |ui| {
                 for id in ["input.rpm", "input.khz", "input.column_lag", "input.column_steps", "input.gain"] {
-                    ui.label(skin.caption(skin.say(id)));
+                    ui.label(skin.caption(say(skin, id)));
                 }
                 ui.end_row();
                 for point in circuit.course(ROWS) {
@@ -129,7 +130,7 @@ fn table(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
 fn curves(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
     let course = circuit.course(POINTS);
     let trace = |id, colour, dashed, value: fn(&Point) -> f64| Trace {
-        name: skin.say(id),
+        name: say(skin, id),
         points: course.iter().map(|point| (point.speed_rpm, value(point))).collect(),
         colour,
         dashed,
@@ -138,9 +139,10 @@ fn curves(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
         trace("input.curve_lag", 0, false, |point| point.response.phase_deg),
         trace("input.curve_gain", 1, true, |point| 100.0 * point.response.gain),
     ];
-    card(ui, skin, "input.curves", |ui| {
-        let (label, rpm) = (skin.say("input.curves"), skin.say("input.rpm"));
-        let value = Text::new("input.curves_value")
+    card(ui, skin, TEXTS.text("input.curves"), |ui| {
+        let (label, rpm) = (say(skin, "input.curves"), say(skin, "input.rpm"));
+        let value = TEXTS
+            .text("input.curves_value")
             .with_number("lag", course.last().map_or(0.0, |point| point.response.phase_deg), 2)
             .with_number("rpm", circuit.most_rpm, 0);
         let value = skin.words(&value);

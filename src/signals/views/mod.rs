@@ -17,8 +17,8 @@ mod virtual_encoder;
 use egui::Ui;
 
 use crate::app::{Action, SineCosineSource, Studio, Tab, Text};
-use crate::signals::state::Signals;
 use crate::signals::state::input_circuit::Form as Circuit;
+use crate::signals::state::{Signals, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, place_of};
 use crate::ui::{Skin, icons, page};
 
@@ -160,4 +160,9 @@ fn page_ui(
             input_circuit::page_ui(ui, skin, &mut view.input_circuit);
         }
     });
+}
+
+/// A text of this folder's catalogue, or a common one, in the window's language.
+pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
+    skin.words(&TEXTS.text(id))
 }

@@ -3,15 +3,16 @@
 use egui::Ui;
 
 use super::numbers;
-use crate::app::{Text, explain};
-use crate::signals::state::{Nonlinearities, Results, nonlinearity_quantities};
+use crate::app::explain;
+use crate::signals::state::{Nonlinearities, Results, TEXTS, nonlinearity_quantities};
+use crate::signals::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
 /// Draws the card; with a capture that it is compared with also its values.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, measurement: &Results, compared: Option<&Results>) {
-    card(ui, skin, "nonlinearity.title", |ui| match &measurement.nonlinearities {
+    card(ui, skin, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
         Some(Ok(told)) => {
             curve(ui, skin, told);
             ui.add_space(skin.space.inside);
@@ -19,18 +20,18 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, measurement: &Results, compared:
             let other = other.map(nonlinearity_quantities);
             numbers::rows_ui(ui, skin, "nonlinearity.title", &nonlinearity_quantities(told), other.as_deref());
             if told.revolutions < 1.0 {
-                let text = Text::new("nonlinearity.part").with_number("revolutions", told.revolutions, 2);
+                let text = TEXTS.text("nonlinearity.part").with_number("revolutions", told.revolutions, 2);
                 paragraph(ui, skin.caption(skin.words(&text)));
             }
         }
         Some(Err(error)) => problem(ui, skin, Some(&explain::signal::revolution(error))),
-        None => paragraph(ui, skin.label(skin.say("nonlinearity.no_reference"))),
+        None => paragraph(ui, skin.label(say(skin, "nonlinearity.no_reference"))),
     });
 }
 
 fn curve(ui: &mut Ui, skin: &Skin, told: &Nonlinearities) {
     let trace = |id: &'static str, points: &[(f64, f64)], colour: usize, dashed: bool| Trace {
-        name: skin.say(id),
+        name: say(skin, id),
         points: points.to_vec(),
         colour,
         dashed,
@@ -40,14 +41,14 @@ fn curve(ui: &mut Ui, skin: &Skin, told: &Nonlinearities) {
         trace("quality.corrected", &told.corrected.deviation, 2, false),
         trace("nonlinearity.mean", &told.corrected.mean, 1, true),
     ];
-    let value = Text::new("nonlinearity.curve_value").with_number("dnl", told.raw.differential_deg, 5).with_number(
+    let value = TEXTS.text("nonlinearity.curve_value").with_number("dnl", told.raw.differential_deg, 5).with_number(
         "inl",
         told.raw.integral_deg,
         5,
     );
     let own = Chart {
         traces: &traces,
-        label: &skin.say("nonlinearity.title"),
+        label: &say(skin, "nonlinearity.title"),
         value: &skin.words(&value),
         height: 180.0,
         x_unit: "°",
@@ -56,5 +57,5 @@ fn curve(ui: &mut Ui, skin: &Skin, told: &Nonlinearities) {
         ..Chart::default()
     };
     chart(ui, skin, &own);
-    paragraph(ui, skin.caption(skin.say("nonlinearity.axes")));
+    paragraph(ui, skin.caption(say(skin, "nonlinearity.axes")));
 }

@@ -5,6 +5,7 @@ use egui::{RichText, Ui, WidgetInfo};
 
 use crate::analysis::quality::Verdict;
 use crate::signals::state::{Bound, Quantity, Unit};
+use crate::signals::views::say;
 use crate::ui::{Skin, controls};
 
 /// Width from which a value also stands in its second unit; else that is its tooltip.
@@ -32,12 +33,12 @@ pub(super) fn rows_ui(
         egui::Grid::new(name).spacing([between, skin.space.inside]).show(ui, |ui| {
             if compared.is_some() {
                 for id in ["", "compare.now", "compare.kept", "compare.difference"] {
-                    ui.label(if id.is_empty() { RichText::new("") } else { skin.caption(skin.say(id)) });
+                    ui.label(if id.is_empty() { RichText::new("") } else { skin.caption(say(skin, id)) });
                 }
                 ui.end_row();
             }
             for quantity in quantities {
-                ui.label(skin.label(skin.say(quantity.word)));
+                ui.label(skin.label(say(skin, quantity.word)));
                 value(ui, skin, quantity, wide);
                 if let Some(compared) = compared {
                     let other = compared.iter().find(|other| other.word == quantity.word);
@@ -123,7 +124,7 @@ fn mark(ui: &mut Ui, skin: &Skin, verdict: Verdict, limit: &str) {
         Verdict::Warn => "quality.outside",
         Verdict::Fault => "quality.fault",
     };
-    let word = skin.say(id);
+    let word = say(skin, id);
     let response = ui.label(RichText::new(icon).color(colour));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &word));
     response.on_hover_text(format!("{word}: {limit}"));

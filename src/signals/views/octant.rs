@@ -3,7 +3,9 @@
 use egui::Ui;
 
 use crate::analysis::arctan::OctantTable;
+use crate::signals::state::TEXTS;
 use crate::signals::state::interpolation::{INTERVALS, interpolate, table_errors};
+use crate::signals::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
 
@@ -22,8 +24,8 @@ impl Default for View {
 
 /// Draws the card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, view: &mut View) {
-    card(ui, skin, "octant.title", |ui| {
-        paragraph(ui, skin.label(skin.say("octant.words")));
+    card(ui, skin, TEXTS.text("octant.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "octant.words")));
         ui.add_space(skin.space.inside);
         split(ui, skin, (0.5, 560.0), view, |ui, _| tables(ui, skin), |ui, view| pair(ui, skin, view));
     });
@@ -33,7 +35,7 @@ fn tables(ui: &mut Ui, skin: &Skin) {
     ui.spacing_mut().interact_size.y = 20.0;
     egui::Grid::new("octant.title").spacing([skin.space.groups, skin.space.inside]).show(ui, |ui| {
         for id in ["octant.intervals", "octant.largest", "octant.of_period", "octant.bits"] {
-            ui.label(skin.caption(skin.say(id)));
+            ui.label(skin.caption(say(skin, id)));
         }
         ui.end_row();
         for table in table_errors() {
@@ -48,9 +50,9 @@ fn tables(ui: &mut Ui, skin: &Skin) {
 
 fn pair(ui: &mut Ui, skin: &Skin, view: &mut View) {
     for (id, text) in [("octant.sine", &mut view.sine), ("octant.cosine", &mut view.cosine)] {
-        labelled_entry(ui, skin, id, text, 88.0, "");
+        labelled_entry(ui, skin, TEXTS.text(id), text, 88.0, "");
     }
-    let word = skin.say("octant.intervals");
+    let word = say(skin, "octant.intervals");
     entry(ui, skin, &word, |ui| {
         choice(ui, &word, &mut view.intervals, INTERVALS.map(|own| (own, own.to_string())));
     });
@@ -59,10 +61,10 @@ fn pair(ui: &mut Ui, skin: &Skin, view: &mut View) {
             for (id, phase) in [("octant.exact", found.exact), ("octant.table", found.table)] {
                 let degrees = skin.number(phase.degrees(), 5);
                 let periods = skin.number(phase.periods(), 6);
-                row(ui, skin, &skin.say(id), skin.mono(format!("{degrees}°  φ {periods}  {:04X}h", phase.step(16))));
+                row(ui, skin, &say(skin, id), skin.mono(format!("{degrees}°  φ {periods}  {:04X}h", phase.step(16))));
             }
             let difference = format!("{}°", skin.number(found.difference_deg, 5));
-            row(ui, skin, &skin.say("octant.difference"), skin.mono(difference));
+            row(ui, skin, &say(skin, "octant.difference"), skin.mono(difference));
         }
         Err(why) => problem(ui, skin, Some(&why)),
     }

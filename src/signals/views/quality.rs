@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use crate::signals::state::TEXTS;
+use crate::signals::views::say;
+
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
 use super::{View, numbers, source};
@@ -45,23 +48,24 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measure
     let aside = |ui: &mut Ui| {
         // From right to left.
         for (own, id) in [(true, "quality.corrected"), (false, "quality.raw")] {
-            let word = skin.say(id);
+            let word = say(skin, id);
             let button = egui::Button::selectable(corrected == own, word.as_str()).frame_when_inactive(true);
             if name(ui.add_enabled(analysed.is_some(), button), analysed.is_some(), &word).clicked() {
                 view.corrected = own;
             }
         }
     };
-    card_with(ui, skin, "quality.lissajous", aside, |ui| {
+    card_with(ui, skin, TEXTS.text("quality.lissajous"), aside, |ui| {
         let limits = signals.family().limits();
         let (least, most) = limits.ok_v;
         let value = match analysed {
-            Some(analysis) => Text::new("quality.lissajous_value")
+            Some(analysis) => TEXTS
+                .text("quality.lissajous_value")
                 .with_number("shortest", analysis.coverage.vector_v.0, 3)
                 .with_number("longest", analysis.coverage.vector_v.1, 3)
                 .with_number("least", least, 2)
                 .with_number("most", most, 2),
-            None => Text::new("quality.lissajous_bare").with("samples", measurement.capture.sine_v.len()),
+            None => TEXTS.text("quality.lissajous_bare").with("samples", measurement.capture.sine_v.len()),
         };
         let [own, other] = &mut view.pictures;
         if signals.comparison().is_none() {
@@ -79,11 +83,11 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measure
             figures: &figures,
             ok_v: limits.ok_v,
             fault_v: limits.fault_v,
-            label: &skin.say("quality.lissajous"),
+            label: &say(skin, "quality.lissajous"),
             value: &skin.words(&value),
         };
         lissajous(ui, skin, &lissajous_, side);
-        paragraph(ui, skin.caption(skin.say("quality.rings")));
+        paragraph(ui, skin.caption(say(skin, "quality.rings")));
     });
 }
 
@@ -139,7 +143,7 @@ fn figure_of(
 /// Why there is nothing to be measured in a capture, and what there is to look at.
 pub(super) fn refused_ui(ui: &mut Ui, skin: &Skin, measurement: &Results) {
     let Some(why) = measurement.refusal(skin.language) else { return };
-    card(ui, skin, "quality.findings", |ui| {
+    card(ui, skin, TEXTS.text("quality.findings"), |ui| {
         line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why));
         for finding in &measurement.diagnosis.findings {
             finding_ui(ui, skin, finding);
@@ -166,12 +170,12 @@ fn finding_ui(ui: &mut Ui, skin: &Skin, finding: &Finding) {
 
 /// What is wrong, in words.
 fn verdict(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement) {
-    card(ui, skin, "quality.findings", |ui| {
+    card(ui, skin, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();
         match measurement.refusal(skin.language) {
             Some(why) => line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why)),
             None if findings.is_empty() => {
-                line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("quality.good"));
+                line(ui, icons::CHECK_CIRCLE, skin.palette.good, say(skin, "quality.good"));
             }
             None => {}
         }
@@ -188,11 +192,11 @@ fn verdict(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measuremen
 fn changes_ui(ui: &mut Ui, skin: &Skin, name: &Text, changes: &Changes) {
     let under = |ui: &mut Ui, id| {
         ui.add_space(skin.space.inside);
-        ui.label(skin.caption(skin.words(&Text::new(id).with_text("name", name.clone()))));
+        ui.label(skin.caption(skin.words(&TEXTS.text(id).with_text("name", name.clone()))));
     };
     under(ui, "compare.worse");
     if changes.worse.is_empty() && changes.untold.is_empty() {
-        line(ui, icons::CHECK_CIRCLE, skin.palette.good, skin.say("compare.nothing"));
+        line(ui, icons::CHECK_CIRCLE, skin.palette.good, say(skin, "compare.nothing"));
     }
     for finding in &changes.worse {
         finding_ui(ui, skin, finding);
@@ -216,8 +220,8 @@ fn values(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, skin, "quality.numbers", |ui| {
-        let word = skin.say("quality.family");
+    card(ui, skin, TEXTS.text("quality.numbers"), |ui| {
+        let word = say(skin, "quality.family");
         let mut family = signals.family();
         entry(ui, skin, &word, |ui| {
             let families = Family::ALL.map(|own| (own, own.name().to_owned()));
@@ -241,14 +245,14 @@ pub(super) fn periods_ui(
     draft: &mut super::Draft,
     actions: &mut Vec<Action>,
 ) {
-    let word = skin.say("quality.periods_per_turn");
+    let word = say(skin, "quality.periods_per_turn");
     entry(ui, skin, &word, |ui| {
         let shown = signals.periods().map(|periods| periods.to_string()).unwrap_or_default();
         settled_entry(ui, draft, &shown, 72.0, &word, |text| {
             actions.push(Action::Signals(Signals_::SetPeriods(forms::periods(text)?)));
             Ok(())
         });
-        let usual = skin.say("quality.periods_usual");
+        let usual = say(skin, "quality.periods_usual");
         let menu = ui.menu_button(icons::CARET_DOWN, |ui| {
             for periods in USUAL_PERIODS {
                 if ui.selectable_label(signals.periods() == Some(periods), periods.to_string()).clicked() {
@@ -264,6 +268,6 @@ pub(super) fn periods_ui(
         problem(ui, skin, Some(why));
     }
     if signals.periods().is_none() {
-        line(ui, icons::QUESTION, skin.palette.warn, skin.say("quality.periods_open"));
+        line(ui, icons::QUESTION, skin.palette.warn, say(skin, "quality.periods_open"));
     }
 }

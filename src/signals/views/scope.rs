@@ -4,8 +4,9 @@ use egui::{Ui, vec2};
 
 use super::numbers::with_unit;
 use super::{View, quality, source};
-use crate::app::{Action, Desk, Text, explain};
-use crate::signals::state::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, Unit, dbv};
+use crate::app::{Action, Desk, explain};
+use crate::signals::state::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, TEXTS, Unit, dbv};
+use crate::signals::views::say;
 use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Skin, plot};
@@ -37,18 +38,21 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut Vi
 fn trace(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut ScopeView, actions: &mut Vec<Action>) {
     let scope = signals.scope();
     let height = (ui.ctx().content_rect().height() * 0.5).max(TRACE);
-    card(ui, skin, "scope.title", |ui| {
+    card(ui, skin, TEXTS.text("scope.title"), |ui| {
         ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
             ui.set_max_height(height);
-            let empty = skin.say(match scope.refused {
-                Some(NoTimes::GoBack) => "scope.refused",
-                Some(NoTimes::TooFar) => "scope.too_far",
-                None => "scope.nothing",
-            });
+            let empty = say(
+                skin,
+                match scope.refused {
+                    Some(NoTimes::GoBack) => "scope.refused",
+                    Some(NoTimes::TooFar) => "scope.too_far",
+                    None => "scope.nothing",
+                },
+            );
             plot::plot_ui(ui, skin, &scope.recorder, Desk::Signals, &mut view.plot, &empty, actions);
         });
         if scope.recorder.counts() {
-            paragraph(ui, skin.caption(skin.say("scope.counts")));
+            paragraph(ui, skin.caption(say(skin, "scope.counts")));
         }
     });
 }
@@ -59,14 +63,14 @@ fn spectrum(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measureme
     let aside = |ui: &mut Ui| {
         // From right to left.
         for (own, id) in [(true, "spectrum.volts"), (false, "spectrum.decibels")] {
-            let word = skin.say(id);
+            let word = say(skin, id);
             let button = egui::Button::selectable(volts == own, word.as_str()).frame_when_inactive(true);
             if name(ui.add(button), true, &word).clicked() {
                 wanted = own;
             }
         }
     };
-    card_with(ui, skin, "spectrum.title", aside, |ui| {
+    card_with(ui, skin, TEXTS.text("spectrum.title"), aside, |ui| {
         let spectra = match &measurement.spectra {
             Ok(spectra) => spectra,
             Err(error) => {
@@ -88,7 +92,7 @@ fn shown(volts: bool, peak_v: f64) -> f64 {
 
 fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, volts: bool) {
     let trace = |id: &'static str, channel: &ChannelSpectrum, colour: usize, dashed: bool| Trace {
-        name: skin.say(id),
+        name: say(skin, id),
         points: channel.lines.iter().map(|(hertz, peak)| (hertz / 1e3, shown(volts, *peak))).collect(),
         colour,
         dashed,
@@ -108,7 +112,7 @@ fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, vo
     let value: Vec<String> = marks.iter().map(|(_, _, words)| words.clone()).collect();
     let own = Chart {
         traces: &traces,
-        label: &skin.say("spectrum.title"),
+        label: &say(skin, "spectrum.title"),
         value: &value.join("; "),
         height: SPECTRUM,
         x_unit: Unit::Kilohertz.sign(),
@@ -117,7 +121,7 @@ fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, vo
         ..Chart::default()
     };
     chart(ui, skin, &own);
-    let text = Text::new("spectrum.axes").with("samples", spectra.samples).with_number(
+    let text = TEXTS.text("spectrum.axes").with("samples", spectra.samples).with_number(
         "spacing",
         spectra.spacing_hz,
         if spectra.spacing_hz < 10.0 { 2 } else { 0 },
@@ -132,12 +136,12 @@ fn peaks(ui: &mut Ui, skin: &Skin, spectra: &Spectra, measurement: &Measurement)
     ui.spacing_mut().interact_size.y = 20.0;
     egui::Grid::new("spectrum.title").spacing([skin.space.groups, skin.space.inside]).show(ui, |ui| {
         for id in ["spectrum.channel", "spectrum.frequency", "spectrum.amplitude", "spectrum.level", "spectrum.order"] {
-            ui.label(skin.caption(skin.say(id)));
+            ui.label(skin.caption(say(skin, id)));
         }
         ui.end_row();
         for (id, channel) in [("signals.sine", &spectra.sine), ("signals.cosine", &spectra.cosine)] {
             for peak in channel.peaks.iter().take(4) {
-                ui.label(skin.label(skin.say(id)));
+                ui.label(skin.label(say(skin, id)));
                 ui.label(skin.mono(with_unit(skin, peak.frequency_hz / 1e3, 4, Unit::Kilohertz)));
                 ui.label(skin.mono(with_unit(skin, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
                 ui.label(skin.mono(with_unit(skin, dbv(peak.amplitude_v), 1, Unit::DecibelVolts)));

@@ -3,9 +3,10 @@
 use egui::{RichText, Ui};
 
 use super::{adapter, table, virtual_encoder};
-use crate::app::{Action, Text};
+use crate::app::Action;
 use crate::buses::bridge::protocol::Capabilities;
-use crate::signals::state::{Action as Signals_, Example, Origin, Place, Signals, SourceAction, SourceKind};
+use crate::signals::state::{Action as Signals_, Example, Origin, Place, Signals, SourceAction, SourceKind, TEXTS};
+use crate::signals::views::say;
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
 use crate::ui::widgets::series;
 use crate::ui::{Skin, icons};
@@ -78,11 +79,11 @@ fn reading(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action
     let Some(reading) = signals.reading() else { return };
     ui.horizontal(|ui| {
         spinner(ui, skin);
-        ui.label(skin.label(skin.words(&Text::new("signals.reading").with_text("name", reading.place.name()))));
+        ui.label(skin.label(skin.words(&TEXTS.text("signals.reading").with_text("name", reading.place.name()))));
         if let Some(share) = reading.share() {
             ui.add(egui::ProgressBar::new(share as f32).desired_height(4.0).desired_width(160.0));
         }
-        let word = skin.say(if reading.is_cancelled() { "shell.stopping" } else { "shell.cancel" });
+        let word = say(skin, if reading.is_cancelled() { "shell.stopping" } else { "shell.cancel" });
         if enabled_button(ui, !reading.is_cancelled(), icons::X, &word).clicked() {
             actions.push(Action::Signals(Signals_::Cancel));
         }
@@ -98,7 +99,7 @@ pub(super) fn problem(ui: &mut Ui, skin: &Skin, signals: &Signals) {
         ui.vertical(|ui| {
             paragraph(ui, skin.words(problem));
             if let Some(measurement) = signals.measurement() {
-                let text = Text::new("signals.still_shown").with_text("name", measurement.origin.name());
+                let text = TEXTS.text("signals.still_shown").with_text("name", measurement.origin.name());
                 paragraph(ui, skin.caption(skin.words(&text)));
             }
         });
@@ -116,7 +117,7 @@ fn present(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions
             source_buttons(ui, skin, signals, view, actions);
             keep_ui(ui, skin, signals, actions);
             if signals.table().is_some() {
-                toggle(ui, icons::TABLE, &skin.say("signals.table"), &mut view.table.is_open);
+                toggle(ui, icons::TABLE, &say(skin, "signals.table"), &mut view.table.is_open);
             }
         });
         compared(ui, skin, signals, actions);
@@ -133,7 +134,7 @@ fn title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
         let response = ui.add(egui::Label::new(skin.heading(name)).truncate());
         match &measurement.origin {
             Origin::Table(Place::File(path)) => drop(response.on_hover_text(path.display().to_string())),
-            Origin::Table(Place::Example(_)) => badge(ui, skin, &skin.say("signals.example"), palette.muted),
+            Origin::Table(Place::Example(_)) => badge(ui, skin, &say(skin, "signals.example"), palette.muted),
             Origin::Virtual | Origin::Adapter { .. } => {}
         }
     }
@@ -154,7 +155,7 @@ fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
         (true, SourceKind::Adapter, None) => None,
         (false, ..) => shown.cloned(),
     };
-    let name = origin.as_ref().map_or(Text::new("adapter.title"), Origin::name);
+    let name = origin.as_ref().map_or(TEXTS.text("adapter.title"), Origin::name);
     ui.add(egui::Label::new(skin.heading(skin.words(&name))).truncate());
     if matches!(origin, Some(Origin::Virtual | Origin::Adapter { is_virtual: true, .. })) {
         badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
@@ -165,24 +166,24 @@ fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
         (true, false) => ("virtual.running", palette.good),
         (false, _) => ("virtual.stopped", palette.muted),
     };
-    let response = ui.label(RichText::new(skin.say(id)).color(colour));
+    let response = ui.label(RichText::new(say(skin, id)).color(colour));
     if let Some(streaming) = source.streaming() {
         let rate = 1e9 / streaming.period_ns.max(1) as f64;
         let volts = f64::from(streaming.full_scale_microvolt) * 1e-6;
-        let actual = Text::new("adapter.actual").with_number("rate", rate, 0).with_number("volts", volts, 3);
+        let actual = TEXTS.text("adapter.actual").with_number("rate", rate, 0).with_number("volts", volts, 3);
         let hello = &streaming.hello;
         let who = [hello.name.as_str(), &hello.serial, &hello.firmware].join(" · ");
         response.on_hover_text(format!("{who}\n{}", skin.words(&actual)));
         if let Some((millivolt, milliampere)) = streaming.supplied {
-            let text = Text::new("adapter.supplied").with_number("volts", f64::from(millivolt) / 1000.0, 2);
+            let text = TEXTS.text("adapter.supplied").with_number("volts", f64::from(millivolt) / 1000.0, 2);
             ui.label(skin.label(skin.words(&text.with("milliampere", milliampere))));
         } else if hello.capabilities.has(Capabilities::SUPPLY) {
-            let word = RichText::new(skin.say("adapter.supply_off")).color(palette.warn);
-            ui.label(word).on_hover_text(skin.say("adapter.supply_off_hint"));
+            let word = RichText::new(say(skin, "adapter.supply_off")).color(palette.warn);
+            ui.label(word).on_hover_text(say(skin, "adapter.supply_off_hint"));
         }
     }
     if source.lost() > 0 {
-        let text = Text::new("virtual.lost").with("count", source.lost());
+        let text = TEXTS.text("virtual.lost").with("count", source.lost());
         ui.label(RichText::new(skin.words(&text)).color(palette.warn));
     }
 }
@@ -193,15 +194,15 @@ fn source_buttons(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, 
     let mut ask = |action| actions.push(Action::Signals(Signals_::Source(action)));
     let Some(kind) = live(signals) else { return };
     if source.is_running() {
-        if button(ui, icons::STOP, &skin.say("virtual.stop")).clicked() {
+        if button(ui, icons::STOP, &say(skin, "virtual.stop")).clicked() {
             ask(SourceAction::Stop);
         }
         let held = source.is_held();
         let (icon, id) = if held { (icons::PLAY, "virtual.go_on") } else { (icons::PAUSE, "virtual.hold") };
-        if button(ui, icon, &skin.say(id)).clicked() {
+        if button(ui, icon, &say(skin, id)).clicked() {
             ask(SourceAction::Hold(!held));
         }
-    } else if button(ui, icons::PLAY, &skin.say("virtual.again")).clicked() {
+    } else if button(ui, icons::PLAY, &say(skin, "virtual.again")).clicked() {
         ask(match kind {
             SourceKind::Encoder => SourceAction::Start,
             SourceKind::Adapter => SourceAction::StartAdapter,
@@ -211,7 +212,7 @@ fn source_buttons(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, 
         SourceKind::Encoder => &mut view.settings,
         SourceKind::Adapter => &mut view.adapter,
     };
-    toggle(ui, icons::SLIDERS, &skin.say("virtual.settings"), open);
+    toggle(ui, icons::SLIDERS, &say(skin, "virtual.settings"), open);
 }
 
 /// A button that shows something, or hides it.
@@ -224,10 +225,10 @@ fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
 
 /// Putting the capture aside, and what is put aside.
 fn keep_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
-    let word = skin.say("compare.keep");
+    let word = say(skin, "compare.keep");
     let same =
         signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));
-    if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(skin.say("compare.keep_hint")).clicked() {
+    if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(say(skin, "compare.keep_hint")).clicked() {
         actions.push(Action::Signals(Signals_::Keep));
     }
 }
@@ -236,13 +237,13 @@ fn keep_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action
 fn compared(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(kept) = signals.comparison() else { return };
     ui.horizontal(|ui| {
-        let text = Text::new("compare.with").with_text("name", kept.origin.name());
+        let text = TEXTS.text("compare.with").with_text("name", kept.origin.name());
         let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 12.0), egui::Sense::hover());
         let ends = [rect.left_center(), rect.right_center()];
         let stroke = egui::Stroke::new(2.0, series(skin, 1));
         ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
         ui.add(egui::Label::new(skin.label(skin.words(&text))).truncate());
-        if icon_button(ui, true, icons::X, &skin.say("compare.drop")).clicked() {
+        if icon_button(ui, true, icons::X, &say(skin, "compare.drop")).clicked() {
             actions.push(Action::Signals(Signals_::DropComparison));
         }
     });
@@ -250,23 +251,23 @@ fn compared(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Actio
 
 /// Everything that samples can come from.
 fn source_menu(ui: &mut Ui, skin: &Skin, view: &mut View, actions: &mut Vec<Action>) {
-    let word = skin.say("signals.source");
+    let word = say(skin, "signals.source");
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {
         ui.set_width(220.0);
         let mut chosen = None;
-        if button(ui, icons::FOLDER_OPEN, &skin.say("signals.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &say(skin, "signals.open")).clicked() {
             chosen = Some(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &skin.say("virtual.start")).clicked() {
+        if button(ui, icons::WAVE_SINE, &say(skin, "virtual.start")).clicked() {
             chosen = Some(Action::Signals(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &skin.say("adapter.open")).clicked() {
+        if button(ui, icons::PLUGS, &say(skin, "adapter.open")).clicked() {
             view.adapter = true;
             ui.close();
         }
-        ui.label(skin.caption(skin.say("signals.examples")));
+        ui.label(skin.caption(say(skin, "signals.examples")));
         for example in Example::ALL {
-            if button(ui, icons::FILE_TEXT, &skin.say(example.word())).clicked() {
+            if button(ui, icons::FILE_TEXT, &say(skin, example.word())).clicked() {
                 chosen = Some(Action::Signals(Signals_::Example(example)));
             }
         }
@@ -287,21 +288,21 @@ fn nothing(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions
         ui.add_space(skin.space.around);
         ui.label(RichText::new(icons::WAVE_SINE).size(skin.sizes.live).color(skin.palette.muted));
         ui.add_space(skin.space.between);
-        ui.add(egui::Label::new(skin.label(skin.say("signals.nothing"))).wrap());
+        ui.add(egui::Label::new(skin.label(say(skin, "signals.nothing"))).wrap());
         ui.add_space(skin.space.between);
-        if button(ui, icons::FOLDER_OPEN, &skin.say("signals.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &say(skin, "signals.open")).clicked() {
             actions.push(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &skin.say("virtual.start")).clicked() {
+        if button(ui, icons::WAVE_SINE, &say(skin, "virtual.start")).clicked() {
             actions.push(Action::Signals(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &skin.say("adapter.open")).clicked() {
+        if button(ui, icons::PLUGS, &say(skin, "adapter.open")).clicked() {
             view.adapter = true;
         }
         ui.add_space(skin.space.groups);
-        ui.label(skin.caption(skin.say("signals.try_example")));
+        ui.label(skin.caption(say(skin, "signals.try_example")));
         for example in Example::ALL {
-            if button(ui, icons::WAVE_SINE, &skin.say(example.word())).clicked() {
+            if button(ui, icons::WAVE_SINE, &say(skin, example.word())).clicked() {
                 actions.push(Action::Signals(Signals_::Example(example)));
             }
         }

@@ -4,8 +4,9 @@ use egui::{ScrollArea, Ui};
 
 use super::Draft;
 use crate::analysis::capture::{Delimiter, TimeUnit};
-use crate::app::{Action, Text};
-use crate::signals::state::{Action as Signals, Column, Table, forms};
+use crate::app::Action;
+use crate::signals::state::{Action as Signals, Column, TEXTS, Table, forms};
+use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -40,9 +41,9 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, 
     let mut wish = |action: Signals| actions.push(Action::Signals(action));
     let mut again = false;
     let aside = |ui: &mut Ui| {
-        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("columns.detect")).clicked();
+        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "columns.detect")).clicked();
     };
-    card_with(ui, skin, "columns.title", aside, |ui| {
+    card_with(ui, skin, TEXTS.text("columns.title"), aside, |ui| {
         lines(ui, skin, table);
         ui.add_space(skin.space.between);
         two_columns(
@@ -59,11 +60,11 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, 
             problem(ui, skin, Some(why));
         }
         if let Some(clock) = table.layout.as_ref().and_then(|layout| layout.clock) {
-            let text = Text::new("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
+            let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
             paragraph(ui, skin.caption(skin.words(&text)));
         }
         if table.half_chosen != (None, None) {
-            paragraph(ui, skin.caption(skin.say("columns.half_chosen")));
+            paragraph(ui, skin.caption(say(skin, "columns.half_chosen")));
         }
     });
     if again {
@@ -89,18 +90,18 @@ fn lines(ui: &mut Ui, skin: &Skin, table: &Table) {
 }
 
 fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
-    let word = skin.say("columns.delimiter");
+    let word = say(skin, "columns.delimiter");
     let mut delimiter = table.delimiter();
     entry(ui, skin, &word, |ui| {
-        let options = DELIMITERS.map(|(own, id)| (Some(own), skin.say(id)));
+        let options = DELIMITERS.map(|(own, id)| (Some(own), say(skin, id)));
         if choice(ui, &word, &mut delimiter, options) {
             delimiter.into_iter().for_each(|own| wish(Signals::SetDelimiter(own)));
         }
     });
-    let word = skin.say("columns.decimal");
+    let word = say(skin, "columns.decimal");
     let mut comma = table.wishes.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
     entry(ui, skin, &word, |ui| {
-        let options = [(Some(false), skin.say("columns.point")), (Some(true), skin.say("columns.comma"))];
+        let options = [(Some(false), say(skin, "columns.point")), (Some(true), say(skin, "columns.comma"))];
         if choice(ui, &word, &mut comma, options) {
             comma.into_iter().for_each(|own| wish(Signals::SetDecimalComma(own)));
         }
@@ -109,11 +110,11 @@ fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals))
 
 fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
     for (column, id) in COLUMNS {
-        let word = skin.say(id);
+        let word = say(skin, id);
         let mut number = table.column(column);
         let needed = matches!(column, Column::Sine | Column::Cosine);
         entry(ui, skin, &word, |ui| {
-            let none = (!needed).then(|| (None, skin.say("columns.none")));
+            let none = (!needed).then(|| (None, say(skin, "columns.none")));
             let width = table.width().max(number.unwrap_or(0));
             let numbers = (1..=width).map(|own| match table.name(own) {
                 Some(name) => (Some(own), format!("{own}: {name}")),
@@ -124,7 +125,7 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
             }
         });
         if column == Column::Time && number.is_some() {
-            let word = skin.say("columns.time_unit");
+            let word = say(skin, "columns.time_unit");
             let mut unit = table.wishes.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
             entry(ui, skin, &word, |ui| {
                 let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
@@ -139,7 +140,7 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
 fn volts(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, wish: &mut impl FnMut(Signals)) {
     let volts = table.wishes.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
     let shown = volts.map(|volts| skin.plain(volts)).unwrap_or_default();
-    let word = skin.say("columns.volts");
+    let word = say(skin, "columns.volts");
     entry(ui, skin, &word, |ui| {
         settled_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
             wish(Signals::SetVolts(forms::volts_per_unit(text)?));

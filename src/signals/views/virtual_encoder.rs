@@ -3,8 +3,9 @@
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
 use crate::analysis::wires::Wire;
-use crate::app::{Action, Text, explain, number};
-use crate::signals::state::{Action as Signals, Source, SourceAction};
+use crate::app::{Action, explain, number};
+use crate::signals::state::{Action as Signals, Source, SourceAction, TEXTS};
+use crate::signals::views::say;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};
 use crate::ui::{Skin, icons};
@@ -55,9 +56,9 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
     let mut ask = |action: SourceAction| actions.push(Action::Signals(Signals::Source(action)));
     let mut reset = false;
     let aside = |ui: &mut Ui| {
-        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("virtual.reset")).clicked();
+        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "virtual.reset")).clicked();
     };
-    card_with(ui, skin, "virtual.settings", aside, |ui| {
+    card_with(ui, skin, TEXTS.text("virtual.settings"), aside, |ui| {
         // There are many, and what they do is to be seen beside them.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = skin.space.inside;
@@ -110,32 +111,34 @@ fn sliders(ui: &mut Ui, skin: &Skin, settings: &Settings, list: &[Slid], ask: &m
 }
 
 fn wires(ui: &mut Ui, skin: &Skin, settings: &Settings, ask: &mut impl FnMut(SourceAction)) {
-    let word = skin.say("virtual.open_wire");
+    let word = say(skin, "virtual.open_wire");
     let mut open = settings.open_wire;
     entry(ui, skin, &word, |ui| {
         let wires = Wire::ALL.map(|wire| (Some(wire), wire.name().to_owned()));
-        let none = [(None, skin.say("virtual.no_wire"))];
+        let none = [(None, say(skin, "virtual.no_wire"))];
         if choice(ui, &word, &mut open, none.into_iter().chain(wires)) {
             ask(SourceAction::SetOpenWire(open));
         }
     });
-    let word = skin.say("virtual.references");
+    let word = say(skin, "virtual.references");
     let mut references = settings.references;
     entry(ui, skin, &word, |ui| {
-        let options =
-            [(References::Level, skin.say("virtual.level")), (References::Complement, skin.say("virtual.complement"))];
+        let options = [
+            (References::Level, say(skin, "virtual.level")),
+            (References::Complement, say(skin, "virtual.complement")),
+        ];
         if choice(ui, &word, &mut references, options) {
             ask(SourceAction::SetReferences(references));
         }
     });
     let mut terminated = settings.terminated;
-    if ui.checkbox(&mut terminated, skin.say("virtual.terminated")).changed() {
+    if ui.checkbox(&mut terminated, say(skin, "virtual.terminated")).changed() {
         ask(SourceAction::SetTerminated(terminated));
     }
 }
 
 fn window(ui: &mut Ui, skin: &Skin, source: &Source, ask: &mut impl FnMut(SourceAction)) {
-    let word = skin.say("virtual.window");
+    let word = say(skin, "virtual.window");
     let mut window = source.window_ms();
     entry(ui, skin, &word, |ui| {
         if choice(ui, &word, &mut window, WINDOWS.map(|own| (own, format!("{own} ms")))) {
@@ -143,7 +146,7 @@ fn window(ui: &mut Ui, skin: &Skin, source: &Source, ask: &mut impl FnMut(Source
         }
     });
     if let Some(ms) = source.shortened_ms() {
-        let text = Text::new("virtual.shortened").with_number("ms", ms, 0);
+        let text = TEXTS.text("virtual.shortened").with_number("ms", ms, 0);
         paragraph(ui, skin.caption(skin.words(&text)));
     }
 }

@@ -1,8 +1,9 @@
 //! The logbook on a disk: counts, two windows, and every way in which its file can be unusable.
 
+use std::fs;
+
 use super::*;
 use crate::store::{FileProblem, Store};
-use std::fs;
 
 fn at(second: i64) -> Timestamp {
     Timestamp::from_second(1_795_263_287 + second).unwrap()

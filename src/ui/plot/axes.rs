@@ -1,9 +1,8 @@
 //! Ticks and their labels: round steps of values, and of time in the unit that its steps have. Pure.
 
 use crate::analysis::Time;
-use crate::app::Language;
-use crate::app::decimal;
 use crate::app::recorder::SAMPLE;
+use crate::app::{Language, decimal};
 
 /// A step that is 1, 2 or 5 times a power of ten, so that `span` has at most so many of it.
 pub(super) fn step(span: f64, most: f64) -> f64 {

@@ -4,9 +4,8 @@ use egui::{RichText, Ui};
 
 use crate::app::Text;
 use crate::app::recorder::{Action, LineId, Recorder, Trigger, When};
-use crate::ui::Skin;
 use crate::ui::controls::{entry, options, primary, text_entry};
-use crate::ui::icons;
+use crate::ui::{Skin, icons};
 
 /// What is being typed.
 pub(super) struct Form {

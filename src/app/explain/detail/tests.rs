@@ -1,8 +1,8 @@
 //! What lower floors say, in both languages.
 
-use super::*;
 use std::time::Duration;
 
+use super::*;
 use crate::app::Language::{English, German};
 use crate::devices::biss::procedures as biss;
 use crate::devices::biss::profile::BissProfile;

@@ -9,13 +9,14 @@ mod tap;
 
 use std::time::Duration;
 
+use power::Power;
+
 use crate::bits::MaskedBytes;
 use crate::buses::bridge::protocol::{
     BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
 use crate::device::line::{Line, LineError, LineState};
 use crate::units::{Moment, SupplyVoltage};
-use power::Power;
 
 pub use flow::Portion;
 pub use power::SupplyAfter;

@@ -3,47 +3,50 @@
 use crate::app::Text;
 use crate::buses::bridge::procedures::AdapterError;
 use crate::buses::bridge::protocol::{ErrorCode, Operation};
+use crate::buses::bridge::state::TEXTS;
 
 /// An adapter that does not answer, or not with what was asked for.
 pub fn adapter(error: &AdapterError) -> Text {
     match error {
-        AdapterError::Silent => Text::new("adapter.silent"),
+        AdapterError::Silent => TEXTS.text("adapter.silent"),
         AdapterError::Version { expected, got } => {
-            Text::new("adapter.version").with("got", got).with("expected", expected)
+            TEXTS.text("adapter.version").with("got", got).with("expected", expected)
         }
-        AdapterError::NoBiss { name } => Text::new("adapter.no_biss").with("name", name),
-        AdapterError::NoSsi { name } => Text::new("adapter.no_ssi").with("name", name),
-        AdapterError::NoAnalog { name } => Text::new("adapter.no_analogue").with("name", name),
-        AdapterError::NoSupply { name } => Text::new("adapter.no_supply").with("name", name),
-        AdapterError::Overvoltage { given, measured, greatest } => Text::new("adapter.overvoltage")
+        AdapterError::NoBiss { name } => TEXTS.text("adapter.no_biss").with("name", name),
+        AdapterError::NoSsi { name } => TEXTS.text("adapter.no_ssi").with("name", name),
+        AdapterError::NoAnalog { name } => TEXTS.text("adapter.no_analogue").with("name", name),
+        AdapterError::NoSupply { name } => TEXTS.text("adapter.no_supply").with("name", name),
+        AdapterError::Overvoltage { given, measured, greatest } => TEXTS
+            .text("adapter.overvoltage")
             .with_number("given", volts(*given), 2)
             .with_number("measured", volts(*measured), 2)
             .with_number("greatest", volts(*greatest), 2),
-        AdapterError::Mute => Text::new("adapter.mute"),
-        AdapterError::Restarted => Text::new("adapter.restarted"),
-        AdapterError::Data { cause } => Text::new("adapter.data").with("why", cause),
-        AdapterError::Refused { operation, code, text } => Text::new("adapter.refused")
+        AdapterError::Mute => TEXTS.text("adapter.mute"),
+        AdapterError::Restarted => TEXTS.text("adapter.restarted"),
+        AdapterError::Data { cause } => TEXTS.text("adapter.data").with("why", cause),
+        AdapterError::Refused { operation, code, text } => TEXTS
+            .text("adapter.refused")
             .with("operation", number(*operation))
             .with_text("why", reason(*code))
             .with("text", text),
         AdapterError::Reply { operation, cause } => {
-            Text::new("adapter.reply").with("operation", number(*operation)).with("why", cause)
+            TEXTS.text("adapter.reply").with("operation", number(*operation)).with("why", cause)
         }
         AdapterError::Other { asked, got } => {
-            Text::new("adapter.other").with("asked", number(*asked)).with("got", number(*got))
+            TEXTS.text("adapter.other").with("asked", number(*asked)).with("got", number(*got))
         }
     }
 }
 
 fn reason(code: ErrorCode) -> Text {
     match code {
-        ErrorCode::NOT_SUPPORTED => Text::new("adapter.not_supported"),
-        ErrorCode::BAD_ARGUMENT => Text::new("adapter.bad_argument"),
-        ErrorCode::BUSY => Text::new("adapter.busy"),
-        ErrorCode::NO_ANSWER => Text::new("adapter.no_answer"),
-        ErrorCode::WRONG_ANSWER => Text::new("adapter.wrong_answer"),
-        ErrorCode::OVERRUN => Text::new("adapter.overrun"),
-        other => Text::new("adapter.unknown_code").with("code", other.byte()),
+        ErrorCode::NOT_SUPPORTED => TEXTS.text("adapter.not_supported"),
+        ErrorCode::BAD_ARGUMENT => TEXTS.text("adapter.bad_argument"),
+        ErrorCode::BUSY => TEXTS.text("adapter.busy"),
+        ErrorCode::NO_ANSWER => TEXTS.text("adapter.no_answer"),
+        ErrorCode::WRONG_ANSWER => TEXTS.text("adapter.wrong_answer"),
+        ErrorCode::OVERRUN => TEXTS.text("adapter.overrun"),
+        other => TEXTS.text("adapter.unknown_code").with("code", other.byte()),
     }
 }
 

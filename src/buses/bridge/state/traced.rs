@@ -3,6 +3,7 @@
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
+use crate::buses::bridge::state::TEXTS;
 
 /// The packet in bytes as they pass over the line; `None`: they are none.
 pub fn packet(bytes: &[u8]) -> Option<Packet> {
@@ -12,7 +13,7 @@ pub fn packet(bytes: &[u8]) -> Option<Packet> {
 
 /// A packet that came from an adapter and is broken, or refuses; `None` for any other.
 pub fn received(bytes: &[u8]) -> Option<Explained> {
-    let Some(packet) = packet(bytes) else { return Some(Explained::broken(Text::new("trace.no_packet"))) };
+    let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {
         Ok(Message::Error { .. }) => {
             let meaning = said(&packet).into_iter().collect();
@@ -27,8 +28,8 @@ pub fn received(bytes: &[u8]) -> Option<Explained> {
 pub fn asked(request: &Request) -> Text {
     match request {
         Request::BissRead | Request::SsiRead => Text::new("trace.position"),
-        Request::Hello => Text::new("trace.hello"),
-        _ => Text::new("trace.set_up"),
+        Request::Hello => TEXTS.text("trace.hello"),
+        _ => TEXTS.text("trace.set_up"),
     }
 }
 
@@ -41,7 +42,7 @@ pub fn said(packet: &Packet) -> Option<Text> {
         }
         Message::Reply(Reply::Hello(hello)) => plain(format!("{} {}", hello.name, hello.firmware)),
         Message::Reply(_) => Text::new("trace.taken"),
-        Message::Error { text, .. } => Text::new("trace.adapter_refuses").with("why", text),
-        Message::Data(_) => Text::new("trace.stream"),
+        Message::Error { text, .. } => TEXTS.text("trace.adapter_refuses").with("why", text),
+        Message::Data(_) => TEXTS.text("trace.stream"),
     })
 }

@@ -4,20 +4,21 @@
 use std::path::Path;
 use std::time::Duration;
 
+use crate::devices::biss::state::TEXTS;
+
 use serde_json::json;
 
 use super::args::{BissAction, DoOptions};
 use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
-use crate::app::{Text, explain};
+use crate::app::explain;
 use crate::cli::args::{Common, Do};
-use crate::cli::check;
 use crate::cli::consent::{answer, ask, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::profiles::{load_to_write, show_done};
 use crate::cli::runner::{failed, unexpected};
-use crate::cli::{Done, Failure, Result};
+use crate::cli::{Done, Failure, Result, check};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::procedures::procedure::Outcome;
 use crate::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RegisterRange};
@@ -125,7 +126,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     if outcomes.iter().all(passes) {
         Ok(done)
     } else {
-        Err(failed(&Text::new("biss_cli.not_passed").with("what", name)))
+        Err(failed(&TEXTS.text("biss_cli.not_passed").with("what", name)))
     }
 }
 

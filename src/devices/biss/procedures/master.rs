@@ -11,6 +11,8 @@ mod ubicom;
 use std::sync::Arc;
 use std::time::Duration;
 
+use bus::NoFrame;
+
 use super::error::{Asked, Damage};
 use super::position::PositionReading;
 use super::{Error, Station, Way};
@@ -19,7 +21,6 @@ use crate::device::line::{Line, TRIES};
 use crate::devices::biss::protocol::{Description, RegisterAddress};
 use crate::link::Ctx;
 use crate::units::Moment;
-use bus::NoFrame;
 
 /// So often a register is silent beside one that answers before it counts as missing: a bad line loses single answers.
 const SILENCES: u32 = 3;

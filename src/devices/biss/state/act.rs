@@ -5,14 +5,13 @@ use std::time::Duration;
 use super::action::Action;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::ActContext;
-use crate::app::DeviceCommand;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
-use crate::app::{Severity, Text};
+use crate::app::{ActContext, DeviceCommand, Severity, Text};
 use crate::devices::biss::jobs::{BissJob, Change};
 use crate::devices::biss::profile::{BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, Register, RegisterAddress};
+use crate::devices::biss::state::TEXTS;
 use crate::profile::Body;
 
 use super::table::Group;
@@ -137,7 +136,7 @@ impl Encoder {
     /// Why an area cannot be edited now; `None`: it can.
     pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
         if !area.access.writes() {
-            return Some(Text::new("data.read_only"));
+            return Some(TEXTS.text("data.read_only"));
         }
         // A profile is a text: what it says about access does not protect it.
         (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))

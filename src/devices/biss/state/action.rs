@@ -1,8 +1,8 @@
 //! What can be asked of a BiSS encoder that is shown.
 
-use crate::app::DeviceAction;
 use std::path::PathBuf;
 
+use crate::app::DeviceAction;
 use crate::app::studio::SessionId;
 use crate::devices::biss::jobs::Change;
 use crate::devices::biss::procedures::procedure::{Answer, Task};

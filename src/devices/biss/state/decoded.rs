@@ -8,6 +8,7 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::app::number::decimals;
 use crate::devices::biss::protocol::{Decoded, Eds, EdsBank, ProfileId, Register, RegisterAddress, Role};
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
@@ -22,14 +23,14 @@ impl Encoder {
             Decoded::Scaled(value) => quantity(value, &register.unit),
             Decoded::Number(number) if !register.unit.is_empty() => quantity(number as f64, &register.unit),
             Decoded::Number(_) | Decoded::Hex(_) => return self.of_data_sheet(register, bytes),
-            Decoded::Bits(set) if set.is_empty() => Text::new("registers.no_bit"),
+            Decoded::Bits(set) if set.is_empty() => TEXTS.text("registers.no_bit"),
             Decoded::Bits(set) => {
                 let named =
                     |(bit, name): (u8, Option<_>)| name.map_or_else(|| plain(format!("b{bit}")), explained::name);
                 Text::new("plain.words").with_list("words", set.into_iter().map(named))
             }
             Decoded::Choice(_, Some(name)) => explained::name(name),
-            Decoded::Choice(_, None) => Text::new("registers.unknown_value"),
+            Decoded::Choice(_, None) => TEXTS.text("registers.unknown_value"),
             Decoded::Text(text) => plain(text),
         })
     }
@@ -43,15 +44,15 @@ impl Encoder {
             }
             (Role::Profile, [high, low]) => {
                 let is_standard = ProfileId::new(u16::from_be_bytes([*high, *low])).is_standard_encoder();
-                Some(Text::new(if is_standard { "registers.standard" } else { "registers.other_profile" }))
+                Some(TEXTS.text(if is_standard { "registers.standard" } else { "registers.other_profile" }))
             }
             (Role::Password, [byte]) => {
                 let is_open = *byte == description.lock()?.password;
-                Some(Text::new(if is_open { "registers.open" } else { "registers.locked" }))
+                Some(TEXTS.text(if is_open { "registers.open" } else { "registers.locked" }))
             }
             (Role::DeviceId, bytes) => {
                 let is_own = description.identity()?.device_id == bytes;
-                Some(if is_own { plain(description.name()) } else { Text::new("registers.other_device") })
+                Some(if is_own { plain(description.name()) } else { TEXTS.text("registers.other_device") })
             }
             _ => None,
         }
@@ -66,8 +67,8 @@ impl Encoder {
         if offset == Eds::CHECKSUM_OFFSET {
             let all = self.memory.bytes(RegisterAddress::start_of(bank.number()), RegisterAddress::BANK_SIZE.into())?;
             return Some(match Eds::parse(bank, all.try_into().ok()?) {
-                Ok(_) => Text::new("sheet_card.sum"),
-                Err(_) => Text::new("registers.wrong_sum"),
+                Ok(_) => TEXTS.text("sheet_card.sum"),
+                Err(_) => TEXTS.text("registers.wrong_sum"),
             });
         }
         let field = bank.fields().iter().find(|field| field.offset == offset)?;
@@ -80,7 +81,7 @@ impl Encoder {
 /// A quantity with its unit, three decimals at most.
 fn quantity(value: f64, unit: &str) -> Text {
     let value = (value * 1000.0).round() / 1000.0;
-    Text::new("registers.quantity").with_number("value", value, decimals(value)).with("unit", unit)
+    TEXTS.text("registers.quantity").with_number("value", value, decimals(value)).with("unit", unit)
 }
 
 #[cfg(test)]

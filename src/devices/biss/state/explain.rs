@@ -6,6 +6,7 @@ mod guide;
 mod plan;
 mod write;
 
+use crate::devices::biss::state::TEXTS;
 pub use check::check;
 pub use damage::damage;
 pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
@@ -59,46 +60,49 @@ pub fn encoder(error: &Error) -> Text {
         Error::Adapter(error) => adapter(error),
         Error::NoReply { asked, tries, echo_heard } => {
             let id = if *echo_heard { "biss.echo_only" } else { "biss.no_reply" };
-            Text::new(id).with_text("asked", self::asked(*asked)).with("tries", tries)
+            TEXTS.text(id).with_text("asked", self::asked(*asked)).with("tries", tries)
         }
-        Error::Damaged { asked, tries, cause } => Text::new("biss.damaged")
+        Error::Damaged { asked, tries, cause } => TEXTS
+            .text("biss.damaged")
             .with_text("asked", self::asked(*asked))
             .with("tries", tries)
             .with_text("why", damage(cause)),
-        Error::NeverSilent => Text::new("biss.never_silent"),
-        Error::NoAcknowledge { tries, supply_off: false } => Text::new("biss.no_acknowledge").with("tries", tries),
-        Error::NoAcknowledge { tries, supply_off: true } => Text::new("biss.supply_off").with("tries", tries),
-        Error::StuckLow { tries } => Text::new("biss.stuck_low").with("tries", tries),
-        Error::StuckHigh { tries } => Text::new("biss.stuck_high").with("tries", tries),
+        Error::NeverSilent => TEXTS.text("biss.never_silent"),
+        Error::NoAcknowledge { tries, supply_off: false } => TEXTS.text("biss.no_acknowledge").with("tries", tries),
+        Error::NoAcknowledge { tries, supply_off: true } => TEXTS.text("biss.supply_off").with("tries", tries),
+        Error::StuckLow { tries } => TEXTS.text("biss.stuck_low").with("tries", tries),
+        Error::StuckHigh { tries } => TEXTS.text("biss.stuck_high").with("tries", tries),
         Error::WrongWidths { frames, data_bits, crc_bits } => {
-            Text::new("biss.wrong_widths").with("frames", frames).with("data", data_bits).with("crc", crc_bits)
+            TEXTS.text("biss.wrong_widths").with("frames", frames).with("data", data_bits).with("crc", crc_bits)
         }
         Error::WidthsUnknown { moving } => {
-            Text::new(if *moving { "biss.widths_unknown" } else { "biss.widths_at_rest" })
+            TEXTS.text(if *moving { "biss.widths_unknown" } else { "biss.widths_at_rest" })
         }
-        Error::NoSuchRegister { address } => Text::new("biss.no_such_register").with("address", address),
-        Error::NotWatched { address } => Text::new("biss.not_watched").with("address", address),
+        Error::NoSuchRegister { address } => TEXTS.text("biss.no_such_register").with("address", address),
+        Error::NotWatched { address } => TEXTS.text("biss.not_watched").with("address", address),
         Error::Refused { address, value, reads } => {
             let id = if reads.is_some() { "biss.refused_reads" } else { "biss.refused" };
             let reads = reads.map(byte).unwrap_or_default();
-            Text::new(id).with("address", address).with("value", byte(*value)).with("reads", reads)
+            TEXTS.text(id).with("address", address).with("value", byte(*value)).with("reads", reads)
         }
-        Error::Unclear { address, value, cause } => Text::new("biss.unclear")
+        Error::Unclear { address, value, cause } => TEXTS
+            .text("biss.unclear")
             .with("address", address)
             .with("value", byte(*value))
             .with_text("cause", encoder(cause)),
         Error::Cancelled => Text::new("encoder.cancelled"),
-        Error::OrderUnknown { answer } => Text::new("biss.order_unknown").with("answer", byte(*answer)),
-        Error::TooWide { word, multiturn, singleturn } => Text::new("biss.too_wide")
+        Error::OrderUnknown { answer } => TEXTS.text("biss.order_unknown").with("answer", byte(*answer)),
+        Error::TooWide { word, multiturn, singleturn } => TEXTS
+            .text("biss.too_wide")
             .with("word", format!("0x{word:X}"))
             .with("multiturn", multiturn)
             .with("singleturn", singleturn),
-        Error::OutOfRange { start, count } => Text::new("biss.out_of_range").with("start", start).with("count", count),
-        Error::NoDescription(found) => Text::new("biss.no_description").with("found", found),
-        Error::NotIdentified => Text::new("biss.not_identified"),
+        Error::OutOfRange { start, count } => TEXTS.text("biss.out_of_range").with("start", start).with("count", count),
+        Error::NoDescription(found) => TEXTS.text("biss.no_description").with("found", found),
+        Error::NotIdentified => TEXTS.text("biss.not_identified"),
         Error::Moving { rpm } => moving(*rpm),
         Error::NotInOperation { mode } => in_mode("biss.not_in_operation", *mode),
-        Error::Changed { item } => Text::new("biss.changed").with("item", item),
+        Error::Changed { item } => TEXTS.text("biss.changed").with("item", item),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
 }
@@ -124,30 +128,31 @@ pub fn profile_unsaved_in(mode: DeviceMode) -> Text {
 }
 
 fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
-    Text::new(id).with_text("mode", self::mode(mode))
+    TEXTS.text(id).with_text("mode", self::mode(mode))
 }
 
 /// A shaft that has to stand and does not.
 fn moving(rpm: Option<f64>) -> Text {
-    let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return Text::new("biss.moving") };
+    let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return TEXTS.text("biss.moving") };
     let id = if rpm > 0.0 { "biss.moving_cw" } else { "biss.moving_ccw" };
-    Text::new(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
+    TEXTS.text(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
 }
 
 /// What was asked of an encoder.
 pub fn asked(asked: Asked) -> Text {
     match asked {
-        Asked::Read(address) => Text::new("biss.asked_read").with("address", address),
+        Asked::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
         Asked::Write(address, value) => {
-            Text::new("biss.asked_write").with("address", address).with("value", byte(value))
+            TEXTS.text("biss.asked_write").with("address", address).with("value", byte(value))
         }
-        Asked::Position => Text::new("biss.asked_position"),
+        Asked::Position => TEXTS.text("biss.asked_position"),
     }
 }
 
 /// An encoder that is not the one of the description that comes nearest.
 pub fn mismatch(mismatch: &Mismatch) -> Text {
-    Text::new("biss.mismatch")
+    TEXTS
+        .text("biss.mismatch")
         .with("found", &mismatch.found)
         .with("name", &mismatch.name)
         .with("expected", &mismatch.expected)
@@ -156,8 +161,8 @@ pub fn mismatch(mismatch: &Mismatch) -> Text {
 /// What was said on the way, one text each.
 pub fn remark(remark: &Remark) -> Vec<Text> {
     match remark {
-        Remark::CrcErrors(1) => vec![Text::new("biss.crc_error")],
-        Remark::CrcErrors(count) => vec![Text::new("biss.crc_errors").with("count", count)],
+        Remark::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],
+        Remark::CrcErrors(count) => vec![TEXTS.text("biss.crc_errors").with("count", count)],
         Remark::Descriptions(errors) => errors.iter().map(description).collect(),
     }
 }
@@ -167,7 +172,7 @@ fn description(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<DescriptionError>() {
         Some(DescriptionError { file, line, column, what }) => {
-            Text::new("store.description").with("path", file).with_text("why", syntax(*line, *column, what))
+            TEXTS.text("store.description").with("path", file).with_text("why", syntax(*line, *column, what))
         }
         None => general::store(error),
     }
@@ -176,8 +181,8 @@ fn description(error: &StoreError) -> Text {
 /// What a job does at the moment.
 pub fn doing(doing: &Doing) -> Text {
     match doing {
-        Doing::Register(address) => Text::new("biss.register").with("address", address),
-        Doing::Bank(bank) => Text::new("biss.bank").with("bank", format!("0x{bank:02X}")),
+        Doing::Register(address) => TEXTS.text("biss.register").with("address", address),
+        Doing::Bank(bank) => TEXTS.text("biss.bank").with("bank", format!("0x{bank:02X}")),
         Doing::Operation { news, .. } => step(news.step),
     }
 }

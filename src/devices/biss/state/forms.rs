@@ -3,6 +3,7 @@
 use crate::app::Text;
 use crate::app::number::{whole, within};
 use crate::devices::biss::protocol::{Layout, PresetValue};
+use crate::devices::biss::state::TEXTS;
 
 /// The entries of a preset.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +33,7 @@ impl PresetForm {
     /// # Errors
     /// A sentence that names what would do.
     pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
-        let degrees = within("preset_card.degrees", &self.degrees, 0.0, 359.999_999)?;
+        let degrees = within(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
         // Below the number of steps, which fits into 32 bits.
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
@@ -44,7 +45,7 @@ impl PresetForm {
     /// A sentence that names what would do.
     pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
         let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
-        whole("preset_card.turns", &self.turns, 0, last.min(PresetValue::MAX))
+        whole(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
 
     /// The value that the entries stand for.
@@ -53,7 +54,7 @@ impl PresetForm {
     /// A sentence that names what would do; of two bad entries it is about the first.
     pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
         let (singleturn, multiturn) = (self.singleturn(layout)?, self.multiturn(layout)?);
-        PresetValue::new(singleturn, multiturn).ok_or_else(|| Text::new("preset_card.too_wide"))
+        PresetValue::new(singleturn, multiturn).ok_or_else(|| TEXTS.text("preset_card.too_wide"))
     }
 }
 

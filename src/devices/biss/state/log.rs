@@ -10,6 +10,7 @@ use crate::devices::biss::jobs::Prepared;
 use crate::devices::biss::procedures::Identity;
 use crate::devices::biss::procedures::procedure::Outcome;
 use crate::devices::biss::profile::Op;
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
 impl Encoder {
@@ -45,8 +46,8 @@ impl Encoder {
 /// One thing that an operation changes, old and new.
 fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
     let text = match part {
-        None => Text::new("log.operation"),
-        Some(part) => Text::new("log.operation_part").with_text("part", part),
+        None => TEXTS.text("log.operation"),
+        Some(part) => TEXTS.text("log.operation_part").with_text("part", part),
     };
     text.with_text("item", item.clone()).with_text("old", old).with_text("new", new)
 }
@@ -58,15 +59,16 @@ fn way(identity: &Identity) -> Text {
             .with("name", &hello.name)
             .with("firmware", &hello.firmware)
             .with("serial", &hello.serial),
-        (None, Some(ByteOrder::HighFirst)) => Text::new("log.high_first"),
-        (None, _) => Text::new("log.low_first"),
+        (None, Some(ByteOrder::HighFirst)) => TEXTS.text("log.high_first"),
+        (None, _) => TEXTS.text("log.low_first"),
     }
 }
 
 /// What it says to be.
 fn who(identity: &Identity) -> Text {
     let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
-    Text::new("log.identity")
+    TEXTS
+        .text("log.identity")
         .with("profile", identity.kind.profile)
         .with_text("firmware", firmware)
         .with("multiturn", identity.layout.multiturn_bits())

@@ -9,6 +9,7 @@ use crate::buses::bridge::state::traced as adapter;
 use crate::buses::ubicom::protocol::{Frame, Reply, Request, SYNC, Written};
 use crate::devices::biss::procedures::Damage;
 use crate::devices::biss::protocol::RegisterAddress;
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
@@ -48,7 +49,7 @@ impl Meaning {
         self.asked = Request::parse(&frame, self.order.unwrap_or(ByteOrder::LowFirst)).ok();
         let place = |register| RegisterAddress::from_global(register).map_or_else(String::new, |at| at.to_string());
         Some(match self.asked? {
-            Request::Read { register } => Text::new("trace.read").with("address", place(register)),
+            Request::Read { register } => TEXTS.text("trace.read").with("address", place(register)),
             Request::Write { register, value } => written("trace.write", place(register), value),
             Request::Position { .. } => Text::new("trace.position"),
         })
@@ -68,7 +69,7 @@ impl Meaning {
             Reply::Value(value) => plain(format!("0x{value:02X}")),
             Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
             Reply::Written(Written::Refused) => {
-                return Explained { meaning: vec![Text::new("trace.refused")], fault: Some(TraceFault::Reported) };
+                return Explained { meaning: vec![TEXTS.text("trace.refused")], fault: Some(TraceFault::Reported) };
             }
             Reply::Written(Written::Unknown(code)) => plain(format!("0x{code:02X}")),
             Reply::Position(word) => plain(format!("0x{:X}", word.word())),
@@ -95,7 +96,7 @@ impl Meaning {
         };
         match *request {
             bridge::Request::BissRegisterRead { address, .. } => {
-                Text::new("trace.read").with("address", place(address))
+                TEXTS.text("trace.read").with("address", place(address))
             }
             bridge::Request::BissRegisterWrite { address, value, .. } => {
                 let said = written("trace.write", place(address), value);
@@ -110,7 +111,7 @@ impl Meaning {
 }
 
 fn written(id: &'static str, address: String, value: u8) -> Text {
-    Text::new(id).with("address", address).with("value", format!("0x{value:02X}"))
+    TEXTS.text(id).with("address", address).with("value", format!("0x{value:02X}"))
 }
 
 #[cfg(test)]

@@ -18,8 +18,11 @@ mod news;
 mod record;
 mod review;
 mod table;
+mod texts;
 pub mod words;
 mod write;
+
+pub use texts::TEXTS;
 
 pub use action::Action;
 pub use connect_form::{BissForm, BissWay};

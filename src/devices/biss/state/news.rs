@@ -11,13 +11,12 @@ use crate::app::{Severity, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, JobError, Remark};
 use crate::devices::biss::procedures::{Error, Sample};
 use crate::devices::biss::protocol::KIND;
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
-use crate::link::LinkUrl;
-use crate::link::TraceEntry;
+use crate::link::{LinkUrl, TraceEntry};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::OpenError;
-use crate::worker::Session;
+use crate::worker::{OpenError, Session};
 
 impl Kind for Biss {
     const KIND: &'static str = KIND;
@@ -146,7 +145,7 @@ impl OnLine for Encoder {
             }
             BissOutput::LedBack(mode) => {
                 self.led_back();
-                let text = Text::new("guide.led_back").with_text("mode", explained::mode(mode));
+                let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode(mode));
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
             }

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use crate::devices::biss::state::TEXTS;
+
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
@@ -185,7 +187,7 @@ impl Record {
         let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
         let never = match &reading.value {
             Err(Error::NoSuchRegister { .. }) => Some(Text::new("recorder.absent")),
-            Err(Error::NotWatched { .. }) => Some(Text::new("recorder.data")),
+            Err(Error::NotWatched { .. }) => Some(TEXTS.text("recorder.data")),
             _ => None,
         };
         let watching = Watching { at: reading.at, value, is_warned: false, never };
@@ -348,7 +350,7 @@ mod tests {
             let reading = WatchedReading { at: Moment::START, what, value: Err(error) };
             record.add(vec![Sample::Watched(reading)], 0);
             let line = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
-            assert_eq!(line.unwrap().remark, said.map(Text::new));
+            assert_eq!(line.unwrap().remark, said.map(|id| TEXTS.text(id)));
         }
     }
 

@@ -5,6 +5,7 @@ use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::write::Written;
 use crate::devices::biss::profile::{Base, Op};
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 use crate::profile::Plan;
 
@@ -60,11 +61,11 @@ impl Reviewed for Biss {
         warnings.extend(prepared.other_type.as_ref().map(words::other_type));
         warnings.extend(words::wear(prepared));
         if prepared.plan.ops.contains(&Op::Calibrate) {
-            warnings.push(Text::new("biss_review.table"));
+            warnings.push(TEXTS.text("biss_review.table"));
         }
         warnings.extend(prepared.unsaved.map(words::profile_unsaved_in));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        warnings.extend(review::left_alone("biss_review.missing", &prepared.missing, mounting));
+        warnings.extend(review::left_alone(TEXTS.text("biss_review.missing"), &prepared.missing, mounting));
         warnings
     }
 
@@ -72,16 +73,16 @@ impl Reviewed for Biss {
         let ops = &prepared.plan.ops;
         let mut needs = Vec::new();
         if ops.iter().any(Op::turns) {
-            needs.push(Text::new("biss_review.needs_motor"));
+            needs.push(TEXTS.text("biss_review.needs_motor"));
         }
         if ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::FirePreset { .. })) {
             let turns = ops.iter().any(Op::turns);
             let id = if turns { "biss_review.needs_rest" } else { "biss_review.needs_standstill" };
-            needs.push(Text::new(id));
+            needs.push(TEXTS.text(id));
         }
         let restarts = |op: &Op| matches!(op, Op::SelectFilter { .. } | Op::StorePreset { .. } | Op::FirePreset { .. });
         if ops.iter().any(restarts) {
-            needs.push(Text::new("biss_review.needs_restart"));
+            needs.push(TEXTS.text("biss_review.needs_restart"));
         }
         needs.extend(left_out(change, ops));
         needs
@@ -90,11 +91,11 @@ impl Reviewed for Biss {
     fn cost(prepared: &Prepared) -> Text {
         let cycles = prepared.plan.write_cycles();
         if cycles == 0 {
-            return Text::new("biss_review.cost_nothing");
+            return TEXTS.text("biss_review.cost_nothing");
         }
         match prepared.cycles_seen {
-            Some(seen) => Text::new("biss_review.cost").with("cycles", cycles).with("seen", seen),
-            None => Text::new("biss_review.cost_unknown").with("cycles", cycles),
+            Some(seen) => TEXTS.text("biss_review.cost").with("cycles", cycles).with("seen", seen),
+            None => TEXTS.text("biss_review.cost_unknown").with("cycles", cycles),
         }
         .with("limit", WEAR_LIMIT)
     }
@@ -130,6 +131,6 @@ fn left_out(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
     let data = run.is_some_and(|run| run.data.is_some());
     let stores = ops.iter().any(|op| matches!(op, Op::StorePreset { .. }));
     let writes = ops.iter().any(|op| matches!(op, Op::StoreData { .. } | Op::WriteRegister { .. }));
-    let preset = (preset && !stores).then(|| Text::new("biss_review.preset_stored"));
-    preset.into_iter().chain((data && !writes).then(|| Text::new("biss_review.data_equal")))
+    let preset = (preset && !stores).then(|| TEXTS.text("biss_review.preset_stored"));
+    preset.into_iter().chain((data && !writes).then(|| TEXTS.text("biss_review.data_equal")))
 }

@@ -9,18 +9,19 @@ use crate::devices::biss::jobs::BissJob;
 use crate::devices::biss::protocol::{
     Description, Descriptions, EDS_TICK, EdsBank, EdsError, EdsField, EdsValue, Feedback, Filter, RegisterAddress,
 };
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
 /// A job.
 pub(super) fn job(job: &BissJob) -> Text {
     match job {
         BissJob::Survey | BissJob::Identify => Text::new("job.survey"),
-        BissJob::Status => Text::new("job.biss_status"),
+        BissJob::Status => TEXTS.text("job.biss_status"),
         BissJob::Check => Text::new("job.check"),
         BissJob::Position => Text::new("job.position"),
         BissJob::Read(range) => Text::new("job.read").with("item", range),
-        BissJob::ReadDirect => Text::new("job.read_direct"),
-        BissJob::ReadBank(bank) => Text::new("job.read_bank").with("bank", format!("0x{bank:02X}")),
+        BissJob::ReadDirect => TEXTS.text("job.read_direct"),
+        BissJob::ReadBank(bank) => TEXTS.text("job.read_bank").with("bank", format!("0x{bank:02X}")),
         BissJob::ReadArea(area) => Text::new("job.read").with_text("item", words::name(&area.name)),
         BissJob::Save | BissJob::SaveToCompare => Text::new("job.save"),
         BissJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
@@ -32,24 +33,25 @@ pub(super) fn job(job: &BissJob) -> Text {
 /// Why an edit was not taken.
 pub(super) fn not_edited(error: MemoryError) -> Text {
     match error {
-        MemoryError::NotRead(at) => Text::new("registers.unread").with("address", at),
-        MemoryError::NoData(at) => Text::new("registers.no_data").with("address", at),
+        MemoryError::NotRead(at) => TEXTS.text("registers.unread").with("address", at),
+        MemoryError::NoData(at) => TEXTS.text("registers.no_data").with("address", at),
     }
 }
 
 /// A filter of the position.
 pub fn filter(filter: Filter) -> Text {
     match filter {
-        Filter::Balanced => Text::new("biss_status.balanced"),
-        Filter::Dynamic => Text::new("biss_status.dynamic"),
-        Filter::Unknown(code) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
+        Filter::Balanced => TEXTS.text("biss_status.balanced"),
+        Filter::Dynamic => TEXTS.text("biss_status.dynamic"),
+        Filter::Unknown(code) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
     }
 }
 
 /// Why a bank of the data sheet cannot be relied upon.
 pub fn sheet(error: &EdsError) -> Text {
     match error {
-        EdsError::Checksum { expected, got, .. } => Text::new("sheet_card.bad_sum")
+        EdsError::Checksum { expected, got, .. } => TEXTS
+            .text("sheet_card.bad_sum")
             .with("expected", format!("0x{expected:02X}"))
             .with("got", format!("0x{got:02X}")),
         other => plain(other),
@@ -58,7 +60,7 @@ pub fn sheet(error: &EdsError) -> Text {
 
 /// What a field of the data sheet says.
 pub fn eds(value: EdsValue) -> Text {
-    let text = |id| Text::new(id);
+    let text = |id| TEXTS.text(id);
     match value {
         EdsValue::Number(1, "banks") => text("eds.one_bank"),
         EdsValue::Number(1, "slave addresses") => text("eds.one_address"),
@@ -68,7 +70,7 @@ pub fn eds(value: EdsValue) -> Text {
         EdsValue::Number(number, unit) => plain(format!("{number} {unit}")),
         EdsValue::Bank(bank) => plain(format!("0x{bank:02X}")),
         EdsValue::NotAvailable => text("eds.none"),
-        EdsValue::Ticks(ticks) => Text::new("eds.ticks").with("ticks", ticks).with_text("time", ticks_long(value)),
+        EdsValue::Ticks(ticks) => TEXTS.text("eds.ticks").with("ticks", ticks).with_text("time", ticks_long(value)),
         EdsValue::Adaptive => text("eds.adaptive"),
         EdsValue::NoLimit => text("eds.no_limit"),
         EdsValue::Kelvin(kelvin) => plain(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
@@ -78,9 +80,9 @@ pub fn eds(value: EdsValue) -> Text {
         EdsValue::Feedback(Feedback::None) => text("eds.no_bit"),
         EdsValue::Feedback(Feedback::Error) => text("eds.error_bit"),
         EdsValue::Feedback(Feedback::Warning) => text("eds.warning_bit"),
-        EdsValue::Feedback(Feedback::Unknown(code)) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
+        EdsValue::Feedback(Feedback::Unknown(code)) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
         EdsValue::EncoderType(0) => text("eds.rotary"),
-        EdsValue::EncoderType(code) => Text::new("eds.unknown").with("code", format!("0x{code:02X}")),
+        EdsValue::EncoderType(code) => TEXTS.text("eds.unknown").with("code", format!("0x{code:02X}")),
         EdsValue::Code(code) => plain(format!("0x{code:X}")),
     }
 }
@@ -108,5 +110,5 @@ static KIT: LazyLock<Option<Description>> =
 /// How long a number of ticks is.
 fn ticks_long(value: EdsValue) -> Text {
     let microseconds = value.duration(EDS_TICK).map_or(0.0, |own| own.as_secs_f64() * 1e6);
-    Text::new("eds.ticks_long").with_number("time", microseconds, 2)
+    TEXTS.text("eds.ticks_long").with_number("time", microseconds, 2)
 }

@@ -6,6 +6,7 @@ use crate::app::Action;
 use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissWay};
+use crate::devices::biss::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
@@ -49,7 +50,7 @@ impl TypedConnectForm for BissConnectForm {
             BissWay::Bus => Some("connect.biss_bus_words"),
         };
         if let Some(words) = words {
-            paragraph(ui, skin.caption(skin.say(words)));
+            paragraph(ui, skin.caption(say(skin, words)));
         }
         ui.add_space(skin.space.between);
         match form.way {
@@ -68,8 +69,8 @@ impl TypedConnectForm for BissConnectForm {
             }
         }
         if form.is_on_the_bus() {
-            entry(ui, skin, &skin.say("connect.biss_clock"), |ui| {
-                text_entry(ui, &mut form.clock, 96.0, &skin.say("connect.biss_clock"), "1000000");
+            entry(ui, skin, &say(skin, "connect.biss_clock"), |ui| {
+                text_entry(ui, &mut form.clock, 96.0, &say(skin, "connect.biss_clock"), "1000000");
                 ui.label(skin.label("Hz"));
             });
         }
@@ -79,29 +80,29 @@ impl TypedConnectForm for BissConnectForm {
                     text_entry(ui, &mut form.baud, 96.0, &skin.say("settings_card.baud"), "115200");
                     parity(ui, skin, &mut form.parity);
                 });
-                let word = skin.say("connect.biss_order");
+                let word = say(skin, "connect.biss_order");
                 entry(ui, skin, &word, |ui| {
                     let orders = [
                         (None, "connect.biss_order_auto"),
                         (Some(ByteOrder::LowFirst), "connect.biss_order_low"),
                         (Some(ByteOrder::HighFirst), "connect.biss_order_high"),
                     ];
-                    choice(ui, &word, &mut form.order, orders.map(|(order, id)| (order, skin.say(id))));
+                    choice(ui, &word, &mut form.order, orders.map(|(order, id)| (order, say(skin, id))));
                 });
                 echo(ui, skin, &mut form.echo);
             }
-            entry(ui, skin, &skin.say("connect.biss_frame"), |ui| {
+            entry(ui, skin, &say(skin, "connect.biss_frame"), |ui| {
                 for (own, word, usual) in [
                     (&mut form.turns, "connect.biss_turns", "16"),
                     (&mut form.steps, "connect.biss_steps", "17"),
                     (&mut form.crc, "connect.biss_crc", "0x43"),
                 ] {
-                    let word = skin.say(word);
+                    let word = say(skin, word);
                     text_entry(ui, own, 48.0, &word, usual);
                     ui.label(skin.label(word));
                 }
             });
-            paragraph(ui, skin.caption(skin.say("connect.biss_frame_words")));
+            paragraph(ui, skin.caption(say(skin, "connect.biss_frame_words")));
             if form.is_on_the_bus() {
                 leave_supply(ui, skin, &mut form.leave_supply);
             }
@@ -112,10 +113,10 @@ impl TypedConnectForm for BissConnectForm {
 
 /// Whether it is, or was, the configuration pin or the bus.
 fn reached(ui: &mut Ui, skin: &Skin, form: &mut BissForm) {
-    let word = skin.say("connect.biss_reached");
+    let word = say(skin, "connect.biss_reached");
     entry(ui, skin, &word, |ui| {
         let ways = [(true, "connect.biss_bus"), (false, "connect.biss_pin")];
-        choice(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, skin.say(id))));
+        choice(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, say(skin, id))));
     });
 }
 

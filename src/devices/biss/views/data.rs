@@ -1,12 +1,12 @@
 //! Motor and OEM data: the bytes of an area in the hex editor, what they mean, and the way to write the edits.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::{Action, AnyDevice, Studio, Text};
+use crate::app::{Action, AnyDevice, DeviceCommand, Studio};
 use crate::devices::biss::protocol::{Area, RegisterAddress};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{Action as Biss, Encoder, places};
+use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, places};
+use crate::devices::biss::views::say;
 use crate::ui::controls::{empty, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, typed_view};
 use crate::ui::{Skin, foot, icons};
@@ -29,7 +29,7 @@ pub(super) fn page_ui(
     let areas = encoder.description.as_ref().map(|own| own.areas()).unwrap_or_default();
     let Some(area) = areas.get(view.area).or_else(|| areas.first()) else {
         let words = if encoder.description.is_some() { "data.none" } else { "registers.nothing" };
-        empty(ui, skin, &skin.say(words), None);
+        empty(ui, skin, &say(skin, words), None);
         return;
     };
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
@@ -45,11 +45,12 @@ pub(super) fn page_ui(
             }
         }
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("data.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "data.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
         }
         let shown = shown.as_ref().unwrap_or(area);
-        let text = Text::new("data.banks")
+        let text = TEXTS
+            .text("data.banks")
             .with("first", format!("0x{:02X}", shown.first))
             .with("last", format!("0x{:02X}", shown.last))
             .with("bytes", shown.size());
@@ -61,11 +62,11 @@ pub(super) fn page_ui(
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
         Some(((read, wanted), own)) => bytes(ui, skin, encoder, &own, (&read, &wanted), view, actions),
         None if encoder.profile().is_some() => {
-            empty(ui, skin, &skin.say("data.not_in_profile"), None);
+            empty(ui, skin, &say(skin, "data.not_in_profile"), None);
         }
         None => {
-            let read = (icons::ARROW_CLOCKWISE, skin.say("data.read"), encoder.session.is_ready());
-            if empty(ui, skin, &skin.say("data.not_read"), Some((read.0, &read.1, read.2))) {
+            let read = (icons::ARROW_CLOCKWISE, say(skin, "data.read"), encoder.session.is_ready());
+            if empty(ui, skin, &say(skin, "data.not_read"), Some((read.0, &read.1, read.2))) {
                 actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
             }
         }
@@ -133,7 +134,7 @@ fn bytes(
 /// Where the cursor stands, as a register.
 fn place_ui(ui: &mut Ui, skin: &Skin, area: &Area, view: &View) {
     if let Some(at) = places(area).nth(view.hex.cursor()) {
-        let text = Text::new("data.at").with("address", at);
+        let text = TEXTS.text("data.at").with("address", at);
         ui.label(skin.caption(skin.words(&text)));
     }
 }

@@ -1,14 +1,14 @@
 //! Who the encoder is and how it is, its frame, the wiring, its data sheet.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::{frame, motor, sheet, wiring};
-use crate::app::{Action, Text};
+use crate::app::{Action, DeviceCommand};
 use crate::devices::biss::procedures::{Bits, FrameSource, Identity};
 use crate::devices::biss::profile::ProfileIdentity;
 use crate::devices::biss::state::explain as explained;
-use crate::devices::biss::state::{Action as Biss, Encoder, words};
+use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, words};
+use crate::devices::biss::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
@@ -78,15 +78,16 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
     row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(serial.trim().to_owned())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
     row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware)));
-    row(ui, skin, &skin.say("biss_card.profile"), skin.mono(identity.kind.profile.to_string()));
-    row(ui, skin, &skin.say("biss_card.device_id"), skin.mono(crate::bits::hex(&identity.kind.device_id)));
+    row(ui, skin, &say(skin, "biss_card.profile"), skin.mono(identity.kind.profile.to_string()));
+    row(ui, skin, &say(skin, "biss_card.device_id"), skin.mono(crate::bits::hex(&identity.kind.device_id)));
     manufacturer(ui, skin, identity.kind.manufacturer);
     let layout = &identity.layout;
-    let widths = Text::new("biss_card.widths")
+    let widths = TEXTS
+        .text("biss_card.widths")
         .with("multiturn", layout.multiturn_bits())
         .with("singleturn", layout.singleturn_bits())
         .with("bits", layout.bits());
-    row(ui, skin, &skin.say("biss_card.frame"), skin.words(&widths));
+    row(ui, skin, &say(skin, "biss_card.frame"), skin.words(&widths));
     let source = match identity.source {
         FrameSource::DataSheet => "biss_card.from_sheet",
         FrameSource::Description => "biss_card.from_description",
@@ -94,13 +95,13 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
         FrameSource::Checksum => "biss_card.from_checksum",
         FrameSource::Assumed => "biss_card.assumed",
     };
-    row(ui, skin, "", skin.caption(skin.say(source)));
+    row(ui, skin, "", skin.caption(say(skin, source)));
     if !identity.source.is_told() {
-        paragraph(ui, skin.caption(skin.say("biss_card.give_frame")));
+        paragraph(ui, skin.caption(say(skin, "biss_card.give_frame")));
     }
     if let Some(adapter) = &identity.adapter {
         let words = format!("{} {} · {}", adapter.name, adapter.firmware, adapter.serial);
-        row(ui, skin, &skin.say("biss_card.adapter"), words);
+        row(ui, skin, &say(skin, "biss_card.adapter"), words);
     }
     if let Some(mismatch) = &identity.mismatch {
         let text = explained::mismatch(mismatch);
@@ -110,28 +111,29 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
 
 /// What a profile says of the encoder that it was read from.
 fn recorded(ui: &mut Ui, skin: &Skin, encoder: &Encoder, identity: &ProfileIdentity) {
-    let or_none = |text: String| if text.is_empty() { skin.say("biss_card.not_in_profile") } else { text };
+    let or_none = |text: String| if text.is_empty() { say(skin, "biss_card.not_in_profile") } else { text };
     row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(identity.serial_number.clone())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
     row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware)));
-    row(ui, skin, &skin.say("biss_card.profile"), skin.mono(identity.profile_id.to_string()));
-    row(ui, skin, &skin.say("biss_card.device_id"), skin.mono(crate::bits::hex(&identity.device_id)));
+    row(ui, skin, &say(skin, "biss_card.profile"), skin.mono(identity.profile_id.to_string()));
+    row(ui, skin, &say(skin, "biss_card.device_id"), skin.mono(crate::bits::hex(&identity.device_id)));
     manufacturer(ui, skin, identity.manufacturer);
     if let Some(singleturn) = identity.singleturn_bits {
-        let widths = Text::new("biss_card.position_widths")
+        let widths = TEXTS
+            .text("biss_card.position_widths")
             .with("multiturn", identity.multiturn_bits.unwrap_or_default())
             .with("singleturn", singleturn);
-        row(ui, skin, &skin.say("biss_card.frame"), skin.words(&widths));
+        row(ui, skin, &say(skin, "biss_card.frame"), skin.words(&widths));
     }
     let Some(profile) = encoder.profile() else { return };
     if let Some(filter) = profile.filter {
-        row(ui, skin, &skin.say("biss_status.filter"), skin.words(&words::filter(filter)));
+        row(ui, skin, &say(skin, "biss_status.filter"), skin.words(&words::filter(filter)));
     }
 }
 
 fn manufacturer(ui: &mut Ui, skin: &Skin, code: [u8; 2]) {
     let words = format!("{}  {}", crate::bits::hex(&code), code.escape_ascii());
-    row(ui, skin, &skin.say("biss_card.manufacturer"), skin.mono(words));
+    row(ui, skin, &say(skin, "biss_card.manufacturer"), skin.mono(words));
 }
 
 fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -143,7 +145,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
     };
     card_with(ui, skin, "status_card.title", read, |ui| {
         let Some(status) = &encoder.status else {
-            ui.label(skin.label(skin.say("biss_status.nothing")));
+            ui.label(skin.label(say(skin, "biss_status.nothing")));
             return;
         };
         let palette = skin.palette;
@@ -151,28 +153,28 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
         if none && (status.errors.is_some() || status.warnings.is_some()) {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).color(palette.good));
-                ui.label(skin.say("biss_status.good"));
+                ui.label(say(skin, "biss_status.good"));
             });
         }
         bits(ui, skin, status.errors.as_ref(), icons::X_CIRCLE, palette.bad);
         bits(ui, skin, status.warnings.as_ref(), icons::WARNING, palette.warn);
         if let Some(celsius) = status.celsius {
             let words = format!("{} °C", skin.number(celsius, 0));
-            row(ui, skin, &skin.say("biss_status.temperature"), skin.mono(words));
+            row(ui, skin, &say(skin, "biss_status.temperature"), skin.mono(words));
         }
         if let Some(mode) = status.mode {
-            row(ui, skin, &skin.say("biss_status.mode"), skin.words(&explained::mode(mode)));
+            row(ui, skin, &say(skin, "biss_status.mode"), skin.words(&explained::mode(mode)));
         }
         if let Some(filter) = status.filter {
-            row(ui, skin, &skin.say("biss_status.filter"), skin.words(&words::filter(filter)));
+            row(ui, skin, &say(skin, "biss_status.filter"), skin.words(&words::filter(filter)));
         }
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {
             let words = skin.words(&explained::preset(value, layout.singleturn_bits()));
-            row(ui, skin, &skin.say("biss_status.preset"), skin.mono(words));
+            row(ui, skin, &say(skin, "biss_status.preset"), skin.mono(words));
         }
         if status.protection.is_some_and(|protection| protection != 0) {
-            paragraph(ui, RichText::new(skin.say("biss_status.open")).color(palette.warn));
+            paragraph(ui, RichText::new(say(skin, "biss_status.open")).color(palette.warn));
         }
     });
 }
@@ -185,7 +187,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {
-        lines_ui(ui, skin, encoder.check.as_deref(), "check_card.biss_nothing");
+        lines_ui(ui, skin, encoder.check.as_deref(), TEXTS.text("check_card.biss_nothing"));
     });
 }
 
@@ -196,7 +198,7 @@ fn bits(ui: &mut Ui, skin: &Skin, bits: Option<&Bits>, icon: &str, colour: crate
             ui.label(skin.mono(format!("b{bit}")));
             let name = name
                 .as_ref()
-                .map_or_else(|| skin.say("biss_status.unknown_bit"), |own| skin.words(&explained::name(own)));
+                .map_or_else(|| say(skin, "biss_status.unknown_bit"), |own| skin.words(&explained::name(own)));
             paragraph(ui, name);
         });
     }

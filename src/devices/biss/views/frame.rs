@@ -1,43 +1,42 @@
 //! The single-cycle frame as it came last: a cell a bit, and what its fields say.
 
-use crate::app::DeviceCommand;
 use egui::Ui;
 
 use crate::analysis::quality::Verdict;
-use crate::app::{Action, Text};
+use crate::app::{Action, DeviceCommand};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::protocol::{Layout, Reading};
-use crate::devices::biss::state::Encoder;
-use crate::ui::Skin;
+use crate::devices::biss::state::{Encoder, TEXTS};
+use crate::devices::biss::views::say;
 use crate::ui::controls::{card_with, enabled_button, paragraph, row};
-use crate::ui::icons;
 use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
+use crate::ui::{Skin, icons};
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(identity) = encoder.identity() else { return };
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("frame_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "frame_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::ReadPosition));
         }
     };
-    card_with(ui, skin, "frame_card.title", read, |ui| {
+    card_with(ui, skin, TEXTS.text("frame_card.title"), read, |ui| {
         let reading = encoder.record.last();
         let (fields, bits) = strip(skin, &identity.layout, reading);
-        let label = skin.say("frame_card.title");
+        let label = say(skin, "frame_card.title");
         frame_strip(ui, skin, &FrameStrip { label: &label, fields: &fields, bits: &bits });
         if let Some(reading) = reading {
             row(ui, skin, &skin.say("live.raw"), skin.mono(skin.word(reading.raw())));
             if let Some(frame) = reading.frame {
-                row(ui, skin, &skin.say("frame_card.frame"), skin.mono(skin.word(frame)));
+                row(ui, skin, &say(skin, "frame_card.frame"), skin.mono(skin.word(frame)));
             }
         }
         if reading.is_some_and(|reading| reading.frame.is_none()) {
-            paragraph(ui, skin.caption(skin.say("frame_card.pin")));
+            paragraph(ui, skin.caption(say(skin, "frame_card.pin")));
         }
         let errors = encoder.record.crc_errors();
         if errors > 0 {
-            let text = Text::new("frame_card.crc_errors").with("count", errors);
+            let text = TEXTS.text("frame_card.crc_errors").with("count", errors);
             paragraph(ui, egui::RichText::new(skin.words(&text)).color(skin.palette.warn));
         }
     });

@@ -2,11 +2,12 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::{Action, Rgb, Text};
+use crate::app::{Action, Rgb};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::protocol::{Register, Role};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{Action as Biss, Encoder, Mark};
+use crate::devices::biss::state::{Action as Biss, Encoder, Mark, TEXTS};
+use crate::devices::biss::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
 use crate::ui::panels::live::{LOW, mark as mark_ui};
 use crate::ui::{Skin, icons};
@@ -44,13 +45,13 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     }
     if let Some(stream) = encoder.streamed() {
         let id = if stream.is_limited { "live.streamed_all" } else { "live.streamed" };
-        let text = Text::new(id).with_number("count", stream.hz(), 0);
+        let text = TEXTS.text(id).with_number("count", stream.hz(), 0);
         let words = skin.words(&text.with_number("clock", f64::from(stream.clock_hz) / 1e6, 1));
         ui.add(egui::Label::new(skin.caption(words)).wrap()).on_hover_text(skin.say("live.streamed_hint"));
     }
     let errors = encoder.record.crc_errors();
     if errors > 0 {
-        let text = Text::new("frame_card.crc_errors").with("count", errors);
+        let text = TEXTS.text("frame_card.crc_errors").with("count", errors);
         ui.label(RichText::new(skin.words(&text)).size(skin.sizes.caption).color(palette.warn));
     }
 }
@@ -63,7 +64,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &
     icon_menu(ui, icons::EYE, &word, |ui| {
         ui.set_max_width(260.0);
         ui.label(skin.heading(&word));
-        paragraph(ui, skin.caption(skin.say("live.watch_registers")));
+        paragraph(ui, skin.caption(say(skin, "live.watch_registers")));
         let usual = [Role::Temperature, Role::Errors, Role::Warnings, Role::Mode];
         let usual: Vec<Register> = usual.iter().filter_map(|role| description.with_role(*role).cloned()).collect();
         let more = watched.iter().filter(|own| usual.iter().all(|other| other.address != own.address)).cloned();

@@ -15,7 +15,7 @@ mod wiring;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio};
-use crate::devices::biss::state::{Action as Biss, Encoder};
+use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS};
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page, workspace};
@@ -169,7 +169,7 @@ impl TypedDeviceView for BissView {
     ) {
         let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
         // How far it is stands below, step by step: here, what ending it does.
-        let instead = is_led.then(|| skin.say("guide.cancel_note"));
+        let instead = is_led.then(|| say(skin, "guide.cancel_note"));
         workspace::running_ui(ui, skin, device, instead, actions);
     }
 
@@ -180,4 +180,9 @@ impl TypedDeviceView for BissView {
     fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, _view: &mut View, actions: &mut Vec<Action>) {
         live::watch_menu(ui, skin, encoder, actions);
     }
+}
+
+/// A text of this folder's catalogue, or a common one, in the window's language.
+pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
+    skin.words(&TEXTS.text(id))
 }

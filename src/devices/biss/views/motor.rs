@@ -2,8 +2,9 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::{Action, Text};
-use crate::devices::biss::state::{Action as Biss, Encoder};
+use crate::app::Action;
+use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS};
+use crate::devices::biss::views::say;
 use crate::sim::Motor;
 use crate::ui::controls::{card, enabled_button, paragraph};
 use crate::ui::{Skin, icons};
@@ -34,10 +35,10 @@ pub(super) fn turning_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &
     }
     ui.horizontal_wrapped(|ui| {
         let id = if motor.rpm() > 0.0 { "motor_card.turns_cw" } else { "motor_card.turns_ccw" };
-        let text = Text::new(id).with_number("rpm", motor.rpm().abs(), 0);
+        let text = TEXTS.text(id).with_number("rpm", motor.rpm().abs(), 0);
         ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
         ui.label(skin.words(&text));
-        if enabled_button(ui, true, icons::STOP, &skin.say("motor_card.stop")).clicked() {
+        if enabled_button(ui, true, icons::STOP, &say(skin, "motor_card.stop")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::Turn(0.0)));
         }
     });

@@ -10,7 +10,8 @@ use crate::devices::biss::jobs::Change;
 use crate::devices::biss::profile::{MotorSource, MountingRun, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, Filter, ProcedureKind};
 use crate::devices::biss::state::explain as explained;
-use crate::devices::biss::state::{Action as Biss, Encoder, forms::PresetForm, words};
+use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, forms::PresetForm, words};
+use crate::devices::biss::views::say;
 use crate::ui::controls::{
     allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem, row, two_columns,
 };
@@ -41,11 +42,11 @@ pub(super) fn page_ui(
         return;
     }
     let Some(description) = encoder.description.as_ref().filter(|_| encoder.session.phase != Phase::Offline) else {
-        empty(ui, skin, &skin.say("procedures.nothing"), None);
+        empty(ui, skin, &say(skin, "procedures.nothing"), None);
         return;
     };
     if description.procedures().is_empty() {
-        empty(ui, skin, &skin.say("procedures.none"), None);
+        empty(ui, skin, &say(skin, "procedures.none"), None);
         return;
     }
     left_behind(ui, skin, encoder, actions);
@@ -103,9 +104,9 @@ fn left_behind(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Ac
     if !elsewhere && status.protection.is_none_or(|protection| protection == 0) {
         return;
     }
-    card(ui, skin, "lead_back_card.title", |ui| {
+    card(ui, skin, TEXTS.text("lead_back_card.title"), |ui| {
         let mode = explained::mode(status.mode.unwrap_or_default());
-        let text = Text::new("lead_back_card.words").with_text("mode", mode);
+        let text = TEXTS.text("lead_back_card.words").with_text("mode", mode);
         paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
         super::lead_back_ui(ui, skin, encoder, actions);
     });
@@ -120,36 +121,36 @@ fn mounting_ui(
     own: &mut Mounting<'_>,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, skin, "mounting_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("mounting_card.words")));
+    card(ui, skin, TEXTS.text("mounting_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "mounting_card.words")));
         ui.add_space(skin.space.inside);
-        ui.label(skin.say("mounting_card.motor"));
+        ui.label(say(skin, "mounting_card.motor"));
         let sources = [
-            (Some(MotorSource::Other), skin.say("mounting_card.other")),
-            (Some(MotorSource::ThisEncoder), skin.say("mounting_card.this_encoder")),
+            (Some(MotorSource::Other), say(skin, "mounting_card.other")),
+            (Some(MotorSource::ThisEncoder), say(skin, "mounting_card.this_encoder")),
         ];
-        options(ui, &skin.say("mounting_card.motor"), own.motor, sources);
+        options(ui, &say(skin, "mounting_card.motor"), own.motor, sources);
         let refused = *own.motor == Some(MotorSource::ThisEncoder);
         if refused {
-            paragraph(ui, RichText::new(skin.say("mounting_card.refused")).color(skin.palette.bad));
+            paragraph(ui, RichText::new(say(skin, "mounting_card.refused")).color(skin.palette.bad));
         }
         ui.add_space(skin.space.between);
-        ui.label(skin.say("mounting_card.what"));
+        ui.label(say(skin, "mounting_card.what"));
         choice(ui, skin, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
         choice(ui, skin, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
                 ui.add_space(skin.space.groups);
-                ui.checkbox(own.save_result, skin.say("mounting_card.save"));
+                ui.checkbox(own.save_result, say(skin, "mounting_card.save"));
             });
         });
-        ui.checkbox(own.with_preset, skin.say("mounting_card.preset"));
+        ui.checkbox(own.with_preset, say(skin, "mounting_card.preset"));
         data_ui(ui, skin, studio, own.data);
         ui.add_space(skin.space.between);
         let wish = wish(encoder, own);
         let ready = if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let allowed = ready.and(wish.as_ref().map(|_| ()).map_err(Clone::clone));
-        if allowed_button(ui, skin, &allowed, icons::LIST_CHECKS, &skin.say("mounting_card.review")).clicked()
+        if allowed_button(ui, skin, &allowed, icons::LIST_CHECKS, &say(skin, "mounting_card.review")).clicked()
             && let Ok(run) = wish
         {
             let motor = own.motor.unwrap_or(MotorSource::Other);
@@ -161,7 +162,7 @@ fn mounting_ui(
 
 /// Something that may be done, and what it takes.
 fn choice(ui: &mut Ui, skin: &Skin, on: &mut bool, id: &'static str, words: &Text) {
-    ui.checkbox(on, skin.say(id));
+    ui.checkbox(on, say(skin, id));
     ui.horizontal_top(|ui| {
         ui.add_space(skin.space.groups);
         paragraph(ui, skin.caption(skin.words(words)));
@@ -172,8 +173,8 @@ fn choice(ui: &mut Ui, skin: &Skin, on: &mut bool, id: &'static str, words: &Tex
 fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {
-        None if turns => return Err(Text::new("mounting_card.no_motor")),
-        Some(MotorSource::ThisEncoder) if turns => return Err(Text::new("mounting_card.refused")),
+        None if turns => return Err(TEXTS.text("mounting_card.no_motor")),
+        Some(MotorSource::ThisEncoder) if turns => return Err(TEXTS.text("mounting_card.refused")),
         _ => {}
     }
     let preset = if *own.with_preset {
@@ -184,7 +185,7 @@ fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
         None
     };
     if !turns && preset.is_none() && own.data.is_none() {
-        return Err(Text::new("mounting_card.nothing"));
+        return Err(TEXTS.text("mounting_card.nothing"));
     }
     let wiegand = own.wiegand.then_some(*own.save_result);
     Ok(MountingRun { calibrate: *own.calibrate, wiegand, preset, data: None })
@@ -202,13 +203,13 @@ fn data_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, data: &mut Option<SessionI
         *data = None;
     }
     if profiles.is_empty() {
-        ui.add_enabled(false, egui::Checkbox::new(&mut false, skin.say("mounting_card.data")))
-            .on_disabled_hover_text(skin.say("mounting_card.no_profile"));
+        ui.add_enabled(false, egui::Checkbox::new(&mut false, say(skin, "mounting_card.data")))
+            .on_disabled_hover_text(say(skin, "mounting_card.no_profile"));
         return;
     }
     for profile in profiles {
         let mut on = *data == Some(profile.id());
-        let text = Text::new("mounting_card.data_of").with("name", profile.name());
+        let text = TEXTS.text("mounting_card.data_of").with("name", profile.name());
         if ui.checkbox(&mut on, skin.words(&text)).changed() {
             *data = on.then(|| profile.id());
         }
@@ -216,20 +217,20 @@ fn data_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, data: &mut Option<SessionI
 }
 
 fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm, actions: &mut Vec<Action>) {
-    card(ui, skin, "preset_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("preset_card.words")));
+    card(ui, skin, TEXTS.text("preset_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "preset_card.words")));
         let Some(identity) = encoder.identity() else { return };
         let layout = &identity.layout;
         // What is wrong with an entry stands under it.
-        labelled_entry(ui, skin, "preset_card.degrees", &mut form.degrees, 96.0, "270");
+        labelled_entry(ui, skin, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
         problem(ui, skin, form.singleturn(layout).err().as_ref());
-        labelled_entry(ui, skin, "preset_card.turns", &mut form.turns, 96.0, "0");
+        labelled_entry(ui, skin, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
         problem(ui, skin, form.multiturn(layout).err().as_ref());
         let value = form.value(layout);
         let ready = encoder.session.is_ready();
         let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));
         ui.horizontal_wrapped(|ui| {
-            let word = skin.say("preset_card.store");
+            let word = say(skin, "preset_card.store");
             if enabled_button(ui, ready && value.is_ok(), icons::FLOPPY_DISK, &word).clicked() {
                 actions.push(Action::device(encoder.session.id, plan(value.ok(), None)));
             }
@@ -237,16 +238,16 @@ fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm,
         ui.add_space(skin.space.inside);
         if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
             let words = skin.words(&explained::preset(stored, layout.singleturn_bits()));
-            row(ui, skin, &skin.say("preset_card.stored"), skin.mono(words));
+            row(ui, skin, &say(skin, "preset_card.stored"), skin.mono(words));
         }
-        paragraph(ui, skin.label(skin.say("preset_card.fire_words")));
+        paragraph(ui, skin.label(say(skin, "preset_card.fire_words")));
         ui.horizontal_wrapped(|ui| {
             for (parts, id) in [
                 (PresetParts::Both, "preset_card.both"),
                 (PresetParts::Singleturn, "preset_card.singleturn"),
                 (PresetParts::Multiturn, "preset_card.multiturn"),
             ] {
-                if enabled_button(ui, ready, icons::TARGET, &skin.say(id)).clicked() {
+                if enabled_button(ui, ready, icons::TARGET, &say(skin, id)).clicked() {
                     actions.push(Action::device(encoder.session.id, plan(None, Some(parts))));
                 }
             }
@@ -259,8 +260,8 @@ fn filter_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Acti
     if !has {
         return;
     }
-    card(ui, skin, "filter_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("filter_card.words")));
+    card(ui, skin, TEXTS.text("filter_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "filter_card.words")));
         let own = encoder.status.as_ref().and_then(|status| status.filter);
         for (filter, hint) in [(Filter::Balanced, "filter_card.balanced"), (Filter::Dynamic, "filter_card.dynamic")] {
             ui.horizontal_wrapped(|ui| {
@@ -274,7 +275,7 @@ fn filter_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Acti
                     let change = Box::new(Change::SelectFilter(filter));
                     actions.push(Action::device(encoder.session.id, Biss::Plan(change)));
                 }
-                ui.label(skin.caption(skin.say(hint)));
+                ui.label(skin.caption(say(skin, hint)));
             });
         }
     });

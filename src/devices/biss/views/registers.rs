@@ -1,12 +1,12 @@
 //! The registers, bank after bank: a list of the banks, and the table.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::{Action, Text};
+use crate::app::{Action, DeviceCommand, Text};
 use crate::devices::biss::protocol::{Access, Decoding, Name};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{Action as Biss, Encoder, Group, Shown};
+use crate::devices::biss::state::{Action as Biss, Encoder, Group, Shown, TEXTS};
+use crate::devices::biss::views::say;
 use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
 use crate::ui::widgets::{
     Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterRow, RegisterTable, RegisterView,
@@ -29,7 +29,7 @@ const BESIDE: f32 = 860.0;
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     if encoder.description.is_none() {
         let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
-        if empty(ui, skin, &skin.say("registers.nothing"), Some((read.0, &read.1, read.2))) {
+        if empty(ui, skin, &say(skin, "registers.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
@@ -70,7 +70,7 @@ fn head(
     let mut at = view.table.group().unwrap_or_default();
     ui.horizontal(|ui| {
         if !beside {
-            let label = skin.say("registers.bank");
+            let label = say(skin, "registers.bank");
             if choice(ui, &label, &mut at, groups.iter().map(|own| own.title.clone()).enumerate()) {
                 view.table.select(Place { group: at, row: 0 });
             }
@@ -86,17 +86,17 @@ fn head(
             let words = format!("{} {problem}", icons::WARNING_CIRCLE);
             ui.add(egui::Label::new(RichText::new(words).color(skin.palette.bad)).truncate());
         } else if encoder.memory.is_dirty() {
-            ui.add(egui::Label::new(skin.caption(skin.say("registers.edited"))).truncate());
+            ui.add(egui::Label::new(skin.caption(say(skin, "registers.edited"))).truncate());
         } else if !encoder.record.watched().is_empty() && encoder.session.is_polling() {
-            ui.add(egui::Label::new(skin.caption(skin.say("registers.watching"))).truncate());
+            ui.add(egui::Label::new(skin.caption(say(skin, "registers.watching"))).truncate());
         }
     });
 }
 
 fn read_words(bank: Option<u8>) -> Text {
     match bank {
-        None => Text::new("registers.read_direct"),
-        Some(bank) => Text::new("registers.read_bank").with("bank", format!("0x{bank:02X}")),
+        None => TEXTS.text("registers.read_direct"),
+        Some(bank) => TEXTS.text("registers.read_bank").with("bank", format!("0x{bank:02X}")),
     }
 }
 
@@ -108,7 +108,7 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
     let watched = encoder.record.watched();
     if let Some(row) = row {
         let on = watched.iter().any(|own| own.address == row.register.address);
-        let word = Text::new(if on { "registers.unwatch" } else { "registers.watch" });
+        let word = TEXTS.text(if on { "registers.unwatch" } else { "registers.watch" });
         let word = skin.words(&word.with("address", row.register.address));
         let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
         if button.on_hover_text(skin.words(&words::name(&row.register.name))).clicked() {
@@ -117,7 +117,7 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
         }
     }
     if !watched.is_empty() {
-        let word = skin.words(&Text::new("registers.watched").with("count", watched.len()));
+        let word = skin.words(&TEXTS.text("registers.watched").with("count", watched.len()));
         icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
             ui.label(skin.heading(&word));
             for own in watched {
@@ -156,7 +156,7 @@ fn table(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    let none = skin.say("registers.elsewhere");
+    let none = say(skin, "registers.elsewhere");
     let row = |place: Place| {
         let shown = encoder.table.groups().get(place.group).and_then(|own| own.shown(place.row, &encoder.memory));
         shown.map(|own| row_of(skin, encoder, &own, &none)).unwrap_or_default()
@@ -193,18 +193,18 @@ fn table(
 
 fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
     let title = match (own.bank, &own.name) {
-        (None, _) => skin.say("registers.direct"),
+        (None, _) => say(skin, "registers.direct"),
         (Some(bank), None) => format!("0x{bank:02X}"),
         (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", skin.words(&words::name(name))),
     };
-    let note = if own.is_read(&encoder.memory) { String::new() } else { skin.say("registers.not_read") };
+    let note = if own.is_read(&encoder.memory) { String::new() } else { say(skin, "registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
 }
 
 fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
     let name =
-        if register.name.is_empty() { skin.say("registers.byte") } else { skin.words(&words::name(&register.name)) };
+        if register.name.is_empty() { say(skin, "registers.byte") } else { skin.words(&words::name(&register.name)) };
     // A code is no quantity.
     let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
     RegisterRow {
@@ -223,7 +223,7 @@ fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) ->
         differs: shown.is_not_as_delivered(),
         changed: shown.has_changed,
         edited: shown.is_edited,
-        cost: (!register.saves.is_empty()).then(|| skin.say("registers.cost")),
+        cost: (!register.saves.is_empty()).then(|| say(skin, "registers.cost")),
         read_only: (!shown.row.is_data).then(|| elsewhere.to_owned()),
         fields: fields(skin, shown),
         ..RegisterRow::default()
@@ -241,7 +241,7 @@ fn fields(skin: &Skin, shown: &Shown<'_>) -> Vec<RegisterBits> {
             name: skin.words(&words::name(name)),
             value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
             meaning: is_set
-                .map(|set| skin.say(if set { "registers.set" } else { "registers.clear" }))
+                .map(|set| say(skin, if set { "registers.set" } else { "registers.clear" }))
                 .unwrap_or_default(),
             lit: is_set == Some(true),
         }
@@ -253,5 +253,5 @@ fn fields(skin: &Skin, shown: &Shown<'_>) -> Vec<RegisterBits> {
 fn parse(text: &str) -> Result<u8, Text> {
     let digits = text.trim().trim_start_matches("0x").trim_end_matches(['h', 'H']);
     let byte = u8::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));
-    byte.ok_or_else(|| Text::new("registers.no_byte").with("text", text.trim()))
+    byte.ok_or_else(|| TEXTS.text("registers.no_byte").with("text", text.trim()))
 }

@@ -4,11 +4,12 @@
 use egui::{RichText, Ui};
 
 use super::motor;
-use crate::app::{Action, Severity, Text};
+use crate::app::{Action, Severity};
 use crate::devices::biss::procedures::procedure::{Advice, Answer, Demand, Detail, Run, Task};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::explain as says;
-use crate::devices::biss::state::{Action as Biss, Encoder, End, Guide, Reached};
+use crate::devices::biss::state::{Action as Biss, Encoder, End, Guide, Reached, TEXTS};
+use crate::devices::biss::views::say;
 use crate::ui::controls::{button, card, paragraph, severity};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 use crate::ui::{Skin, icons};
@@ -30,17 +31,20 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
         motor::card_ui(ui, skin, encoder, motor, actions);
         ui.add_space(skin.space.groups);
     }
-    card(ui, skin, "guide.title", |ui| {
+    card(ui, skin, TEXTS.text("guide.title"), |ui| {
         let list: Vec<Step> =
             guide.steps().iter().map(|own| step(skin, guide, own.op, own.is_first, own.step, own.reached)).collect();
         let demand = guide.demand();
         let why = demand.and_then(|own| own.blockers.first()).map(|own| skin.words(&says::blocker(*own)));
-        let word = skin.say(match demand.map(|own| own.task) {
-            Some(Task::Stand | Task::StandAtPlace) => "guide.go_on",
-            _ => "guide.start",
-        });
+        let word = say(
+            skin,
+            match demand.map(|own| own.task) {
+                Some(Task::Stand | Task::StandAtPlace) => "guide.go_on",
+                _ => "guide.start",
+            },
+        );
         let start = demand.map(|_| (word.as_str(), why.as_deref().map_or(Ok(()), Err)));
-        let skip = skin.say("guide.skip");
+        let skip = say(skin, "guide.skip");
         let model = Steps { steps: &list, start, skip: demand.map(|_| skip.as_str()) };
         let event = steps(ui, skin, &model);
         match (event, demand) {
@@ -75,7 +79,7 @@ fn step(
         Reached::Cancelled => (StepState::Skipped, "guide.cancelled"),
         Reached::Ahead => (StepState::ToCome, "guide.ahead"),
     };
-    let mut step = Step { title, state, word: skin.say(word), ..Step::default() };
+    let mut step = Step { title, state, word: say(skin, word), ..Step::default() };
     match (reached, guide.detail()) {
         (Reached::Waits, Some(Detail::Demand(demand))) => {
             // What is best of the speed the gauges say, which do not come and go.
@@ -106,7 +110,7 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
         let spread = demand.motion.map(|own| own.spread);
         let accepted = run.accepted_fluctuation(demand.motion.map_or(run.recommended().middle(), |own| own.rpm));
         gauges.push(Gauge {
-            name: skin.say("guide.fluctuation"),
+            name: say(skin, "guide.fluctuation"),
             value: spread,
             shown: spread.map(|spread| format!("±{} {unit}", skin.number(spread, 1))).unwrap_or_default(),
             allowed: 0.0..=accepted,
@@ -119,7 +123,7 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
         let celsius = demand.celsius.map(f64::from);
         let (coldest, warmest) = (*Demand::CELSIUS.start(), *Demand::CELSIUS.end());
         gauges.push(Gauge {
-            name: skin.say("biss_status.temperature"),
+            name: say(skin, "biss_status.temperature"),
             value: celsius,
             shown: celsius.map(|celsius| format!("{} °C", skin.number(celsius, 0))).unwrap_or_default(),
             allowed: f64::from(coldest)..=f64::from(warmest),
@@ -138,13 +142,14 @@ fn speed(skin: &Skin, run: Run, demand: &Demand) -> Gauge {
     // Standing is 0, whichever way it is looked at.
     let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
     let is_best = best != allowed;
-    let limits = Text::new(if is_best { "guide.rpm_range_best" } else { "guide.rpm_range" })
+    let limits = TEXTS
+        .text(if is_best { "guide.rpm_range_best" } else { "guide.rpm_range" })
         .with_number("least", allowed.least, 0)
         .with_number("greatest", allowed.greatest, 0)
         .with_number("best", best.middle(), 0);
     let unit = skin.say("unit.revolutions_per_minute");
     Gauge {
-        name: skin.say(if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
+        name: say(skin, if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
         value: rpm,
         shown: rpm.map(|rpm| format!("{} {unit}", skin.number(rpm, 1))).unwrap_or_default(),
         allowed: accepted.least..=accepted.greatest,
@@ -160,7 +165,7 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, ac
         End::Done(_) => "guide.report",
         End::Failed { .. } => "guide.ended_early",
     };
-    card(ui, skin, title, |ui| {
+    card(ui, skin, TEXTS.text(title), |ui| {
         let outcomes = match end {
             End::Done(outcomes) => outcomes,
             End::Failed { before, .. } => before,
@@ -178,19 +183,19 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, ac
         if encoder.motor.is_some() {
             motor::turning_ui(ui, skin, encoder, actions);
         } else if ops.iter().any(Op::turns) {
-            line(ui, skin, Severity::Note, &skin.say("guide.stop_motor"));
+            line(ui, skin, Severity::Note, &say(skin, "guide.stop_motor"));
         }
         ui.add_space(skin.space.inside);
         ui.horizontal_wrapped(|ui| {
             if let End::Failed { may_lead_back: true, .. } = end {
                 super::lead_back_ui(ui, skin, encoder, actions);
             }
-            if !lines.is_empty() && button(ui, icons::COPY, &skin.say("guide.copy_report")).clicked() {
-                let head = format!("{}\n{}\n", encoder.session.name(), skin.say("guide.report"));
+            if !lines.is_empty() && button(ui, icons::COPY, &say(skin, "guide.copy_report")).clicked() {
+                let head = format!("{}\n{}\n", encoder.session.name(), say(skin, "guide.report"));
                 let lines: Vec<&str> = lines.iter().map(|(_, words)| words.as_str()).collect();
                 ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
             }
-            if button(ui, icons::CHECK, &skin.say("guide.close")).clicked() {
+            if button(ui, icons::CHECK, &say(skin, "guide.close")).clicked() {
                 actions.push(Action::device(id, Biss::CloseGuide));
             }
         });

@@ -3,10 +3,10 @@
 use egui::{RichText, Ui};
 
 use crate::devices::biss::protocol::{Eds, EdsBank, EdsError};
-use crate::devices::biss::state::{Encoder, words};
-use crate::ui::Skin;
+use crate::devices::biss::state::{Encoder, TEXTS, words};
+use crate::devices::biss::views::say;
 use crate::ui::controls::{card, paragraph, two_columns};
-use crate::ui::icons;
+use crate::ui::{Skin, icons};
 
 pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     let Some([common, encoder]) = encoder.data_sheet() else { return };
@@ -14,8 +14,8 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         ui,
         skin,
         (),
-        |ui, ()| card(ui, skin, "sheet_card.common", |ui| sheet_ui(ui, skin, EdsBank::Common, &common)),
-        |ui, ()| card(ui, skin, "sheet_card.encoder", |ui| sheet_ui(ui, skin, EdsBank::Encoder, &encoder)),
+        |ui, ()| card(ui, skin, TEXTS.text("sheet_card.common"), |ui| sheet_ui(ui, skin, EdsBank::Common, &common)),
+        |ui, ()| card(ui, skin, TEXTS.text("sheet_card.encoder"), |ui| sheet_ui(ui, skin, EdsBank::Encoder, &encoder)),
     );
 }
 
@@ -43,7 +43,7 @@ fn sheet_ui(ui: &mut Ui, skin: &Skin, bank: EdsBank, sheet: &Result<Eds, EdsErro
     }
     ui.horizontal(|ui| {
         ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
-        ui.label(skin.caption(skin.say("sheet_card.sum")));
+        ui.label(skin.caption(say(skin, "sheet_card.sum")));
     });
 }
 

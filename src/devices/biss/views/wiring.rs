@@ -2,6 +2,8 @@
 
 use egui::Ui;
 
+use crate::devices::biss::state::TEXTS;
+use crate::devices::biss::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, two_columns};
 use crate::ui::wires::wires_ui;
@@ -29,14 +31,20 @@ const BESIDE: f32 = 640.0;
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
         if ui.available_width() < BESIDE {
-            wires_ui(ui, skin, PIN, &PINS);
+            wires_ui(ui, skin, &TEXTS, PIN, &PINS);
         } else {
             let (left, right) = PINS.split_at(PINS.len() / 2);
-            two_columns(ui, skin, (), |ui, ()| wires_ui(ui, skin, PIN, left), |ui, ()| wires_ui(ui, skin, PIN, right));
+            two_columns(
+                ui,
+                skin,
+                (),
+                |ui, ()| wires_ui(ui, skin, &TEXTS, PIN, left),
+                |ui, ()| wires_ui(ui, skin, &TEXTS, PIN, right),
+            );
         }
         ui.add_space(skin.space.inside);
         for note in NOTES {
-            paragraph(ui, skin.caption(skin.say(note)));
+            paragraph(ui, skin.caption(say(skin, note)));
         }
     });
 }
@@ -44,6 +52,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
 #[cfg(test)]
 mod tests {
     use super::{NOTES, PINS};
+    use crate::devices::biss::state::TEXTS;
     use crate::ui::wires::{check_notes, check_wires};
 
     /// Issue 22.23: kit encoder manual, table 1 (pins), 2 (supply), 14 (preset), 2.1 (connector), 2.3 (point to point,
@@ -51,6 +60,7 @@ mod tests {
     #[test]
     fn the_card_says_what_the_manual_says() {
         check_wires(
+            &TEXTS,
             &PINS,
             &[
                 ("1 GND", &["ground"]),
@@ -63,6 +73,6 @@ mod tests {
                 ("8 VCC", &["4.75…12.5 V (00B)", "15 V (01B, 03B)"]),
             ],
         );
-        check_notes(&NOTES, &["BM08B-GHS", "Point to point"]);
+        check_notes(&TEXTS, &NOTES, &["BM08B-GHS", "Point to point"]);
     }
 }

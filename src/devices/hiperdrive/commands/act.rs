@@ -3,19 +3,18 @@
 use super::args::{DoOptions, HiperdriveAction, OfDrive};
 use super::plan::{commit, operations, prepare, said};
 use super::run::{Runner, drive};
-use crate::app::Text;
 use crate::cli::args::{Common, Do};
-use crate::cli::check;
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_done;
 use crate::cli::runner::{failed, unexpected};
-use crate::cli::{Failure, Result};
+use crate::cli::{Failure, Result, check};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::DriveIdentity;
 use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
@@ -62,9 +61,9 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     let found = if action == HiperdriveAction::PresenceTest { drives(&mut runner)? } else { Vec::new() };
     match action {
-        HiperdriveAction::Factory if !all => output.remark(&Text::new("hd_cli.not_saved").terminal()),
+        HiperdriveAction::Factory if !all => output.remark(&TEXTS.text("hd_cli.not_saved").terminal()),
         HiperdriveAction::Acknowledge if operations.is_empty() => {
-            output.remark(&Text::new("hd_cli.no_fault").with("drive", drive(&of).get()).terminal());
+            output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive(&of).get()).terminal());
         }
         _ => {}
     }
@@ -76,7 +75,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         HiperdriveAction::Acknowledge if !operations.is_empty() => {
             let again = prepare(&mut runner, output, Change::Do(Service::Acknowledge(drive(&of))))?;
             if !again.plan.is_empty() {
-                return Err(failed(&Text::new("hd_cli.still_faulty").with("drive", drive(&of).get())));
+                return Err(failed(&TEXTS.text("hd_cli.still_faulty").with("drive", drive(&of).get())));
             }
         }
         _ => {}
@@ -95,10 +94,10 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
 /// That the presence test has found a drive, and each that was there before it.
 fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
-        return Err(failed(&Text::new("hd_cli.no_drives")));
+        return Err(failed(&TEXTS.text("hd_cli.no_drives")));
     }
     match before.iter().find(|number| found.iter().all(|own| own.number != **number)) {
-        Some(gone) => Err(failed(&Text::new("hd_cli.drive_gone").with("drive", gone.get()))),
+        Some(gone) => Err(failed(&TEXTS.text("hd_cli.drive_gone").with("drive", gone.get()))),
         None => Ok(()),
     }
 }
@@ -106,7 +105,7 @@ fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
 fn set_position(of: &OfDrive, text: &str) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
     let position = i32::try_from(number).map_err(|_| {
-        let said = Text::new("hd_cli.position_range").with("value", text);
+        let said = TEXTS.text("hd_cli.position_range").with("value", text);
         failed(&said.with("low", i32::MIN).with("high", i32::MAX))
     })?;
     Ok(Change::SetPosition { drive: drive(of), position, save: true })

@@ -19,7 +19,6 @@ use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, Args};
 
 use self::args::{DoOptions, HiperdriveAction, HubOption, Move, OfDrive, WordOptions};
-use crate::app::Text;
 use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse, values_of};
 use crate::cli::output::Output;
@@ -27,6 +26,7 @@ use crate::cli::simulate::Simulated;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::profile::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{KIND, PARAMETERS};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// What can be done with drives.
@@ -186,7 +186,7 @@ fn item(text: &str, of: &OfDrive) -> Result<Item> {
     });
     item.map_err(|error| {
         Failure::Usage(match error {
-            ItemError::NoParameter(number) => Text::new("hd_said.unknown").with("number", number).terminal(),
+            ItemError::NoParameter(number) => TEXTS.text("hd_said.unknown").with("number", number).terminal(),
             error => error.to_string(),
         })
     })

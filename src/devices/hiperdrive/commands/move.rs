@@ -4,6 +4,8 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::devices::hiperdrive::state::TEXTS;
+
 use serde_json::json;
 
 use super::args::Move;
@@ -127,14 +129,14 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
 fn within(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {
-        let text = Text::new("hd_refused.outside").with_text("target", place(target));
+        let text = TEXTS.text("hd_refused.outside").with_text("target", place(target));
         failed(&text.with_text("low", place(low)).with_text("high", place(high)))
     })
 }
 
 fn place(steps: impl Into<i64>) -> Text {
-    let unit = Text::new(Measure::Steps.unit());
-    Text::new("hd_entry.place").with("value", steps.into()).with_text("unit", unit)
+    let unit = TEXTS.text(Measure::Steps.unit());
+    TEXTS.text("hd_entry.place").with("value", steps.into()).with_text("unit", unit)
 }
 
 fn refused(refusal: Refusal) -> Failure {

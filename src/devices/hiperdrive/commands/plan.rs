@@ -3,7 +3,6 @@
 use serde_json::{Value as Json, json};
 
 use super::run::Runner;
-use crate::app::Text;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agree, check_wear};
@@ -14,6 +13,7 @@ use crate::devices::hiperdrive::jobs::{
     Change, Commit, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING,
 };
 use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, warnings};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::{Consent, Operation as _};
 
@@ -30,13 +30,13 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     if let (Some(asked), Some(Op::Write { new, .. })) = (asked, prepared.plan.ops.first())
         && asked != *new
     {
-        output.remark(&Text::new("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal());
+        output.remark(&TEXTS.text("hd_cli.rounded").with("asked", asked).with("becomes", new).terminal());
     }
     for warning in warnings(&prepared.plan) {
         output.remark(&words::warning(&warning).terminal());
     }
     if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
-        output.remark(&Text::new("hd_cli.address_lost").terminal());
+        output.remark(&TEXTS.text("hd_cli.address_lost").terminal());
     }
     Ok(prepared)
 }

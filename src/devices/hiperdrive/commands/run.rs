@@ -15,6 +15,7 @@ use crate::devices::hiperdrive::jobs::{
 };
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::link::LinkUrl;
 use crate::store::Store;
@@ -44,10 +45,10 @@ impl Runs for Hiperdrive {
 
     fn say(remark: &Remark) {
         match remark {
-            Remark::ControlLost => say(&format!("{}\n", Text::new("hd_cli.control_lost").terminal())),
+            Remark::ControlLost => say(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal())),
             Remark::RulesUnread(error) => {
                 let why = words::device(error).terminal();
-                say(&format!("{} {why}\n", Text::new("hd_end.rules").terminal()));
+                say(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal()));
             }
             Remark::RulesRead => {}
         }

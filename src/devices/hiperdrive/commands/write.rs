@@ -3,7 +3,6 @@
 use super::item;
 use super::plan::{commit, operations, prepare, said};
 use super::run::Runner;
-use crate::app::Text;
 use crate::cli::args::{Common, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
@@ -14,6 +13,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::{Image, Item, PlanError, Service};
 use crate::devices::hiperdrive::protocol::{Access, Travel};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
@@ -47,7 +47,7 @@ fn change(item: Item, text: &str) -> Result<Change> {
     }
     let value = parse_number(text).ok_or_else(|| Failure::Usage(format!("{item}: {text:?} is not a number")))?;
     if (row.number, value) == (47, 0) {
-        return Err(failed(&Text::new("hd_cli.no_service")));
+        return Err(failed(&TEXTS.text("hd_cli.no_service")));
     }
     // What the turns of the drive bound the plan looks at: with the scale of the drive both limits can be named.
     if row.reach.is_none() || row.number == REFERENCE {

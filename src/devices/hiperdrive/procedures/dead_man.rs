@@ -27,11 +27,12 @@ use std::time::Duration;
 pub use act::{Effort, Ended, Goal, Intent, Lock, Motive, Permit, Phase, Refusal, Rung, Wish};
 pub use watch::{Outside, Side};
 
-use crate::devices::hiperdrive::protocol::{Actual, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit};
-use crate::units::Moment;
 use lead::Lead;
 use stage::{Mark, Stage};
 use watch::Watch;
+
+use crate::devices::hiperdrive::protocol::{Actual, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit};
+use crate::units::Moment;
 
 /// A drive's dead-man, from the opening of a cyclic connection to its end.
 #[derive(Clone, Debug)]

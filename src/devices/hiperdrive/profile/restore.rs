@@ -3,10 +3,10 @@
 
 pub use crate::profile::RestoreOptions;
 
-use super::plan_edits;
 use super::record::REFERENCE;
 use super::{
     HiperdrivePlan, HiperdriveProfile, Image, Item, OtherType, PlanError, Positions, ProfileDrive, ProfileIdentity,
+    plan_edits,
 };
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
 

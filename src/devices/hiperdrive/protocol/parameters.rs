@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use Kind::{I8, I16, I32, Text, U8, U16, U32};
+use Range::{Any, OneOf, Within, WithinOr};
+
 use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
 use super::travel::Reach;
 use super::value::Kind;
-use Kind::{I8, I16, I32, Text, U8, U16, U32};
-use Range::{Any, OneOf, Within, WithinOr};
 
 /// Something that is only read.
 const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -> ParameterRow {

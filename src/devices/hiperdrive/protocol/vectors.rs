@@ -3,10 +3,11 @@
 
 use proptest::prelude::*;
 
-use super::*;
-use crate::bits::{hex, parse_hex};
 use ControlBit as C;
 use StatusBit as S;
+
+use super::*;
+use crate::bits::{hex, parse_hex};
 
 mod numbers;
 mod table;

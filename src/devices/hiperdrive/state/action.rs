@@ -1,11 +1,11 @@
 //! What can be asked of an adapter or a hub that is shown, and of its drives.
 
-use crate::app::DeviceAction;
 use std::path::PathBuf;
 
 use super::axis;
 use super::ruler::Measure;
 use super::staged::Edit;
+use crate::app::DeviceAction;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Length, RunEnd};

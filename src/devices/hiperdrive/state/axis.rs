@@ -32,10 +32,11 @@ pub use report::{Device, end_lines, report};
 pub use seen::Seen;
 pub use supply::{Power, Restart};
 
-use super::ruler::Ruler;
-use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
 use chain::{Basis, Chain, Origin};
 use standstill::Standstill;
+
+use super::ruler::Ruler;
+use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
 
 /// A step of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

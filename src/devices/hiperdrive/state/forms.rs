@@ -6,6 +6,7 @@ use super::staged::Edit;
 use super::unit::Unit;
 use crate::app::{Text, number};
 use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, ScaleError};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 /// How far a step is to go, as it was typed; `sign` is −1 for back.
@@ -15,7 +16,7 @@ use crate::devices::hiperdrive::state::explain as words;
 pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     if steps == 0 {
-        return Err(Text::new("hd_entry.no_step"));
+        return Err(TEXTS.text("hd_entry.no_step"));
     }
     Ok(steps.saturating_mul(sign))
 }
@@ -28,7 +29,8 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     let place = |steps| unit.place(unit.drive(), steps);
     match unit.limits(unit.drive()) {
-        Some((low, high)) if !(low..=high).contains(&steps) => Err(Text::new("hd_refused.outside")
+        Some((low, high)) if !(low..=high).contains(&steps) => Err(TEXTS
+            .text("hd_refused.outside")
             .with_text("target", place(steps))
             .with_text("low", place(low))
             .with_text("high", place(high))),
@@ -41,13 +43,14 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
 /// # Errors
 /// What cannot be, in words.
 pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
-    let value = number(text).ok_or_else(|| Text::new("hd_entry.number").with("entry", text.trim()))?;
+    let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
     if measure == Measure::Steps && value.fract() != 0.0 {
-        return Err(Text::new("hd_entry.whole_steps").with("entry", text.trim()));
+        return Err(TEXTS.text("hd_entry.whole_steps").with("entry", text.trim()));
     }
     unit.ruler(unit.drive()).steps(value, measure).map_err(|beyond| match beyond {
-        Beyond::NoPitch => Text::new("hd_entry.no_pitch"),
-        Beyond::Bits { least, most } => Text::new("hd_entry.beyond")
+        Beyond::NoPitch => TEXTS.text("hd_entry.no_pitch"),
+        Beyond::Bits { least, most } => TEXTS
+            .text("hd_entry.beyond")
             .with("entry", text.trim())
             .with_number("least", least, 0)
             .with_number("most", most, 0),
@@ -61,7 +64,7 @@ pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
 pub fn percent(text: &str) -> Result<Percent, Text> {
     let digits = text.trim().trim_end_matches('%').trim();
     let percent = digits.parse().ok().filter(|percent| *percent >= 1).and_then(Percent::new);
-    percent.ok_or_else(|| Text::new("hd_entry.percent").with("entry", text.trim()))
+    percent.ok_or_else(|| TEXTS.text("hd_entry.percent").with("entry", text.trim()))
 }
 
 /// A parameter as it was typed, decimal or with `0x` in front. An empty entry of a profile says nothing of it.
@@ -78,7 +81,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
         Some(hex) => i64::from_str_radix(hex, 16).ok(),
         None => digits.parse().ok(),
     };
-    let value = value.ok_or_else(|| Text::new("hd_entry.whole").with("entry", text.trim()))?;
+    let value = value.ok_or_else(|| TEXTS.text("hd_entry.whole").with("entry", text.trim()))?;
     let checked = row.kind.check(row.number, value, row.travel);
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| words::out_of_range(&error))
 }
@@ -92,7 +95,7 @@ pub fn length(text: &str) -> Result<Length, Text> {
     let nanometres = millimetres.map(|own| (own * 1e6).round() as u64).filter(|own| *own > 0);
     nanometres
         .map(|nanometres| Length { nanometres })
-        .ok_or_else(|| Text::new("hd_entry.length").with("entry", text.trim()))
+        .ok_or_else(|| TEXTS.text("hd_entry.length").with("entry", text.trim()))
 }
 
 /// The scale with which a step of a drive is so long on its spindle.
@@ -101,8 +104,9 @@ pub fn length(text: &str) -> Result<Length, Text> {
 /// What cannot be, in words.
 pub fn scale(pitch: Length, step: Length) -> Result<PositionScale, Text> {
     PositionScale::for_spindle(pitch, step).map_err(|error| match error {
-        ScaleError::Zero | ScaleError::NoLength => Text::new("hd_entry.length").with("entry", 0),
-        ScaleError::TooFine { steps, numerator, denominator } => Text::new("hd_entry.too_fine")
+        ScaleError::Zero | ScaleError::NoLength => TEXTS.text("hd_entry.length").with("entry", 0),
+        ScaleError::TooFine { steps, numerator, denominator } => TEXTS
+            .text("hd_entry.too_fine")
             .with("steps", steps)
             .with("numerator", numerator)
             .with("denominator", denominator),

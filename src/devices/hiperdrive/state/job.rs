@@ -2,23 +2,24 @@
 
 use crate::app::Text;
 use crate::devices::hiperdrive::jobs::HiperdriveJob;
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 /// What it is called in the list of jobs.
 pub(super) fn words(job: &HiperdriveJob) -> Text {
     match job {
-        HiperdriveJob::Hello | HiperdriveJob::Identify => Text::new("hd_job.identify"),
-        HiperdriveJob::Survey => Text::new("hd_job.survey"),
+        HiperdriveJob::Hello | HiperdriveJob::Identify => TEXTS.text("hd_job.identify"),
+        HiperdriveJob::Survey => TEXTS.text("hd_job.survey"),
         HiperdriveJob::Status => Text::new("job.status"),
         HiperdriveJob::Check => Text::new("job.check"),
-        HiperdriveJob::Position(drive) => Text::new("hd_job.position").with("drive", drive.get()),
+        HiperdriveJob::Position(drive) => TEXTS.text("hd_job.position").with("drive", drive.get()),
         HiperdriveJob::Read(number) => Text::new("job.read").with_text("item", words::parameter(*number)),
-        HiperdriveJob::Network => Text::new("hd_job.network"),
+        HiperdriveJob::Network => TEXTS.text("hd_job.network"),
         HiperdriveJob::Save => Text::new("job.save"),
         HiperdriveJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
         HiperdriveJob::Commit(_) => Text::new("job.write"),
-        HiperdriveJob::Take => Text::new("hd_job.take"),
-        HiperdriveJob::Give => Text::new("hd_job.give"),
-        HiperdriveJob::Watch(drive) => Text::new("hd_job.watch").with("drive", drive.get()),
+        HiperdriveJob::Take => TEXTS.text("hd_job.take"),
+        HiperdriveJob::Give => TEXTS.text("hd_job.give"),
+        HiperdriveJob::Watch(drive) => TEXTS.text("hd_job.watch").with("drive", drive.get()),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, LedSubject, PortLight, Topology};
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// What somebody sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,12 +114,12 @@ impl Leds {
             Lamp::Bus(lamp) => bus(lamp, if lamp == BusLamp::Module { self.module } else { self.network }),
             Lamp::Port => port(self.port),
         };
-        Said { severity, meaning: Text::new(meaning), remedy: Text::new(remedy) }
+        Said { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
     }
 
     /// What a lamp shows, in words.
     pub fn shown(&self, lamp: Lamp) -> Text {
-        Text::new(match lamp {
+        TEXTS.text(match lamp {
             Lamp::Drives => match self.drives {
                 DriveLight::Off => "hd_led.off",
                 DriveLight::Green => "hd_led.green",

@@ -26,11 +26,14 @@ mod said;
 mod setup;
 mod staged;
 mod survey;
+mod texts;
 mod trace;
 mod unit;
 mod unsaved;
 pub mod words;
 mod write;
+
+pub use texts::TEXTS;
 
 pub use action::{Action, Motor};
 pub use connect_form::{HiperdriveForm, HiperdriveWay, VirtualHub};

@@ -7,6 +7,7 @@ use crate::app::{Severity, Text};
 use crate::buses::ethernet_ip::protocol::{AddressError, AddressSource, InterfaceConfiguration};
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::protocol::AddressSwitch;
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// What is wanted, as it is typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,13 +101,13 @@ fn address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
         "" => Ok(Ipv4Addr::UNSPECIFIED),
         own => own
             .parse()
-            .map_err(|_| Text::new("hd_net.no_address").with_text("what", Text::new(what)).with("entry", own)),
+            .map_err(|_| TEXTS.text("hd_net.no_address").with_text("what", TEXTS.text(what)).with("entry", own)),
     }
 }
 
 fn needed(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     match text.trim() {
-        "" => Err(Text::new("entry.missing").with_text("what", Text::new(what))),
+        "" => Err(Text::new("entry.missing").with_text("what", TEXTS.text(what))),
         own => address(what, own),
     }
 }
@@ -114,16 +115,16 @@ fn needed(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
 /// Why a device could not be reached so.
 pub fn refused(error: &AddressError) -> Text {
     match error {
-        AddressError::None => Text::new("hd_net.none"),
-        AddressError::Reserved(address) => Text::new("hd_net.reserved").with("address", address),
-        AddressError::Mask(mask) => Text::new("hd_net.bad_mask").with("mask", mask),
-        AddressError::Network(address) => Text::new("hd_net.is_network").with("address", address),
-        AddressError::Broadcast(address) => Text::new("hd_net.is_broadcast").with("address", address),
+        AddressError::None => TEXTS.text("hd_net.none"),
+        AddressError::Reserved(address) => TEXTS.text("hd_net.reserved").with("address", address),
+        AddressError::Mask(mask) => TEXTS.text("hd_net.bad_mask").with("mask", mask),
+        AddressError::Network(address) => TEXTS.text("hd_net.is_network").with("address", address),
+        AddressError::Broadcast(address) => TEXTS.text("hd_net.is_broadcast").with("address", address),
         AddressError::GatewayOutside { gateway, network, prefix } => {
-            Text::new("hd_net.gateway_outside").with("gateway", gateway).with("network", format!("{network}/{prefix}"))
+            TEXTS.text("hd_net.gateway_outside").with("gateway", gateway).with("network", format!("{network}/{prefix}"))
         }
-        AddressError::Gateway(gateway) => Text::new("hd_net.bad_gateway").with("gateway", gateway),
-        AddressError::Domain(domain) => Text::new("hd_net.bad_domain").with("domain", domain),
+        AddressError::Gateway(gateway) => TEXTS.text("hd_net.bad_gateway").with("gateway", gateway),
+        AddressError::Domain(domain) => TEXTS.text("hd_net.bad_domain").with("domain", domain),
     }
 }
 
@@ -159,12 +160,12 @@ impl PowerUp {
     /// In words.
     pub fn words(self) -> Text {
         match self {
-            PowerUp::Fixed(address) => Text::new("hd_net.up_fixed").with("address", address),
-            PowerUp::Stored(address) => Text::new("hd_net.up_stored").with("address", address),
-            PowerUp::NothingStored => Text::new("hd_net.up_nothing"),
-            PowerUp::Bootp => Text::new("hd_net.up_bootp"),
-            PowerUp::Dhcp => Text::new("hd_net.up_dhcp"),
-            PowerUp::Unknown(number) => Text::new("hd_net.up_unknown").with("number", number),
+            PowerUp::Fixed(address) => TEXTS.text("hd_net.up_fixed").with("address", address),
+            PowerUp::Stored(address) => TEXTS.text("hd_net.up_stored").with("address", address),
+            PowerUp::NothingStored => TEXTS.text("hd_net.up_nothing"),
+            PowerUp::Bootp => TEXTS.text("hd_net.up_bootp"),
+            PowerUp::Dhcp => TEXTS.text("hd_net.up_dhcp"),
+            PowerUp::Unknown(number) => TEXTS.text("hd_net.up_unknown").with("number", number),
         }
     }
 }
@@ -183,7 +184,7 @@ pub fn consequences(
     // At 97 addresses count, and where they come from does not.
     let is_lost = decides.is_some_and(|own| own != AddressSwitch::Stored || now.source != wanted.source);
     if let Some(own) = decides.filter(|_| is_lost) {
-        texts.push((Severity::Warning, Text::new("hd_net.switch_decides").with("digits", own.number())));
+        texts.push((Severity::Warning, TEXTS.text("hd_net.switch_decides").with("digits", own.number())));
     }
     let severity = match after {
         PowerUp::NothingStored | PowerUp::Unknown(_) => Severity::Warning,
@@ -192,20 +193,20 @@ pub fn consequences(
     texts.push((severity, after.words()));
     match (host, after.address()) {
         (Some(host), Some(address)) if host != address => {
-            texts.push((Severity::Note, Text::new("hd_net.then_at").with("address", address)));
+            texts.push((Severity::Note, TEXTS.text("hd_net.then_at").with("address", address)));
         }
-        (Some(_), None) => texts.push((Severity::Note, Text::new("hd_net.then_find"))),
+        (Some(_), None) => texts.push((Severity::Note, TEXTS.text("hd_net.then_find"))),
         _ => {}
     }
     if wanted.source == AddressSource::Stored && now.interface != wanted.interface {
-        texts.push((Severity::Note, Text::new("hd_net.maybe_now")));
+        texts.push((Severity::Note, TEXTS.text("hd_net.maybe_now")));
     }
     texts
 }
 
 /// What each position of the switches S1 and S2 means.
 pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
-    let row = |digits, meaning, is_now| Position { digits, meaning: Text::new(meaning), is_now };
+    let row = |digits, meaning, is_now| Position { digits, meaning: TEXTS.text(meaning), is_now };
     let at = |own: AddressSwitch| switch == Some(own);
     [
         row("0", "hd_net.switch_object", at(AddressSwitch::Object)),
@@ -219,10 +220,10 @@ pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
 /// Where an address comes from.
 pub fn source(own: AddressSource) -> Text {
     match own {
-        AddressSource::Stored => Text::new("hd_net.source_stored"),
-        AddressSource::Bootp => Text::new("hd_net.source_bootp"),
-        AddressSource::Dhcp => Text::new("hd_net.source_dhcp"),
-        AddressSource::Unknown(number) => Text::new("hd_net.source_unknown").with("number", number),
+        AddressSource::Stored => TEXTS.text("hd_net.source_stored"),
+        AddressSource::Bootp => TEXTS.text("hd_net.source_bootp"),
+        AddressSource::Dhcp => TEXTS.text("hd_net.source_dhcp"),
+        AddressSource::Unknown(number) => TEXTS.text("hd_net.source_unknown").with("number", number),
     }
 }
 

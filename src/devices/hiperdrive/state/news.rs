@@ -16,12 +16,11 @@ use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
 use crate::devices::hiperdrive::sim::Target;
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
-use crate::link::LinkUrl;
-use crate::link::TraceEntry;
+use crate::link::{LinkUrl, TraceEntry};
 use crate::store::Store;
-use crate::worker::OpenError;
-use crate::worker::Session;
+use crate::worker::{OpenError, Session};
 
 /// How often a drive is asked where it is, to begin with.
 const PACE: Duration = Duration::from_millis(200);
@@ -218,7 +217,7 @@ impl OnLine for Unit {
             Remark::ControlLost => self.control_lost(services),
             Remark::RulesUnread(why) => {
                 self.moves.stop();
-                let texts = vec![Text::new(RULES), words::device(&why)];
+                let texts = vec![TEXTS.text(RULES), words::device(&why)];
                 services.tell(Severity::Error, texts, Some(&self.session.name()));
             }
             Remark::RulesRead => services.log.settle(RULES, Some(&self.session.name())),

@@ -7,6 +7,7 @@ use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Outside, Permit, Wish};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_reference};
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// A drive outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +41,7 @@ impl Unit {
     pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.outside(drive).filter(|own| own.is_far)?;
         let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
-        let text = Text::new(id).with_text("position", self.place(drive, own.position));
+        let text = TEXTS.text(id).with_text("position", self.place(drive, own.position));
         Some(text.with_text("range", self.places(drive, own.limits)))
     }
 
@@ -69,7 +70,7 @@ impl Unit {
         if self.can_free(drive, direction) {
             return self.moves.free(drive, direction);
         }
-        let why = self.may_move(drive).err().unwrap_or_else(|| Text::new("hd_outside.inside"));
+        let why = self.may_move(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));
         self.tell_of(drive, Severity::Warning, vec![why], services);
     }
 
@@ -78,10 +79,11 @@ impl Unit {
     /// # Errors
     /// In words, where the drive would not take it: outside the limits.
     pub fn reference_here(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
-        let (low, high) = self.limits(drive).ok_or_else(|| Text::new("hd_axis.unread"))?;
+        let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));
         let position = becomes.ok_or_else(|| {
-            Text::new("hd_refused.outside")
+            TEXTS
+                .text("hd_refused.outside")
                 .with_text("target", self.place(drive, position))
                 .with_text("low", self.place(drive, low))
                 .with_text("high", self.place(drive, high))

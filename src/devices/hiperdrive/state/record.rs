@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use crate::devices::hiperdrive::state::TEXTS;
+
 use jiff::Zoned;
 
 use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
-use crate::app::Text;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::devices::hiperdrive::procedures::Reading;
@@ -131,11 +132,11 @@ impl Watchable for Beside {
         match self {
             Beside::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 1)];
-                Line::of(group, 0, Text::new("hd_live.speed"), "drive speed".to_owned(), scales)
+                Line::of(group, 0, TEXTS.text("hd_live.speed"), "drive speed".to_owned(), scales)
             }
             Beside::Target(ruler) => {
                 let [scales, ..] = meaning(*ruler).scales;
-                Line::of(group, 0, Text::new("hd_live.target"), "target".to_owned(), scales)
+                Line::of(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
             }
         }
     }

@@ -11,6 +11,7 @@ use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
 use crate::devices::hiperdrive::procedures::write::Written;
 use crate::devices::hiperdrive::profile::{self, Base, Image, Op, Service, warnings};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Length, ParameterNumber};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::profile::Plan;
 
@@ -59,26 +60,26 @@ impl Reviewed for Hiperdrive {
     fn warnings(prepared: &Prepared) -> Vec<Text> {
         let mut texts: Vec<Text> = prepared.other_types.iter().map(explained::other_type).collect();
         texts.extend(warnings(&prepared.plan).iter().map(explained::warning));
-        texts.extend(prepared.wear().map(|after| Text::new("hd_review.wear").with("after", after)));
+        texts.extend(prepared.wear().map(|after| TEXTS.text("hd_review.wear").with("after", after)));
         if prepared.plan.ops.contains(&Op::Service(Service::FactoryAll)) {
-            texts.push(Text::new("hd_review.factory_all"));
+            texts.push(TEXTS.text("hd_review.factory_all"));
         }
         texts.extend(power_up(&prepared.plan));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        texts.extend(review::left_alone("hd_review.missing", &prepared.missing, mounting));
+        texts.extend(review::left_alone(TEXTS.text("hd_review.missing"), &prepared.missing, mounting));
         texts
     }
 
     fn needs(change: &Change, prepared: &Prepared) -> Vec<Text> {
-        let mut needs = vec![Text::new("hd_review.needs_stop")];
+        let mut needs = vec![TEXTS.text("hd_review.needs_stop")];
         let resets = |op: &Op| {
             matches!(op, Op::Service(Service::Reset | Service::Factory | Service::FactoryAll | Service::Acknowledge(_)))
         };
         if prepared.plan.ops.iter().any(resets) {
-            needs.push(Text::new("hd_review.may_move"));
+            needs.push(TEXTS.text("hd_review.may_move"));
         }
         if matches!(change, Change::Restore { .. } | Change::Write(_) | Change::Try(_)) {
-            needs.push(Text::new("hd_review.controller"));
+            needs.push(TEXTS.text("hd_review.controller"));
         }
         needs
     }
@@ -88,11 +89,11 @@ impl Reviewed for Hiperdrive {
         if saves == 0 {
             let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.base() == 198);
             let position = prepared.plan.ops.iter().any(sets);
-            return Text::new(if position { "hd_review.cost_position" } else { "hd_review.cost_nothing" });
+            return TEXTS.text(if position { "hd_review.cost_position" } else { "hd_review.cost_nothing" });
         }
         match prepared.cycles_seen {
-            Some(seen) => Text::new("hd_review.cost").with("saves", saves).with("seen", seen),
-            None => Text::new("hd_review.cost_unknown").with("saves", saves),
+            Some(seen) => TEXTS.text("hd_review.cost").with("saves", saves).with("seen", seen),
+            None => TEXTS.text("hd_review.cost_unknown").with("saves", saves),
         }
     }
 
@@ -120,7 +121,7 @@ pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber)
         let meant = |text: &mut Text, value, image| {
             if let Some(meaning) = meaning(*number, value, image, pitch) {
                 let value = text.clone();
-                *text = Text::new("hd_op.meant").with_text("value", value).with_text("meaning", meaning);
+                *text = TEXTS.text("hd_op.meant").with_text("value", value).with_text("meaning", meaning);
             }
         };
         old.iter().for_each(|old| meant(&mut change.old, *old, &now));
@@ -138,8 +139,8 @@ fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Len
                 return Some(millimetres(Some(Ruler { scale, pitch }), value));
             }
             let turns = value as f64 / scale.steps_per_turn();
-            let text = Text::new("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
-            Some(text.with_text("unit", Text::new(Measure::Turns.unit())))
+            let text = TEXTS.text("hd_entry.place").with_number("value", turns, decimals_of(turns, 3));
+            Some(text.with_text("unit", TEXTS.text(Measure::Turns.unit())))
         }
         _ => words::meaning(number, value),
     }
@@ -153,5 +154,5 @@ fn power_up(plan: &Plan<Base, Op>) -> Option<Text> {
     })?;
     let digits = ParameterNumber::new(12).and_then(|number| plan.base.values.get(&number));
     let switch = digits.and_then(|digits| AddressSwitch::parse(u8::try_from(*digits).ok()?));
-    Some(Text::new("hd_review.power_up").with_text("what", PowerUp::of(switch, to).words()))
+    Some(TEXTS.text("hd_review.power_up").with_text("what", PowerUp::of(switch, to).words()))
 }

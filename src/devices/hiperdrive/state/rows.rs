@@ -10,6 +10,7 @@ use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{
     Access, DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Topology, Travel, Value,
 };
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
 /// A parameter as a row of the table.
@@ -53,7 +54,7 @@ impl Row {
             Access::Read => "hd_entry.only_read",
             Access::ReadWrite | Access::Write => "hd_entry.not_a_value",
         };
-        Some(Text::new(id).with("number", self.number).with_text("name", self.name.clone()))
+        Some(TEXTS.text(id).with("number", self.number).with_text("name", self.name.clone()))
     }
 }
 
@@ -156,20 +157,20 @@ impl Unit {
                 let ruler = self.wanted_ruler(drive);
                 let measure = if ruler.pitch.is_some() { Measure::Millimetres } else { Measure::Turns };
                 let place = ruler.of(*value, measure)?;
-                let text = Text::new("hd_entry.place").with_number(
+                let text = TEXTS.text("hd_entry.place").with_number(
                     "value",
                     place,
                     decimals_of(place, ruler.decimals(measure).min(4)),
                 );
-                Some(text.with_text("unit", Text::new(measure.unit())))
+                Some(text.with_text("unit", TEXTS.text(measure.unit())))
             }
             (154 | 156, Some(drive)) => {
                 let steps = self.wanted_ruler(drive).scale.steps_per_turn();
-                Some(Text::new("hd_meaning.steps_a_turn").with_number("steps", steps, decimals_of(steps, 3)))
+                Some(TEXTS.text("hd_meaning.steps_a_turn").with_number("steps", steps, decimals_of(steps, 3)))
             }
             (106, Some(drive)) => {
                 let rpm = self.speed_scale(drive).rpm(i16::try_from(*value).ok()?);
-                Some(Text::new("hd_entry.rpm").with_number("rpm", rpm, 1))
+                Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
             }
             _ => words::meaning(number, *value),
         }

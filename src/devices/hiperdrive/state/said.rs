@@ -9,6 +9,7 @@ use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::procedures::DriveLimits;
 use crate::devices::hiperdrive::procedures::dead_man::{Goal, Lock, Phase as Doing, Wish};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, effective_torque};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 /// How it stands with what was asked of a drive.
@@ -29,7 +30,7 @@ impl Unit {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
-            None if self.moves.is_open() => Err(Text::new("hd_said.in_control")),
+            None if self.moves.is_open() => Err(TEXTS.text("hd_said.in_control")),
             None if self.survey.is_none() => Err(words::lock(Lock::Unread)),
             None => Ok(()),
         }
@@ -42,7 +43,7 @@ impl Unit {
     pub fn can_give(&self) -> Result<(), Text> {
         // Also while the device does not answer.
         match self.session.line() {
-            _ if !self.moves.is_open() => Err(Text::new("hd_refused.not_taken")),
+            _ if !self.moves.is_open() => Err(TEXTS.text("hd_refused.not_taken")),
             None => Err(Text::new("session.not_connected")),
             Some(_) if self.session.is_busy() => Err(Text::new("session.busy")),
             Some(_) => Ok(()),
@@ -65,8 +66,8 @@ impl Unit {
             return Err(words::lock(*lock));
         }
         match self.state(drive) {
-            Some(State::Fault) => Err(Text::new("hd_refused.fault")),
-            Some(State::Locked) => Err(Text::new("hd_refused.lock")),
+            Some(State::Fault) => Err(TEXTS.text("hd_refused.fault")),
+            Some(State::Locked) => Err(TEXTS.text("hd_refused.lock")),
             _ => Ok(()),
         }
     }
@@ -78,7 +79,7 @@ impl Unit {
     pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
-        if permitted { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
+        if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
     /// Whether an endless run can be switched on: limits and scaling of the drive are the factory's.
@@ -87,15 +88,15 @@ impl Unit {
     /// Why not, in words.
     pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
-        if could { Ok(()) } else { Err(Text::new("hd_refused.endless")) }
+        if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
     fn may_be_led(&self) -> Result<(), Text> {
         if !self.moves.is_open() {
-            return Err(Text::new("hd_refused.not_taken"));
+            return Err(TEXTS.text("hd_refused.not_taken"));
         }
         if self.session.is_writing() || self.review.is_some() {
-            return Err(Text::new("hd_refused.busy"));
+            return Err(TEXTS.text("hd_refused.busy"));
         }
         Ok(())
     }
@@ -112,7 +113,7 @@ impl Unit {
             _ if wish.moves() => self.may_move(drive)?,
             _ => self.may_be_led()?,
         }
-        let Some(permit) = self.moves.permit(drive) else { return Err(Text::new("hd_refused.not_taken")) };
+        let Some(permit) = self.moves.permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
         let place = |steps| self.place(drive, steps);
         let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_place(wish, actual));
         permit.check(wish, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
@@ -123,10 +124,10 @@ impl Unit {
     fn may_end_what_moves(&self, drive: DriveNumber, wish: Wish) -> Result<(), Text> {
         match self.moves.mover() {
             Some(mover) if mover != drive && wish != Wish::Stop => {
-                Err(Text::new("hd_refused.other_moves").with("drive", mover.get()))
+                Err(TEXTS.text("hd_refused.other_moves").with("drive", mover.get()))
             }
             Some(_) if matches!(wish, Wish::Step { .. } | Wish::Move { .. } | Wish::Run { .. }) => {
-                Err(Text::new("hd_refused.still_moves"))
+                Err(TEXTS.text("hd_refused.still_moves"))
             }
             _ => Ok(()),
         }
@@ -139,7 +140,7 @@ impl Unit {
 
     /// The name of a drive; `None` where there is only one.
     pub fn name_of(&self, drive: DriveNumber) -> Option<Text> {
-        (self.drives().len() > 1).then(|| Text::new("hd_bar.named").with("drive", drive.get()))
+        (self.drives().len() > 1).then(|| TEXTS.text("hd_bar.named").with("drive", drive.get()))
     }
 
     /// The drives that move, as far as is known here, or are about to.
@@ -152,7 +153,7 @@ impl Unit {
     /// A place as a person measures it, with its unit.
     pub fn place(&self, drive: DriveNumber, steps: i32) -> Text {
         let (value, decimals, unit) = self.measured(drive, steps);
-        Text::new("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
+        TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
     /// A place in all that a person may measure in, whatever is chosen: the same number of steps may be another place than it
@@ -163,8 +164,8 @@ impl Unit {
         let place = |own: Measure| {
             let value = ruler.of(i64::from(steps), own)?;
             let decimals = decimals_of(value, ruler.decimals(own).min(4));
-            let text = Text::new("hd_entry.place").with_number("value", value, decimals);
-            Some(text.with_text("unit", Text::new(own.unit())))
+            let text = TEXTS.text("hd_entry.place").with_number("value", value, decimals);
+            Some(text.with_text("unit", TEXTS.text(own.unit())))
         };
         ruler.measures().filter(wanted).filter_map(place).collect()
     }
@@ -172,7 +173,7 @@ impl Unit {
     /// From one place to another, with their unit.
     pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
         let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
-        let text = Text::new("hd_entry.range").with_number("low", low, decimals);
+        let text = TEXTS.text("hd_entry.range").with_number("low", low, decimals);
         text.with_number("high", high, decimals).with_text("unit", unit)
     }
 
@@ -181,7 +182,7 @@ impl Unit {
         let ruler = self.ruler(drive);
         let value = ruler.of(i64::from(steps), self.measure);
         let (value, measure) = value.map_or((f64::from(steps), Measure::Steps), |value| (value, self.measure));
-        (value, ruler.decimals(measure), Text::new(measure.unit()))
+        (value, ruler.decimals(measure), TEXTS.text(measure.unit()))
     }
 
     /// States to which a drive can be led from the one it is in, by one word; none while nobody has control.
@@ -200,7 +201,7 @@ impl Unit {
     pub fn hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
         let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
         let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
-        Some(Text::new(id).with("word", format!("0x{:04X}", row.word?.word())))
+        Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
     /// The goal that leads to a state; `None` for those that nothing leads to by itself. A fault is left by acknowledging.
@@ -236,12 +237,12 @@ impl Unit {
         let most = self.number(self.drive(), 166)?;
         // Tenths of rpm, of a hundred.
         let rpm = most as f64 * f64::from(percent.get()) / 1000.0;
-        Some(Text::new("hd_entry.rpm").with_number("rpm", rpm, 1))
+        Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
     }
 
     /// What so many percent of the torque are as the drive takes them: the next 25 % above.
     pub fn torque_of(&self, percent: Percent) -> Option<Text> {
         let effective = effective_torque(percent.get());
-        (effective != percent.get()).then(|| Text::new("hd_entry.torque").with("percent", effective))
+        (effective != percent.get()).then(|| TEXTS.text("hd_entry.torque").with("percent", effective))
     }
 }

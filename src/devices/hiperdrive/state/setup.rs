@@ -14,6 +14,7 @@ use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Wish};
 use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::store::write_atomically;
 
@@ -35,7 +36,7 @@ impl Unit {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
             None if self.survey.is_none() || self.number(self.drive(), 154).is_none() => {
-                Err(Text::new("hd_axis.unread"))
+                Err(TEXTS.text("hd_axis.unread"))
             }
             None => Ok(()),
         }

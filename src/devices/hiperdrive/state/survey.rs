@@ -13,6 +13,7 @@ use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, LimitsSeen, Reading, Survey};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, State, Value};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 impl Unit {
@@ -98,7 +99,7 @@ impl Unit {
         if self.is_stale {
             Some(words::lock(Lock::Unread))
         } else if self.moves.is_open() && self.marks != Marks::Read {
-            Some(Text::new("hd_lock.settings"))
+            Some(TEXTS.text("hd_lock.settings"))
         } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
             Some(words::lock(Lock::Outdated))
         } else {
@@ -160,7 +161,8 @@ impl Unit {
 
     fn log_answer(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
-        let fact = Text::new("log.hiperdrive")
+        let fact = TEXTS
+            .text("log.hiperdrive")
             .with("category", &identity.category)
             .with("serial", &identity.serial_number)
             .with("version", &identity.version)

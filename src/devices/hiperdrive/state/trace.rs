@@ -7,6 +7,7 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::devices::hiperdrive::procedures::Damage;
 use crate::devices::hiperdrive::protocol::ParameterNumber;
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
@@ -38,7 +39,7 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
         return Request::parse(message).map_or(name, |request| vec![asked(&request)]).into();
     }
     match Reply::parse(message) {
-        Ok(reply) if reply.status == GeneralStatus::OK => vec![Text::new("hd_trace.done")].into(),
+        Ok(reply) if reply.status == GeneralStatus::OK => vec![TEXTS.text("hd_trace.done")].into(),
         Ok(reply) => reported(plain(reply.status)),
         Err(error) => broken(error),
     }
@@ -55,7 +56,7 @@ fn asked(request: &Request) -> Text {
         Some(number) => {
             let is_set = request.service == Service::SET;
             let id = if is_set { "hd_asked.set" } else { "hd_asked.parameter" };
-            Text::new(id).with("number", number).with_text("name", explained::parameter(number))
+            TEXTS.text(id).with("number", number).with_text("name", explained::parameter(number))
         }
         None => plain(request.service.name(request.class()).unwrap_or_default()),
     }

@@ -7,6 +7,7 @@ use crate::app::number::decimals_of;
 use crate::devices::hiperdrive::protocol::{
     self, AddressSwitch, ErrorCode, Kind, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
 };
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as hiperdrive;
 use crate::devices::hiperdrive::state::explain as words;
 
@@ -25,9 +26,9 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
         _ if row.kind == Kind::Text => None,
         "" => None,
         "steps" => Some(Text::new("unit.steps")),
-        "0.1 rpm" => Some(Text::new("hd_unit.tenth_rpm")),
-        "0.1 V" => Some(Text::new("hd_unit.tenth_volt")),
-        "0.1 s" => Some(Text::new("hd_unit.tenth_second")),
+        "0.1 rpm" => Some(TEXTS.text("hd_unit.tenth_rpm")),
+        "0.1 V" => Some(TEXTS.text("hd_unit.tenth_volt")),
+        "0.1 s" => Some(TEXTS.text("hd_unit.tenth_second")),
         own => Some(plain(own)),
     }
 }
@@ -36,32 +37,32 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
 pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
     let value = protocol::nominal(text)?;
-    Some(Text::new("hd_entry.place").with_number("value", value, decimals_of(value, 1)).with_text("unit", plain(unit)))
+    Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals_of(value, 1)).with_text("unit", plain(unit)))
 }
 
 /// What a number means by itself; `None` where it says it.
 pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
-    let tenths = |id: &'static str, name: &'static str| Text::new(id).with_number(name, value as f64 / 10.0, 1);
+    let tenths = |id: &'static str, name: &'static str| TEXTS.text(id).with_number(name, value as f64 / 10.0, 1);
     let word = || u16::try_from(value).ok();
     Some(match number.base() {
         9 => tenths("hd_check.supply", "volts"),
         12 => match u8::try_from(value).ok().and_then(AddressSwitch::parse) {
             Some(switch) => hiperdrive::switch(switch),
-            None => Text::new("hd_check.unknown_switch").with("number", value),
+            None => TEXTS.text("hd_check.unknown_switch").with("number", value),
         },
-        47 => Text::new(if value == 0 { "hd_meaning.saved" } else { "hd_meaning.not_saved" }),
+        47 => TEXTS.text(if value == 0 { "hd_meaning.saved" } else { "hd_meaning.not_saved" }),
         105 => hiperdrive::state(StatusWord::new(word()?).state()),
-        108..=115 if value == 0 => Text::new("hd_meaning.no_error"),
+        108..=115 if value == 0 => TEXTS.text("hd_meaning.no_error"),
         108..=115 => hiperdrive::error(ErrorCode::new(word()?)).name,
-        116..=118 => Text::new(match value {
+        116..=118 => TEXTS.text(match value {
             0 => "hd_meaning.word_well",
             0xFFFF => "hd_meaning.word_none",
             _ => "hd_meaning.word_error",
         }),
         120 => hiperdrive::variant(Variant::new(word()?)),
-        152 => Text::new(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
+        152 => TEXTS.text(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
         166 => tenths("hd_entry.rpm", "rpm"),
-        186 if value == 255 => Text::new("hd_meaning.no_timeout"),
+        186 if value == 255 => TEXTS.text("hd_meaning.no_timeout"),
         186 => tenths("hd_check.timeout", "seconds"),
         _ => return None,
     })
@@ -70,12 +71,12 @@ pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
 /// Why an edit was refused.
 pub fn refused(error: &EditError) -> Text {
     match error {
-        EditError::NothingRead => Text::new("hd_entry.nothing_read"),
-        EditError::Unknown(number) => Text::new("hd_said.unknown").with("number", number),
+        EditError::NothingRead => TEXTS.text("hd_entry.nothing_read"),
+        EditError::Unknown(number) => TEXTS.text("hd_said.unknown").with("number", number),
         EditError::NotRead(number) => about("hd_entry.not_read", *number),
         EditError::NotAValue(number) => about("hd_entry.not_a_value", *number),
         EditError::OutOfRange(error) => words::out_of_range(error),
-        EditError::Crossed { lower, upper } => Text::new("hd_entry.crossed").with("lower", lower).with("upper", upper),
+        EditError::Crossed { lower, upper } => TEXTS.text("hd_entry.crossed").with("lower", lower).with("upper", upper),
     }
 }
 
@@ -83,19 +84,20 @@ pub fn refused(error: &EditError) -> Text {
 pub fn mark(mark: &Mark) -> Text {
     match mark {
         Mark::OutOfRange(error) => words::out_of_range(error),
-        Mark::Crossed { lower, upper, .. } => Text::new("hd_entry.crossed").with("lower", lower).with("upper", upper),
+        Mark::Crossed { lower, upper, .. } => TEXTS.text("hd_entry.crossed").with("lower", lower).with("upper", upper),
         Mark::Outside { position, lower, upper, .. } => {
-            Text::new("hd_mark.outside").with("position", position).with("lower", lower).with("upper", upper)
+            TEXTS.text("hd_mark.outside").with("position", position).with("lower", lower).with("upper", upper)
         }
-        Mark::LimitsMove { lower, upper, .. } => Text::new("hd_mark.limits_move")
+        Mark::LimitsMove { lower, upper, .. } => TEXTS
+            .text("hd_mark.limits_move")
             .with_number("lower_now", lower.0, 2)
             .with_number("lower_then", lower.1, 2)
             .with_number("upper_now", upper.0, 2)
             .with_number("upper_then", upper.1, 2),
-        Mark::NoTimeout { .. } => Text::new("hd_mark.no_timeout"),
+        Mark::NoTimeout { .. } => TEXTS.text("hd_mark.no_timeout"),
     }
 }
 
 fn about(id: &'static str, number: ParameterNumber) -> Text {
-    Text::new(id).with("number", number).with_text("name", words::parameter(number))
+    TEXTS.text(id).with("number", number).with_text("name", words::parameter(number))
 }

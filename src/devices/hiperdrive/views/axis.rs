@@ -13,8 +13,8 @@ use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
     Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, end_lines, words,
 };
-use crate::devices::hiperdrive::state::explain;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split,
 };
@@ -90,7 +90,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         if goes_on {
             step_ui(ui, skin, &shown, age, actions);
         } else {
-            card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown));
+            card(ui, skin, TEXTS.text("hd_axis.title"), |ui| list(ui, skin, &shown));
         }
         ui.add_space(skin.space.groups);
         notes(ui, skin);
@@ -101,7 +101,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         skin,
         (0.36, BESIDE),
         actions,
-        |ui, _| card(ui, skin, "hd_axis.title", |ui| list(ui, skin, &shown)),
+        |ui, _| card(ui, skin, TEXTS.text("hd_axis.title"), |ui| list(ui, skin, &shown)),
         |ui, actions| {
             if goes_on {
                 step_ui(ui, skin, &shown, age, actions);
@@ -113,13 +113,13 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
 }
 
 fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
-    card(ui, skin, "hd_axis.title", |ui| {
-        paragraph(ui, skin.say("hd_axis.words"));
+    card(ui, skin, TEXTS.text("hd_axis.title"), |ui| {
+        paragraph(ui, say(skin, "hd_axis.words"));
         ui.add_space(skin.space.between);
         // Before the list: in a low window it is seen without scrolling.
         let allowed = unit.may_set_up();
         ui.horizontal(|ui| {
-            if primary(ui, skin, allowed.is_ok(), icons::PLAY, &skin.say("hd_axis.begin")).clicked() {
+            if primary(ui, skin, allowed.is_ok(), icons::PLAY, &say(skin, "hd_axis.begin")).clicked() {
                 actions.push(Action::device(unit.session.id, Hiperdrive::Axis(Run::Begin)));
             }
             if let Err(why) = &allowed {
@@ -153,7 +153,7 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
         };
         let told = matches!(reached, Reached::Done | Reached::Failed);
         let found = match (step, reached) {
-            (Step::Reference, Reached::Skipped) => Some(Text::new("hd_axis.no_reference")),
+            (Step::Reference, Reached::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
             _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| told),
         };
         Line {
@@ -182,11 +182,11 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, age: f64, actions: &mut 
     let aside = |ui: &mut Ui| {
         ui.label(skin.caption(format!("{place}/{}", Step::ALL.len())));
         if shown.unit.drives().len() > 1 {
-            let drive = Text::new("hd_axis.of_drive").with("drive", axis.drive().get());
+            let drive = TEXTS.text("hd_axis.of_drive").with("drive", axis.drive().get());
             ui.label(skin.caption(skin.words(&drive)));
         }
     };
-    card_with(ui, skin, content::heading(step), aside, |ui| {
+    card_with(ui, skin, TEXTS.text(content::heading(step)), aside, |ui| {
         paragraph(ui, unbroken(skin.words(&words::todo(step, seen))));
         ui.add_space(skin.space.between);
         live(ui, skin, shown);
@@ -223,7 +223,7 @@ fn messages(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
     // The limits to be looked at stand large above.
     if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != Step::Confirm) {
         ui.add_space(skin.space.inside);
-        row(ui, skin, &skin.say("hd_axis.now"), unbroken(skin.words(&found)));
+        row(ui, skin, &say(skin, "hd_axis.now"), unbroken(skin.words(&found)));
     }
     if let (Step::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
         warning(ui, skin, &differences);
@@ -235,21 +235,21 @@ fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
     skin.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
         let position = shown.seen.position.map_or_else(
-            || skin.say("hd_axis.none"),
+            || say(skin, "hd_axis.none"),
             |position| skin.words(&words::millimetres(shown.seen.ruler(), position.into())),
         );
-        row(ui, skin, &skin.say("hd_axis.position"), skin.value(position));
+        row(ui, skin, &say(skin, "hd_axis.position"), skin.value(position));
         let state = shown
             .seen
             .actual
-            .map_or_else(|| skin.say("hd_axis.none"), |actual| skin.words(&explain::state(actual.status.state())));
+            .map_or_else(|| say(skin, "hd_axis.none"), |actual| skin.words(&explain::state(actual.status.state())));
         let code = shown.seen.error.filter(|code| *code != ErrorCode::NONE);
         let state = match (shown.seen.has_failed(), code) {
             (false, _) => RichText::new(state),
             (true, None) => RichText::new(state).color(skin.palette.bad),
             (true, Some(code)) => RichText::new(format!("{state} {:04X}", code.code())).color(skin.palette.bad),
         };
-        row(ui, skin, &skin.say("hd_axis.state"), state);
+        row(ui, skin, &say(skin, "hd_axis.state"), state);
     });
 }
 
@@ -260,13 +260,13 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
     let allowed = axis.may_go_on(seen);
     ui.horizontal_wrapped(|ui| {
         let may_back = settled && step != Step::Request && !axis.is_writing() && !seen.moves;
-        if enabled_button(ui, may_back, icons::ARROW_U_UP_LEFT, &skin.say("hd_axis.back")).clicked() {
+        if enabled_button(ui, may_back, icons::ARROW_U_UP_LEFT, &say(skin, "hd_axis.back")).clicked() {
             shown.push(actions, Run::Back);
         }
-        if button(ui, icons::X, &skin.say("hd_axis.cancel")).clicked() {
+        if button(ui, icons::X, &say(skin, "hd_axis.cancel")).clicked() {
             shown.push(actions, Run::Cancel);
         }
-        let word = skin.say(if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
+        let word = say(skin, if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
         at_the_right(ui, |ui| {
             if primary(ui, skin, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
@@ -280,7 +280,7 @@ fn skip(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
     let step = shown.axis.step();
     if step.may_be_skipped() {
         let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
-        if enabled_button(ui, shown.settled && shown.axis.may_skip(shown.seen), "", &skin.say(id)).clicked() {
+        if enabled_button(ui, shown.settled && shown.axis.may_skip(shown.seen), "", &say(skin, id)).clicked() {
             shown.push(actions, Run::Skip);
         }
     }
@@ -304,15 +304,15 @@ fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
 fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
-    card(ui, skin, title, |ui| {
+    card(ui, skin, TEXTS.text(title), |ui| {
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &skin.say("hd_axis.again")).clicked() {
+            if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &say(skin, "hd_axis.again")).clicked() {
                 shown.push(actions, Run::Begin);
             }
-            if button(ui, icons::FLOPPY_DISK, &skin.say("hd_axis.save_report")).clicked() {
+            if button(ui, icons::FLOPPY_DISK, &say(skin, "hd_axis.save_report")).clicked() {
                 shown.push(actions, Run::AskReport);
             }
-            if button(ui, icons::COPY, &skin.say("hd_axis.copy_report")).clicked()
+            if button(ui, icons::COPY, &say(skin, "hd_axis.copy_report")).clicked()
                 && let Some(report) = shown.unit.axis_report(skin.language)
             {
                 ui.ctx().copy_text(report);
@@ -321,7 +321,7 @@ fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut V
         });
         ui.add_space(skin.space.inside);
         if end == End::Cancelled {
-            line(ui, skin, Severity::Note, &Text::new("hd_axis.stands"));
+            line(ui, skin, Severity::Note, &TEXTS.text("hd_axis.stands"));
         }
         let weight = if axis.is_saved() || axis.changes().is_empty() { Severity::Note } else { Severity::Warning };
         for text in end_lines(axis, shown.seen) {
@@ -332,13 +332,13 @@ fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut V
 
 /// What was known before is written back.
 fn recall(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let word = skin.say("hd_axis.recall");
+    let word = say(skin, "hd_axis.recall");
     shown.button(ui, skin, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
 /// What else one should know.
 fn notes(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, "hd_axis.notes", |ui| {
+    card(ui, skin, TEXTS.text("hd_axis.notes"), |ui| {
         for id in [
             "hd_axis.note_stop",
             "hd_axis.note_controller",
@@ -347,7 +347,7 @@ fn notes(ui: &mut Ui, skin: &Skin) {
             "hd_axis.note_factory",
             "hd_axis.note_words",
         ] {
-            line(ui, skin, Severity::Note, &Text::new(id));
+            line(ui, skin, Severity::Note, &TEXTS.text(id));
         }
     });
 }

@@ -3,10 +3,10 @@
 use egui::{RichText, Stroke, Ui, vec2};
 
 use super::outside;
-use crate::app::{Action, Studio, Text};
+use crate::app::{Action, Studio};
 use crate::devices::hiperdrive::protocol::{DriveNumber, State};
-use crate::devices::hiperdrive::state::explain;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, name, paragraph};
 use crate::ui::stopping::{goes_down, means_motion, pressed_at};
 use crate::ui::{Skin, icons};
@@ -24,18 +24,18 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, unit: &Unit, act
             ui.horizontal_wrapped(|ui| {
                 drives(ui, skin, unit, actions);
                 if unit.moves.is_open() {
-                    let word = skin.say("hd_bar.give");
+                    let word = say(skin, "hd_bar.give");
                     if allowed_button(ui, skin, &unit.can_give(), icons::PLUGS, &word).clicked() {
                         actions.push(Action::device(id, Hiperdrive::Give));
                     }
-                    let well = || RichText::new(skin.say("hd_bar.in_control")).color(skin.palette.good);
+                    let well = || RichText::new(say(skin, "hd_bar.in_control")).color(skin.palette.good);
                     ui.label(outside::badge(skin, unit).unwrap_or_else(well));
                 } else {
-                    let word = skin.say("hd_bar.take");
+                    let word = say(skin, "hd_bar.take");
                     if allowed_button(ui, skin, &unit.can_take(), icons::PLUGS_CONNECTED, &word).clicked() {
                         actions.push(Action::device(id, Hiperdrive::Take));
                     }
-                    let watching = || skin.label(skin.say("hd_bar.watching"));
+                    let watching = || skin.label(say(skin, "hd_bar.watching"));
                     ui.label(outside::badge(skin, unit).unwrap_or_else(watching));
                 }
             });
@@ -43,7 +43,7 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, unit: &Unit, act
                 let words = format!("{}  {}", icons::WARNING_CIRCLE, skin.words(&why));
                 paragraph(ui, RichText::new(words).color(skin.palette.bad));
             }
-            paragraph(ui, skin.caption(format!("{}  {}", icons::WARNING, skin.say("hd_bar.stop_is_not"))));
+            paragraph(ui, skin.caption(format!("{}  {}", icons::WARNING, say(skin, "hd_bar.stop_is_not"))));
         });
     });
 }
@@ -72,7 +72,7 @@ fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     if drives.len() < 2 {
         return;
     }
-    ui.label(skin.label(skin.say("hd_bar.drive")));
+    ui.label(skin.label(say(skin, "hd_bar.drive")));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
         ui.spacing_mut().button_padding.x = 6.0;
@@ -99,9 +99,9 @@ fn drive_button(ui: &mut Ui, skin: &Skin, unit: &Unit, (drive, moves): (DriveNum
         Some(State::NotReady) => (icons::PLUGS, palette.muted),
         None => (icons::QUESTION, palette.muted),
     };
-    let words = state.map_or_else(|| skin.say("hd_bar.unknown"), |state| skin.words(&explain::state(state)));
-    let name = Text::new("hd_bar.named").with("drive", drive.get());
-    let name = skin.words(&Text::new("hd_bar.state").with_text("drive", name).with("state", words));
+    let words = state.map_or_else(|| say(skin, "hd_bar.unknown"), |state| skin.words(&explain::state(state)));
+    let name = TEXTS.text("hd_bar.named").with("drive", drive.get());
+    let name = skin.words(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
     let is_shown = drive == unit.drive();
     let ink = if is_shown { palette.text } else { palette.muted };
     let font = skin.strong(skin.sizes.body);

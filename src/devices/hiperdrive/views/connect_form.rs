@@ -4,7 +4,8 @@ use egui::Ui;
 
 use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::app::{Action, Text};
-use crate::devices::hiperdrive::state::{Discovery, HiperdriveForm, HiperdriveWay, VirtualHub};
+use crate::devices::hiperdrive::state::{Discovery, HiperdriveForm, HiperdriveWay, TEXTS, VirtualHub};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
@@ -60,14 +61,14 @@ impl TypedConnectForm for HiperdriveConnectForm {
             if form.way == HiperdriveWay::Virtual {
                 interval(ui, skin, form);
             }
-            let word = skin.say("connect.byte_order");
+            let word = say(skin, "connect.byte_order");
             entry(ui, skin, &word, |ui| {
                 let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
-                choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, skin.say(id))));
+                choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, say(skin, id))));
             });
-            let word = skin.say("connect.udp_port");
+            let word = say(skin, "connect.udp_port");
             entry(ui, skin, &word, |ui| text_entry(ui, &mut form.udp, 96.0, &word, "2222"));
-            let word = skin.say("connect.reply_time");
+            let word = say(skin, "connect.reply_time");
             entry(ui, skin, &word, |ui| {
                 text_entry(ui, &mut form.timeout, 96.0, &word, "1000");
                 ui.label(skin.label("ms"));
@@ -77,17 +78,17 @@ impl TypedConnectForm for HiperdriveConnectForm {
 }
 
 fn simulated(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
-    let word = skin.say("connect.hub");
+    let word = say(skin, "connect.hub");
     entry(ui, skin, &word, |ui| {
         let hubs = [
             (VirtualHub::Adapter, "connect.hub_adapter"),
             (VirtualHub::Four, "connect.hub_four"),
             (VirtualHub::Eight, "connect.hub_eight"),
         ];
-        choice(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, skin.say(id))));
+        choice(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, say(skin, id))));
     });
     if form.hub != VirtualHub::Adapter {
-        let word = skin.say("connect.plugged");
+        let word = say(skin, "connect.plugged");
         entry(ui, skin, &word, |ui| text_entry(ui, &mut form.drives, 200.0, &word, "1,0,1"));
     }
     let word = skin.say("connect.fault");
@@ -96,7 +97,7 @@ fn simulated(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
 
 /// How often set-points go to the drives while they are moved from here.
 fn interval(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
-    let word = skin.say("connect.interval");
+    let word = say(skin, "connect.interval");
     entry(ui, skin, &word, |ui| {
         text_entry(ui, &mut form.interval, 96.0, &word, "10");
         ui.label(skin.label("ms"));
@@ -107,23 +108,23 @@ fn interval(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
 fn discovery(ui: &mut Ui, skin: &Skin, discovery: Option<&Discovery>, actions: &mut Vec<Action>) {
     let is_running = discovery.is_some_and(Discovery::is_running);
     ui.horizontal(|ui| {
-        let word = skin.say("connect.discover");
+        let word = say(skin, "connect.discover");
         if enabled_button(ui, !is_running, icons::MAGNIFYING_GLASS, &word).clicked() {
             actions.push(Action::Connect(Connect::Discover));
         }
         if is_running {
             spinner(ui, skin);
         }
-        ui.label(skin.caption(skin.say("connect.discover_words")));
+        ui.label(skin.caption(say(skin, "connect.discover_words")));
     });
     match discovery.and_then(|own| own.found.as_ref()) {
         Some(Err(why)) => problem(ui, skin, Some(why)),
-        Some(Ok(found)) if found.is_empty() => paragraph(ui, skin.caption(skin.say("connect.nobody"))),
+        Some(Ok(found)) if found.is_empty() => paragraph(ui, skin.caption(say(skin, "connect.nobody"))),
         _ => {}
     }
     for (at, device) in discovery.map(Discovery::devices).unwrap_or_default().iter().enumerate() {
         ui.horizontal(|ui| {
-            let words = Text::new("connect.use_device").with("address", device.address);
+            let words = TEXTS.text("connect.use_device").with("address", device.address);
             if button(ui, icons::PLUGS_CONNECTED, &skin.words(&words)).clicked() {
                 actions.push(Action::Connect(Connect::ChooseDevice(at)));
             }
@@ -131,7 +132,7 @@ fn discovery(ui: &mut Ui, skin: &Skin, discovery: Option<&Discovery>, actions: &
             let serial = Text::new("check.serial").with("number", device.serial_number);
             ui.label(skin.label(skin.words(&serial)));
             if !device.is_hiperdrive {
-                ui.label(skin.caption(skin.say("connect.other_maker")));
+                ui.label(skin.caption(say(skin, "connect.other_maker")));
             }
         });
     }

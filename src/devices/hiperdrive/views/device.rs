@@ -1,13 +1,12 @@
 //! Who the device and its drives are, what a check of them says, how it is wired.
 
-use crate::app::DeviceCommand;
 use egui::Ui;
 
-use crate::app::Action;
+use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::Service;
-use crate::devices::hiperdrive::state::explain;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
@@ -49,15 +48,15 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<
 fn identity(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         if unit.profile().is_none()
-            && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &skin.say("hd_device.read"))
+            && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &say(skin, "hd_device.read"))
                 .clicked()
         {
             actions.push(Action::Command(unit.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, skin, "hd_device.title", read, |ui| {
+    card_with(ui, skin, TEXTS.text("hd_device.title"), read, |ui| {
         let Some(identity) = unit.identity() else {
-            empty(ui, skin, &skin.say("hd_device.nothing"), None);
+            empty(ui, skin, &say(skin, "hd_device.nothing"), None);
             return;
         };
         ui.label(skin.value(&identity.category));
@@ -69,36 +68,36 @@ fn identity(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             ("hd_device.date", &identity.production_date),
             ("hd_device.version", &identity.version),
         ] {
-            row(ui, skin, &skin.say(label), skin.mono(value));
+            row(ui, skin, &say(skin, label), skin.mono(value));
         }
     });
 }
 
 /// What is plugged in, place by place.
 fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit) {
-    card(ui, skin, "hd_drives.title", |ui| {
+    card(ui, skin, TEXTS.text("hd_drives.title"), |ui| {
         let Some(identity) = unit.identity() else {
-            empty(ui, skin, &skin.say("hd_device.nothing"), None);
+            empty(ui, skin, &say(skin, "hd_device.nothing"), None);
             return;
         };
         if identity.drives.is_empty() {
-            empty(ui, skin, &skin.say("hd_drives.none"), None);
+            empty(ui, skin, &say(skin, "hd_drives.none"), None);
         }
         for drive in &identity.drives {
             ui.horizontal_wrapped(|ui| {
                 ui.label(skin.heading(drive.number.get().to_string()));
                 ui.label(skin.mono(&drive.name));
                 let id = if drive.requested { "hd_drives.requested" } else { "hd_drives.not_requested" };
-                ui.label(skin.caption(skin.say(id)));
+                ui.label(skin.caption(say(skin, id)));
             });
-            row(ui, skin, &skin.say("hd_device.serial"), skin.mono(&drive.serial_number));
-            row(ui, skin, &skin.say("hd_device.version"), skin.mono(&drive.version));
-            row(ui, skin, &skin.say("hd_device.article"), skin.mono(&drive.article_number));
+            row(ui, skin, &say(skin, "hd_device.serial"), skin.mono(&drive.serial_number));
+            row(ui, skin, &say(skin, "hd_device.version"), skin.mono(&drive.version));
+            row(ui, skin, &say(skin, "hd_device.article"), skin.mono(&drive.article_number));
         }
         let places = identity.topology.drives();
         let taken = identity.drives.len();
         if taken < usize::from(places) {
-            let text = crate::app::Text::new("hd_drives.empty").with("count", usize::from(places) - taken);
+            let text = TEXTS.text("hd_drives.empty").with("count", usize::from(places) - taken);
             paragraph(ui, skin.caption(skin.words(&text)));
         }
     });
@@ -111,22 +110,22 @@ fn check(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {
-        lines_ui(ui, skin, unit.check.as_deref(), "hd_check.nothing");
+        lines_ui(ui, skin, unit.check.as_deref(), TEXTS.text("hd_check.nothing"));
     });
 }
 
 /// What can be done with all that the device keeps.
 fn services(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
-    card(ui, skin, "hd_services.title", |ui| {
+    card(ui, skin, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {
             if enabled_button(ui, unit.session.is_ready(), "", &skin.words(&explain::service(service))).clicked() {
                 let change = Change::Do(service);
                 actions.push(Action::device(unit.session.id, Hiperdrive::Plan(Box::new(change))));
             }
-            paragraph(ui, skin.caption(skin.say(note)));
+            paragraph(ui, skin.caption(say(skin, note)));
             ui.add_space(skin.space.inside);
         }
-        paragraph(ui, skin.caption(skin.say("hd_services.controller")));
+        paragraph(ui, skin.caption(say(skin, "hd_services.controller")));
     });
 }
 
@@ -135,7 +134,7 @@ const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drive
 fn wiring(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, skin.label(skin.say(note)));
+            paragraph(ui, skin.label(say(skin, note)));
         }
     });
 }
@@ -143,16 +142,17 @@ fn wiring(ui: &mut Ui, skin: &Skin) {
 #[cfg(test)]
 mod tests {
     use super::WIRING;
+    use crate::devices::hiperdrive::state::TEXTS;
     use crate::ui::wires::check_notes;
 
     /// Issue 22.23: HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter).
     #[test]
     fn the_card_says_what_the_manual_says() {
-        check_notes(&WIRING, &["4 poles, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
-        check_notes(&WIRING, &["3 TD− green", "4 RD− orange", "four wires only"]);
-        check_notes(&WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
-        check_notes(&WIRING, &["control 1 +24 V, 3 GND (5 poles, A-coded)", "M6"]);
-        check_notes(&WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
-        check_notes(&WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub has to be at 0"]);
+        check_notes(&TEXTS, &WIRING, &["4 poles, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
+        check_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four wires only"]);
+        check_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
+        check_notes(&TEXTS, &WIRING, &["control 1 +24 V, 3 GND (5 poles, A-coded)", "M6"]);
+        check_notes(&TEXTS, &WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
+        check_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub has to be at 0"]);
     }
 }

@@ -7,8 +7,8 @@ use crate::app::Action;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::protocol::ErrorCode;
-use crate::devices::hiperdrive::state::explain;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -32,17 +32,17 @@ fn buffer(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     let read = |ui: &mut Ui| {
         let ready = unit.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("hd_errors.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "hd_errors.read")).clicked() {
             actions.push(Action::device(id, Hiperdrive::ReadStatus));
         }
-        if enabled_button(ui, ready, icons::CHECK, &skin.say("hd_errors.acknowledge")).clicked() {
+        if enabled_button(ui, ready, icons::CHECK, &say(skin, "hd_errors.acknowledge")).clicked() {
             let change = Change::Do(Service::Acknowledge(drive));
             actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))));
         }
     };
-    card_with(ui, skin, "hd_errors.title", read, |ui| {
+    card_with(ui, skin, TEXTS.text("hd_errors.title"), read, |ui| {
         let Some(status) = unit.drive_status(drive) else {
-            empty(ui, skin, &skin.say("hd_errors.unread"), None);
+            empty(ui, skin, &say(skin, "hd_errors.unread"), None);
             return;
         };
         let codes = status.buffer.iter().filter(|code| **code != ErrorCode::NONE);
@@ -62,32 +62,32 @@ fn buffer(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         if none {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
-                ui.label(skin.say("hd_errors.none"));
+                ui.label(say(skin, "hd_errors.none"));
             });
         }
-        paragraph(ui, skin.caption(skin.say("hd_errors.old")));
+        paragraph(ui, skin.caption(say(skin, "hd_errors.old")));
     });
 }
 
 /// Parameters 116 to 118, temperatures, the supply.
 fn words(ui: &mut Ui, skin: &Skin, unit: &Unit) {
-    card(ui, skin, "hd_health.title", |ui| {
+    card(ui, skin, TEXTS.text("hd_health.title"), |ui| {
         let Some(status) = unit.drive_status(unit.drive()) else {
-            empty(ui, skin, &skin.say("hd_errors.unread"), None);
+            empty(ui, skin, &say(skin, "hd_errors.unread"), None);
             return;
         };
         let names = ["hd_health.error_word", "hd_health.motion_status", "hd_health.communication"];
         for (name, word) in names.into_iter().zip(status.words) {
-            row(ui, skin, &skin.say(name), skin.mono(format!("0x{word:04X}  {}", skin.say(com_word(word)))));
+            row(ui, skin, &say(skin, name), skin.mono(format!("0x{word:04X}  {}", say(skin, com_word(word)))));
         }
-        row(ui, skin, &skin.say("hd_health.faults"), skin.mono(status.faults.to_string()));
-        row(ui, skin, &skin.say("hd_health.temperature"), skin.mono(format!("{} °C", status.temperature)));
+        row(ui, skin, &say(skin, "hd_health.faults"), skin.mono(status.faults.to_string()));
+        row(ui, skin, &say(skin, "hd_health.temperature"), skin.mono(format!("{} °C", status.temperature)));
         if let Some(whole) = &unit.status {
-            row(ui, skin, &skin.say("hd_health.device"), skin.mono(format!("{} °C", whole.temperature)));
+            row(ui, skin, &say(skin, "hd_health.device"), skin.mono(format!("{} °C", whole.temperature)));
             let volts = skin.number(whole.supply_tenths as f64 / 10.0, 1);
-            row(ui, skin, &skin.say("hd_health.supply"), skin.mono(format!("{volts} V")));
+            row(ui, skin, &say(skin, "hd_health.supply"), skin.mono(format!("{volts} V")));
         }
-        paragraph(ui, skin.caption(skin.say("hd_health.words")));
+        paragraph(ui, skin.caption(say(skin, "hd_health.words")));
     });
 }
 

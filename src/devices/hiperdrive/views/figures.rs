@@ -3,30 +3,29 @@
 use egui::accesskit::Role;
 use egui::{Align2, FontId, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::Text;
 use crate::devices::hiperdrive::procedures::cyclic::{Bucket, Histogram};
 use crate::devices::hiperdrive::protocol::{ControlBit, DriveNumber, StatusBit};
-use crate::devices::hiperdrive::state::Unit;
-use crate::devices::hiperdrive::state::explain;
+use crate::devices::hiperdrive::state::{TEXTS, Unit, explain};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, empty, paragraph, row};
 use crate::ui::widgets::series;
 
 /// Status and control word with the names of their bits.
 pub(super) fn words_card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, drive: DriveNumber) {
-    card(ui, skin, "hd_words.title", |ui| {
+    card(ui, skin, TEXTS.text("hd_words.title"), |ui| {
         let Some(actual) = unit.actual(drive) else {
-            empty(ui, skin, &skin.say("hd_words.nothing"), None);
+            empty(ui, skin, &say(skin, "hd_words.nothing"), None);
             return;
         };
         let bits = |names: Vec<String>, word: u16| RichText::new(format!("0x{word:04X}  {}", names.join(" · ")));
         let set = actual.status.set().map(|bit: StatusBit| skin.words(&explain::status_bit(bit))).collect();
-        row(ui, skin, &skin.say("hd_words.status"), bits(set, actual.status.word()));
+        row(ui, skin, &say(skin, "hd_words.status"), bits(set, actual.status.word()));
         if let Some(sent) = unit.moves.sent(drive) {
             let speed_mode = sent.control.has(ControlBit::SpeedMode);
             let set = ControlBit::ALL.into_iter().filter(|bit| sent.control.has(*bit));
             let set = set.map(|bit| skin.words(&explain::control_bit(bit, speed_mode))).collect();
-            row(ui, skin, &skin.say("hd_words.control"), bits(set, sent.control.word()));
+            row(ui, skin, &say(skin, "hd_words.control"), bits(set, sent.control.word()));
         }
     });
 }
@@ -37,31 +36,31 @@ const WORDS: f32 = 16.0;
 
 /// The cyclic connection: how many packets, what was wrong with them, and how far their intervals were off.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit) {
-    card(ui, skin, "hd_link.title", |ui| {
+    card(ui, skin, TEXTS.text("hd_link.title"), |ui| {
         let view = unit.moves.view();
         let link = &view.link;
         if link.sent == 0 {
-            empty(ui, skin, &skin.say("hd_link.nothing"), None);
+            empty(ui, skin, &say(skin, "hd_link.nothing"), None);
             return;
         }
         let milliseconds = skin.number(link.interval.as_secs_f64() * 1e3, 1);
-        row(ui, skin, &skin.say("hd_link.interval"), skin.mono(format!("{milliseconds} ms")));
+        row(ui, skin, &say(skin, "hd_link.interval"), skin.mono(format!("{milliseconds} ms")));
         let priority = if view.punctual { "hd_link.real_time" } else { "hd_link.ordinary" };
-        row(ui, skin, &skin.say("hd_link.priority"), skin.say(priority));
-        row(ui, skin, &skin.say("hd_link.packets"), skin.mono(format!("{} → · ← {}", link.sent, link.received)));
+        row(ui, skin, &say(skin, "hd_link.priority"), say(skin, priority));
+        row(ui, skin, &say(skin, "hd_link.packets"), skin.mono(format!("{} → · ← {}", link.sent, link.received)));
         let bad =
             [("hd_link.missed", link.missed), ("hd_link.stale", link.stale), ("hd_link.malformed", link.malformed)];
         for (id, count) in bad {
             let ink = if count == 0 { skin.palette.text } else { skin.palette.warn };
-            row(ui, skin, &skin.say(id), skin.mono(count.to_string()).color(ink));
+            row(ui, skin, &say(skin, id), skin.mono(count.to_string()).color(ink));
         }
         if let Some((least, greatest)) = link.intervals.range_us() {
             let off =
-                Text::new("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));
-            row(ui, skin, &skin.say("hd_link.jitter"), skin.mono(skin.words(&off)));
+                TEXTS.text("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));
+            row(ui, skin, &say(skin, "hd_link.jitter"), skin.mono(skin.words(&off)));
         }
         histogram(ui, skin, &view.link.intervals);
-        paragraph(ui, skin.caption(skin.say("hd_link.words")));
+        paragraph(ui, skin.caption(say(skin, "hd_link.words")));
     });
 }
 
@@ -71,7 +70,7 @@ fn histogram(ui: &mut Ui, skin: &Skin, histogram: &Histogram) {
     let size = vec2(ui.available_width().max(0.0), BARS + WORDS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let told: Vec<String> = buckets.iter().map(|bucket| format!("{} {}", span(bucket), bucket.count)).collect();
-    let label = skin.say("hd_link.jitter");
+    let label = say(skin, "hd_link.jitter");
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, &label);
         info.current_text_value = Some(told.join(", "));

@@ -7,7 +7,8 @@ use super::outside;
 use crate::app::{Action, HoldEvent, SessionId};
 use crate::devices::hiperdrive::procedures::dead_man::Outside;
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit, forms};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, forms};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{allowed_button, card, paragraph, problem};
 use crate::ui::widgets::{HoldButton, hold_button};
@@ -17,7 +18,7 @@ const PAD: f32 = 72.0;
 
 /// The card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, "hd_jog.title", |ui| {
+    card(ui, skin, TEXTS.text("hd_jog.title"), |ui| {
         let drafts = &mut view.jog_effort;
         let drive = unit.drive();
         let own = (unit.moves.jog_effort(drive), unit.moves.jogs_with(drive), drafts);
@@ -28,11 +29,11 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         why_not(ui, skin, &allowed);
         ui.add_space(skin.space.between);
         ui.separator();
-        ui.label(skin.heading(skin.say("hd_step.title")));
+        ui.label(skin.heading(say(skin, "hd_step.title")));
         length_ui(ui, skin, unit, "hd_step.by", &mut view.step, actions);
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
-                if allowed_button(ui, skin, &allowed, "", &skin.say(id)).clicked() {
+                if allowed_button(ui, skin, &allowed, "", &say(skin, id)).clicked() {
                     match forms::step(unit, &view.step, unit.measure, sign) {
                         Ok(by) => {
                             view.step_problem = None;
@@ -45,7 +46,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
             }
         });
         problem(ui, skin, view.step_problem.as_ref());
-        paragraph(ui, skin.caption(skin.say("hd_step.words")));
+        paragraph(ui, skin.caption(say(skin, "hd_step.words")));
         // At the end: nothing that can be clicked moves away when it comes.
         outside::block_ui(ui, skin, unit, &mut view.outside, actions);
     });
@@ -65,11 +66,11 @@ fn pads_note(ui: &mut Ui, skin: &Skin, unit: &Unit) {
     };
     let width = ui.available_width();
     let font = FontId::proportional(skin.sizes.caption);
-    let height = |id| ui.painter().layout(skin.say(id), font.clone(), colour.into(), width).size().y;
+    let height = |id| ui.painter().layout(say(skin, id), font.clone(), colour.into(), width).size().y;
     let room = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear"].into_iter().map(height).fold(0.0, f32::max);
     ui.allocate_ui(vec2(width, room), |ui| {
         ui.set_min_height(room);
-        paragraph(ui, skin.caption(skin.say(id)).color(colour));
+        paragraph(ui, skin.caption(say(skin, id)).color(colour));
     });
 }
 
@@ -81,12 +82,15 @@ pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, acti
             [(Direction::Counterclockwise, "−", "hd_jog.down"), (Direction::Clockwise, "+", "hd_jog.up")]
         {
             let blocked = unit.is_blocked(unit.drive(), direction);
-            let caption = skin.say(match unit.outside(unit.drive()).map(|own| own.outside) {
-                Some(Outside::Unclear) if blocked => "hd_outside.pad_unclear",
-                _ if blocked => "hd_outside.pad",
-                _ => "hd_jog.hold",
-            });
-            let (enabled, label) = (enabled && !blocked, skin.say(label));
+            let caption = say(
+                skin,
+                match unit.outside(unit.drive()).map(|own| own.outside) {
+                    Some(Outside::Unclear) if blocked => "hd_outside.pad_unclear",
+                    _ if blocked => "hd_outside.pad",
+                    _ => "hd_jog.hold",
+                },
+            );
+            let (enabled, label) = (enabled && !blocked, say(skin, label));
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let press = Motor::JogPress { direction, repeated: false };
             pad_ui(ui, skin, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);

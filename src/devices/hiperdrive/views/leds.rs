@@ -2,9 +2,10 @@
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, RichText, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::Text;
 use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, PortLight};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::leds::{Lamp, Leds};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, entry, name, options, paragraph, severity};
 
@@ -17,8 +18,8 @@ const BUTTON: egui::Vec2 = vec2(248.0, 44.0);
 const RADIUS: f32 = 9.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, View(leds): &mut View) {
-    card(ui, skin, "hd_led.title", |ui| {
-        paragraph(ui, skin.label(skin.say("hd_led.words")));
+    card(ui, skin, TEXTS.text("hd_led.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "hd_led.words")));
         device(ui, skin, leds);
         ui.add_space(skin.space.between);
         for lamp in Lamp::ALL {
@@ -30,20 +31,20 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, View(leds): &mut View) {
 /// Which device it is, and where its switch S3 is.
 fn device(ui: &mut Ui, skin: &Skin, leds: &mut Leds) {
     let (mut hub, mut s3) = (leds.hub, leds.s3);
-    let word = skin.say("hd_led.device");
+    let word = say(skin, "hd_led.device");
     entry(ui, skin, &word, |ui| {
         let kinds = [(false, "hd_led.adapter"), (true, "hd_led.hub")];
-        options(ui, &word, &mut hub, kinds.map(|(own, id)| (own, skin.say(id))))
+        options(ui, &word, &mut hub, kinds.map(|(own, id)| (own, say(skin, id))))
     });
     if hub {
-        let word = skin.say("hd_led.switch");
+        let word = say(skin, "hd_led.switch");
         let positions = (0..=8_u8).map(|own| match own {
-            0 => (own, skin.say("hd_led.switch_zero")),
+            0 => (own, say(skin, "hd_led.switch_zero")),
             drive => (own, drive.to_string()),
         });
         entry(ui, skin, &word, |ui| options(ui, &word, &mut s3, positions));
         if s3 != 0 {
-            let away = Text::new("hd_led.switch_away").with("drive", s3);
+            let away = TEXTS.text("hd_led.switch_away").with("drive", s3);
             paragraph(ui, RichText::new(skin.words(&away)).color(skin.palette.warn));
         }
     }
@@ -80,12 +81,12 @@ fn lamp_ui(ui: &mut Ui, skin: &Skin, leds: &mut Leds, lamp: Lamp) {
     let text = pos2(rect.left() + 48.0, rect.center().y);
     let about = match lamp {
         Lamp::Drives if leds.hub && leds.s3 != 0 => {
-            skin.words(&Text::new("hd_led.switch_drive").with("drive", leds.s3))
+            skin.words(&TEXTS.text("hd_led.switch_drive").with("drive", leds.s3))
         }
-        Lamp::Drives => skin.say("hd_led.what_drives"),
-        Lamp::Bus(BusLamp::Module) => skin.say("hd_led.what_module"),
-        Lamp::Bus(BusLamp::Network) => skin.say("hd_led.what_network"),
-        Lamp::Port => skin.say("hd_led.what_port"),
+        Lamp::Drives => say(skin, "hd_led.what_drives"),
+        Lamp::Bus(BusLamp::Module) => say(skin, "hd_led.what_module"),
+        Lamp::Bus(BusLamp::Network) => say(skin, "hd_led.what_network"),
+        Lamp::Port => say(skin, "hd_led.what_port"),
     };
     let strong = skin.strong(skin.sizes.body);
     let named = painter.text(text, Align2::LEFT_BOTTOM, lamp.name(), strong, skin.palette.text.into());

@@ -3,10 +3,10 @@
 use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 
 use super::outside::badge;
-use crate::app::{Rgb, Text};
+use crate::app::Rgb;
 use crate::devices::hiperdrive::protocol::{State, turns};
-use crate::devices::hiperdrive::state::explain;
-use crate::devices::hiperdrive::state::{Measure, Unit};
+use crate::devices::hiperdrive::state::{Measure, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::row;
 use crate::ui::panels::live::LOW;
@@ -28,7 +28,7 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
         let ink = if unit.outside_words(drive).is_some() { palette.bad } else { ink };
         ui.label(RichText::new(shown).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
         // In the same line: nothing below it moves when it comes.
-        let measure = skin.label(skin.say(unit.measure.unit()));
+        let measure = skin.label(say(skin, unit.measure.unit()));
         ui.label(measure);
         if let Some(badge) = warning.take_if(|own| fits(ui, own)) {
             ui.label(badge);
@@ -47,7 +47,7 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
     };
     let word = skin.words(&explain::state(state));
     // Short enough for one line beside the widest state: the rows below stay where they are.
-    let told_below = Text::new("hd_outside.beside_state").with("state", &word);
+    let told_below = TEXTS.text("hd_outside.beside_state").with("state", &word);
     let word = if is_told_below { skin.words(&told_below) } else { word };
     let rpm = skin.number(unit.speed_scale(drive).rpm(actual.speed), 1);
     let speed = format!("{rpm} {}", skin.say("unit.revolutions_per_minute"));
@@ -57,11 +57,11 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
         ui.add(egui::Label::new(RichText::new(words).size(skin.sizes.caption).color(colour)).truncate());
         return;
     }
-    row(ui, skin, &skin.say("hd_live.state"), RichText::new(word).color(colour));
-    row(ui, skin, &skin.say("hd_effort.speed"), skin.mono(speed));
+    row(ui, skin, &say(skin, "hd_live.state"), RichText::new(word).color(colour));
+    row(ui, skin, &say(skin, "hd_effort.speed"), skin.mono(speed));
     let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
     if let Some(target) = target {
-        row(ui, skin, &skin.say("hd_live.target"), skin.mono(format!("{target} {}", skin.say(unit.measure.unit()))));
+        row(ui, skin, &say(skin, "hd_live.target"), skin.mono(format!("{target} {}", say(skin, unit.measure.unit()))));
     }
     let whole = if ruler.scale == crate::devices::hiperdrive::protocol::PositionScale::FACTORY {
         let (turn, step) = turns(actual.position);

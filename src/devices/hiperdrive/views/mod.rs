@@ -19,6 +19,8 @@ mod state_machine;
 
 use std::collections::BTreeMap;
 
+use crate::devices::hiperdrive::state::TEXTS;
+
 use egui::{ScrollArea, Ui};
 
 use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
@@ -204,9 +206,14 @@ impl TypedDeviceView for HiperdriveView {
         }
         let moving = unit.moving_drives();
         if unit.drives().len() < 2 || moving.is_empty() {
-            return Some(Text::new("shell.moving"));
+            return Some(TEXTS.text("shell.moving"));
         }
         let drives: Vec<String> = moving.into_iter().map(|drive| drive.get().to_string()).collect();
-        Some(Text::new("shell.moving_drives").with("drives", drives.join(", ")))
+        Some(TEXTS.text("shell.moving_drives").with("drives", drives.join(", ")))
     }
+}
+
+/// A text of this folder's catalogue, or a common one, in the window's language.
+pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
+    skin.words(&TEXTS.text(id))
 }

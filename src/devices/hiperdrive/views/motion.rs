@@ -7,8 +7,8 @@ use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, Motive, Phase};
 use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, RunEnd, State};
-use crate::devices::hiperdrive::state::explain;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit, forms};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry,
     two_columns,
@@ -44,7 +44,7 @@ const LOW: f32 = 760.0;
 
 pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
     if unit.profile().is_some() {
-        empty(ui, skin, &skin.say("hd_motion.offline"), None);
+        empty(ui, skin, &say(skin, "hd_motion.offline"), None);
         return;
     }
     // In a low window what moves the drive comes before the picture of its states, but not where that says what has failed.
@@ -92,9 +92,9 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                     let places = unit.in_all_units(drive, steps);
                     places.iter().map(|place| skin.words(place)).collect::<Vec<_>>().join("   ")
                 });
-                row(ui, skin, &skin.say("hd_limits.lower"), skin.mono(low));
-                row(ui, skin, &skin.say("hd_limits.upper"), skin.mono(high));
-                if allowed_button(ui, skin, &unit.may_confirm(drive), icons::CHECK, &skin.say("hd_limits.confirm"))
+                row(ui, skin, &say(skin, "hd_limits.lower"), skin.mono(low));
+                row(ui, skin, &say(skin, "hd_limits.upper"), skin.mono(high));
+                if allowed_button(ui, skin, &unit.may_confirm(drive), icons::CHECK, &say(skin, "hd_limits.confirm"))
                     .clicked()
                 {
                     let confirm = Hiperdrive::Drive(Motor::ConfirmLimits(drive));
@@ -117,7 +117,7 @@ fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             news(ui, skin, unit, &mut acts);
         }
     };
-    card_with(ui, skin, "hd_states.title", aside, |ui| {
+    card_with(ui, skin, TEXTS.text("hd_states.title"), aside, |ui| {
         let drive = unit.drive();
         let actual = unit.actual(drive);
         let present = actual.map(|actual| actual.status.state());
@@ -150,7 +150,7 @@ fn news(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
         let open = unit.moves.is_open();
-        if enabled_button(ui, open, icons::CHECK, &skin.say("hd_states.acknowledge")).clicked() {
+        if enabled_button(ui, open, icons::CHECK, &say(skin, "hd_states.acknowledge")).clicked() {
             motor(actions, unit.session.id, Motor::Acknowledge);
         }
         let newest = unit.drive_status(drive).and_then(|own| own.buffer.first().copied());
@@ -174,9 +174,9 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
 
 /// To a position, and at a speed: with the same effort.
 fn moves(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
-    let allowed = card(ui, skin, "hd_move.title", |ui| to_position(ui, skin, unit, view, actions));
+    let allowed = card(ui, skin, TEXTS.text("hd_move.title"), |ui| to_position(ui, skin, unit, view, actions));
     ui.add_space(skin.space.groups);
-    card(ui, skin, "hd_run.title", |ui| at_speed(ui, skin, unit, &allowed, actions));
+    card(ui, skin, TEXTS.text("hd_run.title"), |ui| at_speed(ui, skin, unit, &allowed, actions));
 }
 
 /// To a position; whether the drive may be moved with the effort that is typed.
@@ -185,9 +185,9 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
     // Both rows stay where nothing is known for a moment: nothing below them moves, and no entry loses the keyboard.
     let unknown = || "–".to_owned();
     let now = unit.actual(drive).map(|actual| skin.words(&unit.place(drive, actual.position)));
-    row(ui, skin, &skin.say("hd_move.now"), skin.mono(now.unwrap_or_else(unknown)));
+    row(ui, skin, &say(skin, "hd_move.now"), skin.mono(now.unwrap_or_else(unknown)));
     let range = unit.limits(drive).map(|limits| skin.words(&unit.places(drive, limits)));
-    row(ui, skin, &skin.say("hd_move.range"), skin.mono(range.unwrap_or_else(unknown)));
+    row(ui, skin, &say(skin, "hd_move.range"), skin.mono(range.unwrap_or_else(unknown)));
     length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
     let drafts = &mut view.move_effort;
     let effort = effort_ui(
@@ -200,14 +200,14 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
     );
     let allowed = effort.and(unit.may_move(drive));
     ui.horizontal_wrapped(|ui| {
-        if allowed_button(ui, skin, &allowed, icons::PLAY, &skin.say("hd_move.go")).clicked() {
+        if allowed_button(ui, skin, &allowed, icons::PLAY, &say(skin, "hd_move.go")).clicked() {
             view.target_problem = forms::target(unit, &view.target, unit.measure)
                 .map(|target| motor(actions, id, Motor::Move { target }))
                 .err();
         }
         match unit.moves.phase(drive) {
             Some(Phase::Paused { .. }) => {
-                let response = allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &skin.say("hd_move.resume"));
+                let response = allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &say(skin, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
                 // It stands where the pause was: a second click in a fright is meant for that.
                 if response.clicked() && !means_motion(ui.ctx(), false, pressed_at(ui, pressed)) {
@@ -216,7 +216,7 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
             }
             phase => {
                 let on_its_way = matches!(phase, Some(Phase::Moving(Motive::Job { .. })));
-                if enabled_button(ui, on_its_way, icons::PAUSE, &skin.say("hd_move.pause")).clicked() {
+                if enabled_button(ui, on_its_way, icons::PAUSE, &say(skin, "hd_move.pause")).clicked() {
                     means_motion(ui.ctx(), true, ui.input(|input| input.time));
                     motor(actions, id, Motor::Pause);
                 }
@@ -243,21 +243,21 @@ fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, allowed: &Result<(), Text>, a
     ui.horizontal_wrapped(|ui| {
         let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];
         for (direction, word) in ways {
-            if allowed_button(ui, skin, allowed, "", &skin.say(word)).clicked() {
+            if allowed_button(ui, skin, allowed, "", &say(skin, word)).clicked() {
                 motor(actions, id, Motor::Run { direction, end });
             }
         }
     });
-    paragraph(ui, skin.caption(skin.say("hd_run.words")));
+    paragraph(ui, skin.caption(say(skin, "hd_run.words")));
     let endless = unit.could_run_endlessly(unit.drive());
     // It can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
-        if ui.checkbox(&mut expert, skin.say("hd_run.expert")).changed() {
+        if ui.checkbox(&mut expert, say(skin, "hd_run.expert")).changed() {
             motor(actions, id, Motor::Expert(expert));
         }
     });
     match endless {
-        Ok(()) => paragraph(ui, skin.caption(skin.say("hd_run.expert_words"))),
+        Ok(()) => paragraph(ui, skin.caption(say(skin, "hd_run.expert_words"))),
         Err(why) => paragraph(ui, skin.caption(skin.words(&why))),
     }
 }
@@ -282,7 +282,7 @@ pub(super) fn effort_ui(
         ("hd_effort.speed", effort.speed, sent.0, speed, true),
         ("hd_effort.torque", effort.torque, sent.1, torque, false),
     ] {
-        let word = skin.say(word);
+        let word = say(skin, word);
         entry(ui, skin, &word, |ui| {
             let mut text = draft.take().unwrap_or_else(|| own.get().to_string());
             let response = text_entry(ui, &mut text, PERCENT, &word, "");
@@ -302,9 +302,9 @@ pub(super) fn effort_ui(
             let beside = if is_speed { unit.speed_of(own) } else { unit.torque_of(own) };
             let waits = sent.filter(|sent| *sent != own && typed.is_ok());
             if let Some(sent) = waits {
-                let words = Text::new("hd_effort.sent").with("sent", sent.get());
+                let words = TEXTS.text("hd_effort.sent").with("sent", sent.get());
                 let label = ui.label(RichText::new(skin.words(&words)).color(skin.palette.warn));
-                label.on_hover_text(skin.say("hd_effort.waits"));
+                label.on_hover_text(say(skin, "hd_effort.waits"));
             } else if let Some(beside) = beside.filter(|_| typed.is_ok()) {
                 ui.label(skin.caption(skin.words(&beside)));
             }
@@ -326,15 +326,15 @@ pub(super) fn length_ui(
     text: &mut String,
     actions: &mut Vec<Action>,
 ) {
-    let word = skin.say(id);
+    let word = say(skin, id);
     let ruler = unit.ruler(unit.drive());
     let mut measure = unit.measure;
     entry(ui, skin, &word, |ui| {
         text_entry(ui, text, NUMBER, &word, "");
-        let measures = ruler.measures().map(|own| (own, skin.say(own.unit())));
+        let measures = ruler.measures().map(|own| (own, say(skin, own.unit())));
         ui.push_id(id, |ui| {
             ui.spacing_mut().combo_width = MEASURE;
-            if choice(ui, &skin.say("hd_move.measure"), &mut measure, measures) {
+            if choice(ui, &say(skin, "hd_move.measure"), &mut measure, measures) {
                 actions.push(Action::device(unit.session.id, Hiperdrive::SetMeasure(measure)));
             }
         });

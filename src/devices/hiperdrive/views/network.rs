@@ -1,15 +1,15 @@
 //! Where the device has its address from: what its TCP/IP object says beside what is wanted, what that comes to at the next
 //! power-up, and what the address switches mean.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
-use crate::app::{Action, Severity, Text};
+use crate::app::{Action, DeviceCommand, Severity, Text};
 use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::state::network::{self, Form};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Unit};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row,
     severity, split,
@@ -46,13 +46,13 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
     let id = unit.session.id;
     let mut asked = Vec::new();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("hd_net.read")).clicked() {
+        if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &say(skin, "hd_net.read")).clicked() {
             asked.push(Action::Command(id, DeviceCommand::Read));
         }
     };
-    card_with(ui, skin, "hd_net.title", read, |ui| {
+    card_with(ui, skin, TEXTS.text("hd_net.title"), read, |ui| {
         let Some(now) = unit.network_settings() else {
-            empty(ui, skin, &skin.say("hd_net.nothing"), None);
+            empty(ui, skin, &say(skin, "hd_net.nothing"), None);
             return;
         };
         // What was typed beside other settings is not for these.
@@ -64,7 +64,7 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
         form_ui(ui, skin, &before, &mut form);
         if let Some(mac) = unit.network().and_then(|own| own.mac) {
             let mac: Vec<String> = mac.iter().map(|byte| format!("{byte:02X}")).collect();
-            row(ui, skin, &skin.say("hd_net.mac"), skin.mono(mac.join(":")));
+            row(ui, skin, &say(skin, "hd_net.mac"), skin.mono(mac.join(":")));
         }
         ui.add_space(skin.space.between);
         let wanted = form.settings(&now);
@@ -73,18 +73,18 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
         let allowed = match (&wanted, unit.may_plan()) {
             (_, Err(why)) => Err(why),
             (Err(why), _) => Err(why.clone()),
-            (Ok(own), Ok(())) if *own == now => Err(Text::new("hd_net.no_change")),
+            (Ok(own), Ok(())) if *own == now => Err(TEXTS.text("hd_net.no_change")),
             (Ok(own), Ok(())) => Ok(own.clone()),
         };
         ui.horizontal_wrapped(|ui| {
             let may = allowed.as_ref().map(|_| ()).map_err(Clone::clone);
-            if allowed_button(ui, skin, &may, icons::LIST_CHECKS, &skin.say("hd_net.write")).clicked()
+            if allowed_button(ui, skin, &may, icons::LIST_CHECKS, &say(skin, "hd_net.write")).clicked()
                 && let Ok(own) = allowed
             {
                 let change = Change::Network(own);
                 actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))));
             }
-            if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &skin.say("hd_net.revert")).clicked() {
+            if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &say(skin, "hd_net.revert")).clicked() {
                 form = before.clone();
             }
         });
@@ -94,7 +94,7 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
 }
 
 fn form_ui(ui: &mut Ui, skin: &Skin, before: &Form, form: &mut Form) {
-    let word = skin.say("hd_net.source");
+    let word = say(skin, "hd_net.source");
     let mut sources = vec![AddressSource::Dhcp, AddressSource::Bootp, AddressSource::Stored];
     if !sources.contains(&before.source) {
         sources.push(before.source);
@@ -115,17 +115,17 @@ fn form_ui(ui: &mut Ui, skin: &Skin, before: &Form, form: &mut Form) {
         ("hd_net.second_server", second, second_before, false),
         ("hd_net.domain", &mut form.domain, &before.domain, false),
     ] {
-        let word = skin.say(id);
+        let word = say(skin, id);
         if !types {
-            let shown = if was.is_empty() { skin.say("hd_axis.none") } else { was.clone() };
+            let shown = if was.is_empty() { say(skin, "hd_axis.none") } else { was.clone() };
             row(ui, skin, &word, skin.mono(shown));
             continue;
         }
         entry(ui, skin, &word, |ui| {
-            let hint = if is_needed { String::new() } else { skin.say("hd_net.optional") };
+            let hint = if is_needed { String::new() } else { say(skin, "hd_net.optional") };
             mono_entry(ui, skin, own, ADDRESS, &word, &hint);
             if own != was && !was.is_empty() {
-                let was = Text::new("hd_net.was").with("value", was);
+                let was = TEXTS.text("hd_net.was").with("value", was);
                 ui.add(egui::Label::new(RichText::new(skin.words(&was)).color(skin.palette.staged)).truncate());
             }
         });
@@ -134,7 +134,7 @@ fn form_ui(ui: &mut Ui, skin: &Skin, before: &Form, form: &mut Form) {
 
 /// What will be at the next power-up.
 fn outlook(ui: &mut Ui, skin: &Skin, unit: &Unit, now: &NetworkSettings, wanted: &Result<NetworkSettings, Text>) {
-    ui.label(skin.label(skin.say("hd_net.at_power_up")));
+    ui.label(skin.label(say(skin, "hd_net.at_power_up")));
     match wanted {
         Err(why) => problem(ui, skin, Some(why)),
         Ok(wanted) => {
@@ -155,10 +155,10 @@ fn line(ui: &mut Ui, skin: &Skin, own: Severity, text: &Text) {
 
 /// What each position means; the present one stands out.
 fn switches(ui: &mut Ui, skin: &Skin, unit: &Unit) {
-    card(ui, skin, "hd_net.switches", |ui| {
+    card(ui, skin, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();
         if let Some(own) = switch {
-            row(ui, skin, &skin.say("hd_net.switch_now"), skin.value(own.number().to_string()));
+            row(ui, skin, &say(skin, "hd_net.switch_now"), skin.value(own.number().to_string()));
             ui.add_space(skin.space.inside);
         }
         for position in network::positions(switch) {
@@ -178,6 +178,6 @@ fn switches(ui: &mut Ui, skin: &Skin, unit: &Unit) {
             });
         }
         ui.add_space(skin.space.inside);
-        paragraph(ui, skin.caption(skin.say("hd_net.switch_words")));
+        paragraph(ui, skin.caption(say(skin, "hd_net.switch_words")));
     });
 }

@@ -6,7 +6,8 @@ use super::motion::length_ui;
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit, forms};
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, forms};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, paragraph, problem};
 use crate::ui::{Skin, icons};
 
@@ -21,7 +22,7 @@ pub(super) struct Draft {
 /// The word for it in one line, where a drive is outside its limits.
 pub(crate) fn badge(skin: &Skin, unit: &Unit) -> Option<RichText> {
     unit.outside_words(unit.drive())?;
-    let words = format!("{}  {}", icons::WARNING, skin.say("hd_outside.short"));
+    let words = format!("{}  {}", icons::WARNING, say(skin, "hd_outside.short"));
     Some(RichText::new(words).font(skin.strong(skin.sizes.body)).color(skin.palette.bad))
 }
 
@@ -49,22 +50,22 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
         (None, Outside::At(Side::Above)) => "hd_outside.blocked_up",
         (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
     };
-    paragraph(ui, skin.caption(skin.say(words)));
+    paragraph(ui, skin.caption(say(skin, words)));
     // The buttons stay once one was pressed: what can be clicked below them does not move under the pointer.
-    let allowed = if freed.is_some() { Err(Text::new(words)) } else { unit.may_move(drive) };
+    let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move(drive) };
     ui.horizontal_wrapped(|ui| {
         for way in ways {
             let free = match way {
                 Direction::Clockwise => "hd_outside.free_up",
                 Direction::Counterclockwise => "hd_outside.free_down",
             };
-            if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &skin.say(free)).clicked() {
+            if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &say(skin, free)).clicked() {
                 actions.push(Action::device(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
             }
         }
     });
     length_ui(ui, skin, unit, "hd_outside.place", &mut draft.place, actions);
-    if allowed_button(ui, skin, &unit.may_plan(), "", &skin.say("hd_outside.set")).clicked() {
+    if allowed_button(ui, skin, &unit.may_plan(), "", &say(skin, "hd_outside.set")).clicked() {
         let change =
             forms::steps(unit, &draft.place, unit.measure).and_then(|position| unit.reference_here(drive, position));
         draft.problem = change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();

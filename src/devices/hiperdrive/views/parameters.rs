@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::iter::once;
 
+use crate::devices::hiperdrive::views::say;
+
 use egui::{RichText, ScrollArea, Ui};
 
 use super::scale;
@@ -59,8 +61,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = skin.space.inside;
         ui.add_space(skin.space.inside);
-        paragraph(ui, skin.caption(skin.say("hd_params.controller")));
-        paragraph(ui, skin.caption(skin.say("hd_params.not_kept")));
+        paragraph(ui, skin.caption(say(skin, "hd_params.controller")));
+        paragraph(ui, skin.caption(say(skin, "hd_params.not_kept")));
     });
     let rows = once(Some(unit.drive())).chain(once(None)).map(|of| {
         let rows = unit.rows(of).into_iter().filter(|row| view.shows(skin, row));
@@ -69,7 +71,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
     let rows: Vec<Vec<Row>> = rows.collect();
     view.follow(&rows);
     if rows.iter().all(Vec::is_empty) {
-        empty(ui, skin, &skin.say("hd_params.none"), None);
+        empty(ui, skin, &say(skin, "hd_params.none"), None);
     } else {
         table(ui, skin, unit, &rows, view, actions);
     }
@@ -78,7 +80,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
 /// What is shown, and why what was typed is not taken.
 fn head(ui: &mut Ui, skin: &Skin, view: &mut View) {
     ui.horizontal_wrapped(|ui| {
-        let sought = skin.say("hd_params.seek");
+        let sought = say(skin, "hd_params.seek");
         if text_entry(ui, &mut view.sought, SOUGHT, &sought, &sought).changed() && view.shown == Shown::Scale {
             view.shown = Shown::All;
         }
@@ -88,7 +90,7 @@ fn head(ui: &mut Ui, skin: &Skin, view: &mut View) {
             (Shown::Changed, "hd_params.changed"),
             (Shown::Scale, "hd_scale.title"),
         ];
-        if options(ui, &skin.say("hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, skin.say(id)))) {
+        if options(ui, &say(skin, "hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, say(skin, id)))) {
             // What is being typed counts before other lines are shown.
             ui.memory_mut(|memory| memory.stop_text_input());
         }
@@ -146,7 +148,7 @@ fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Vec<Row>], view: &mut Vi
     let groups: Vec<RegisterGroup> = ["hd_params.drive", "hd_params.device"]
         .into_iter()
         .zip(rows)
-        .map(|(title, rows)| RegisterGroup { title: skin.say(title), note: String::new(), rows: rows.len() })
+        .map(|(title, rows)| RegisterGroup { title: say(skin, title), note: String::new(), rows: rows.len() })
         .collect();
     let at = |place: Place| rows.get(place.group)?.get(place.row);
     let row = |place: Place| at(place).map(|row| row_of(skin, row)).unwrap_or_default();
@@ -191,7 +193,7 @@ fn row_of(skin: &Skin, row: &Row) -> RegisterRow {
         changed: row.changed_from.is_some(),
         before: row.changed_from.map(|was| was.to_string()).unwrap_or_default(),
         edited: row.is_edited,
-        kept: row.kind.saved.then(|| skin.say("hd_params.is_kept")),
+        kept: row.kind.saved.then(|| say(skin, "hd_params.is_kept")),
         read_only: row.why_not_editable().map(|why| skin.words(&why)),
         value,
         ..RegisterRow::default()

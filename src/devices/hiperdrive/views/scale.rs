@@ -3,10 +3,10 @@
 use egui::Ui;
 
 use crate::app::{Action, Text};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Edit, LimitsStay, Measure, Unit, forms};
-use crate::ui::Skin;
+use crate::devices::hiperdrive::state::{Action as Hiperdrive, Edit, LimitsStay, Measure, TEXTS, Unit, forms};
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{card, enabled_button, entry, options, paragraph, problem, row, settled_entry, text_entry};
-use crate::ui::icons;
+use crate::ui::{Skin, icons};
 
 /// What is typed.
 #[derive(Default)]
@@ -23,8 +23,8 @@ const NUMBER: f32 = 88.0;
 /// The card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
     let (id, drive) = (unit.session.id, unit.drive());
-    card(ui, skin, "hd_scale.title", |ui| {
-        let word = skin.say("hd_scale.pitch");
+    card(ui, skin, TEXTS.text("hd_scale.title"), |ui| {
+        let word = say(skin, "hd_scale.pitch");
         let pitch = unit.pitch(drive);
         let shown = pitch.map(|own| skin.plain(own.nanometres as f64 / 1e6)).unwrap_or_default();
         entry(ui, skin, &word, |ui| {
@@ -33,22 +33,22 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
                 actions.push(Action::device(id, Hiperdrive::SetPitch(drive, pitch)));
                 Ok(())
             });
-            ui.label(skin.label(skin.say("hd_scale.a_turn")));
+            ui.label(skin.label(say(skin, "hd_scale.a_turn")));
         });
         problem(ui, skin, view.pitch.as_ref().and_then(|(_, why)| why.as_ref()));
-        let word = skin.say("hd_scale.step");
+        let word = say(skin, "hd_scale.step");
         entry(ui, skin, &word, |ui| {
             text_entry(ui, &mut view.step, NUMBER, &word, "0.01");
-            ui.label(skin.label(skin.say(Measure::Millimetres.unit())));
+            ui.label(skin.label(say(skin, Measure::Millimetres.unit())));
         });
-        let word = skin.say("hd_scale.limits");
+        let word = say(skin, "hd_scale.limits");
         entry(ui, skin, &word, |ui| {
             let ways = [(false, "hd_scale.in_place"), (true, "hd_scale.as_numbers")];
-            options(ui, &word, &mut view.stay_as_numbers, ways.map(|(own, id)| (own, skin.say(id))));
+            options(ui, &word, &mut view.stay_as_numbers, ways.map(|(own, id)| (own, say(skin, id))));
         });
         ui.horizontal(|ui| {
             let ready = pitch.is_some() && !view.step.trim().is_empty();
-            if enabled_button(ui, ready, icons::RULER, &skin.say("hd_scale.set")).clicked()
+            if enabled_button(ui, ready, icons::RULER, &say(skin, "hd_scale.set")).clicked()
                 && let Some(pitch) = pitch
             {
                 let limits = if view.stay_as_numbers { LimitsStay::AsNumbers } else { LimitsStay::InPlace };
@@ -63,7 +63,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         });
         problem(ui, skin, view.refused.as_ref());
         becomes(ui, skin, unit);
-        paragraph(ui, skin.caption(skin.say("hd_scale.words")));
+        paragraph(ui, skin.caption(say(skin, "hd_scale.words")));
     });
 }
 
@@ -71,13 +71,13 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
 fn becomes(ui: &mut Ui, skin: &Skin, unit: &Unit) {
     let drive = unit.drive();
     let ruler = unit.wanted_ruler(drive);
-    let turn = format!("{} {}", skin.plain(ruler.scale.steps_per_turn()), skin.say(Measure::Steps.unit()));
-    row(ui, skin, &skin.say("hd_scale.turn"), skin.mono(turn));
+    let turn = format!("{} {}", skin.plain(ruler.scale.steps_per_turn()), say(skin, Measure::Steps.unit()));
+    row(ui, skin, &say(skin, "hd_scale.turn"), skin.mono(turn));
     let Some((low, high)) = unit.staged.wanted().and_then(|image| image.limits(drive)) else { return };
     for measure in [Measure::Turns, Measure::Millimetres] {
         if let Some((low, high)) = ruler.of(low, measure).zip(ruler.of(high, measure)) {
-            let words = format!("{} … {} {}", skin.number(low, 2), skin.number(high, 2), skin.say(measure.unit()));
-            row(ui, skin, &skin.say("hd_move.range"), skin.mono(words));
+            let words = format!("{} … {} {}", skin.number(low, 2), skin.number(high, 2), say(skin, measure.unit()));
+            row(ui, skin, &say(skin, "hd_move.range"), skin.mono(words));
         }
     }
 }

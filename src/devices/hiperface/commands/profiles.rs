@@ -16,8 +16,7 @@ use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
-use crate::devices::hiperface::profile::HiperfaceProfile;
-use crate::devices::hiperface::profile::{self, FieldRange, Item, RestoreOptions, UnknownField};
+use crate::devices::hiperface::profile::{self, FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownField};
 use crate::devices::hiperface::state::explain as words;
 use crate::profile::{Body, Comparison, ProfileError};
 

@@ -15,11 +15,12 @@ pub use error::PlanError;
 pub use undo::created_by;
 pub use unknown::UnknownField;
 
-use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
-use crate::devices::hiperface::protocol::FreeMemory;
 use planner::Planner;
 use undo::{delete, undo_created, without};
 use unknown::unknown_fields;
+
+use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
+use crate::devices::hiperface::protocol::FreeMemory;
 
 /// What a restore may do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! What can be asked of the encoder that is shown.
 
-use crate::app::DeviceAction;
 use std::path::PathBuf;
 
 use super::commutation;
+use crate::app::DeviceAction;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::profile::{FieldRange, RestoreOptions};

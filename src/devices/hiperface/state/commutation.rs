@@ -15,6 +15,7 @@ use crate::analysis::synchronise::Synchroniser;
 use crate::app::Text;
 use crate::devices::hiperface::procedures::Rest;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
+use crate::devices::hiperface::state::TEXTS;
 
 pub use form::{Form, Inputs, Slot, Source, Storage, Vector};
 pub use outcome::{Offset, Setting, Stored, may_read, stored};
@@ -174,7 +175,7 @@ impl Asked {
             (Source::Typed, _) => fine(rest.raw, form::phase(&self.phase)?, geometry, None),
             (Source::Signals, Some(signals)) => {
                 let volts = signals.sine_v.hypot(signals.cosine_v);
-                let no_signal = || Text::new("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
+                let no_signal = || TEXTS.text("commutation.no_signal").with_number("volts", 2.0 * volts, 3);
                 if Limits::HIPERFACE.amplitude(volts) == Verdict::Fault {
                     return Err(no_signal());
                 }
@@ -191,10 +192,10 @@ fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f
     // A range that nobody knows is not gone round.
     let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
-    let told = synchroniser.synchronise(raw.into(), phase).map_err(|_| Text::new("commutation.half_apart"))?;
+    let told = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
     if told.verdict == Verdict::Fault {
         let apart = told.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
-        return Err(Text::new("commutation.far_apart").with_number("steps", apart, 1));
+        return Err(TEXTS.text("commutation.far_apart").with_number("steps", apart, 1));
     }
     let kind =
         Kind::Fine { residual_periods: told.residual_periods, verdict: told.verdict, resolution_periods: resolution };

@@ -10,6 +10,7 @@ use crate::devices::hiperface::jobs::check;
 use crate::devices::hiperface::procedures::{Echo, PARAMETERS, Station};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
+use crate::devices::hiperface::state::TEXTS;
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
 use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
@@ -216,7 +217,7 @@ impl LinkForm {
         }
         let digits = entry.strip_prefix("0x").or_else(|| entry.strip_prefix("0X")).unwrap_or(entry);
         let digits = digits.strip_suffix(['h', 'H']).unwrap_or(digits);
-        u8::from_str_radix(digits, 16).map_err(|_| Text::new("form.address").with("value", entry))
+        u8::from_str_radix(digits, 16).map_err(|_| TEXTS.text("form.address").with("value", entry))
     }
 
     fn refused(&self, url: &LinkUrl, error: &OpenError) -> Text {
@@ -229,18 +230,18 @@ impl LinkForm {
             "address" => {
                 let of_the_virtual = matches!(error, OpenError::Sim(_));
                 let id = if of_the_virtual { "form.address_virtual" } else { "form.address" };
-                return Text::new(id).with("value", self.address.trim());
+                return TEXTS.text(id).with("value", self.address.trim());
             }
             "model" => {
                 let models = Self::models().collect::<Vec<_>>().join(", ");
-                return Text::new("form.model").with("value", value).with("models", models);
+                return TEXTS.text("form.model").with("value", value).with("models", models);
             }
             "periods" => "form.periods",
             "turns" if self.periods.trim().is_empty() => "form.turns_alone",
             "turns" => "form.turns",
             _ => return refused(url, error),
         };
-        Text::new(id).with("value", value)
+        TEXTS.text(id).with("value", value)
     }
 }
 

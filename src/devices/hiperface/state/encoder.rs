@@ -2,22 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use super::Staged;
 use super::commutation::Commutation;
 use super::meaning::Meaning;
 use super::record::Record;
 use super::rest::RestAsked;
 use super::review::Review;
-use super::rules;
+use super::{Staged, rules};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::devices::hiperface::jobs::Hiperface;
-use crate::devices::hiperface::procedures::check;
-use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField};
+use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField, check};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Item};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
+use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
 use crate::profile::Document;
@@ -130,8 +129,8 @@ impl Encoder {
         let Some(identity) = &self.identity else { return };
         let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
         let firmware = if firmware.is_empty() { Text::new("encoder_card.not_told") } else { explain::plain(firmware) };
-        let line = Text::new("log.line").with("address", format!("{:02X}h", identity.address));
-        let kind = Text::new("log.type").with("type", format!("{:02X}h", label.encoder_type));
+        let line = TEXTS.text("log.line").with("address", format!("{:02X}h", identity.address));
+        let kind = TEXTS.text("log.type").with("type", format!("{:02X}h", label.encoder_type));
         let facts = vec![
             line.with_text("settings", words::line_settings(label.settings)),
             kind.with_text("firmware", firmware),

@@ -13,6 +13,8 @@ mod words;
 
 use std::path::Path;
 
+use crate::devices::hiperface::state::TEXTS;
+
 pub use change::{change, staged};
 pub use check::{check, line_quality};
 pub use command::command;
@@ -59,7 +61,7 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, ki
     }];
     if !interrupted.left_unlocked.is_empty() {
         let fields: Vec<String> = interrupted.left_unlocked.iter().map(ToString::to_string).collect();
-        texts.push(Text::new("write.left_unlocked").with("fields", fields.join(", ")));
+        texts.push(TEXTS.text("write.left_unlocked").with("fields", fields.join(", ")));
     }
     // An operation that may have been carried out counts as a write cycle.
     let id = match kind {
@@ -68,7 +70,7 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, ki
         ChangeKind::Bytes => "write.backup_bytes",
         ChangeKind::Single => "write.backup_single",
     };
-    texts.push(Text::new(id).with("backup", backup.display()));
+    texts.push(TEXTS.text(id).with("backup", backup.display()));
     texts
 }
 
@@ -83,7 +85,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
 /// A write that is done. What cannot be read back was acknowledged by the encoder, and that is all there is.
 pub fn written(written: &Written) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
-    Text::new(id).with("cycles", written.write_cycles)
+    TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
 /// The same for the end of a review.
@@ -100,44 +102,47 @@ pub fn encoder(error: &Error) -> Text {
         Error::Link(error) => link(error),
         Error::NoReply { address, command, tries, echo_heard } => {
             let id = if *echo_heard { "encoder.echo_only" } else { "encoder.no_reply" };
-            Text::new(id)
+            TEXTS
+                .text(id)
                 .with("address", format!("{address:02X}h"))
                 .with_text("command", command::command(*command))
                 .with("tries", tries)
         }
         Error::Damaged { command, tries, cause } => {
             let text =
-                Text::new("encoder.damaged").with_text("command", command::command(*command)).with("tries", tries);
+                TEXTS.text("encoder.damaged").with_text("command", command::command(*command)).with("tries", tries);
             text.with_text("why", damage(cause))
         }
-        Error::NeverSilent => Text::new("encoder.never_silent"),
+        Error::NeverSilent => TEXTS.text("encoder.never_silent"),
         Error::Rejected { command, codes } => {
             let code_needed = codes.contains(&StatusCode::WRONG_CODE);
             let id = if code_needed { "encoder.rejected_code" } else { "encoder.rejected" };
             let codes = codes.iter().copied().map(status_with_number);
-            Text::new(id).with_text("command", command::command(*command)).with_list("codes", codes)
+            TEXTS.text(id).with_text("command", command::command(*command)).with_list("codes", codes)
         }
-        Error::Unclear { command, cause } => Text::new("encoder.unclear")
+        Error::Unclear { command, cause } => TEXTS
+            .text("encoder.unclear")
             .with_text("command", command::command(*command))
             .with_text("cause", encoder(cause)),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::Moving { readings } => {
             let words: Vec<String> = readings.iter().map(ToString::to_string).collect();
-            Text::new("encoder.moving").with("readings", words.join(", "))
+            TEXTS.text("encoder.moving").with("readings", words.join(", "))
         }
-        Error::NotAKit { encoder } => Text::new("encoder.not_a_kit").with("encoder", encoder),
+        Error::NotAKit { encoder } => TEXTS.text("encoder.not_a_kit").with("encoder", encoder),
         Error::AddressTaken { address } => {
-            Text::new("encoder.address_taken").with("address", format!("{address:02X}h"))
+            TEXTS.text("encoder.address_taken").with("address", format!("{address:02X}h"))
         }
         Error::PositionRange { wanted, last } => {
-            Text::new("encoder.position_range").with("wanted", wanted).with("last", last)
+            TEXTS.text("encoder.position_range").with("wanted", wanted).with("last", last)
         }
         Error::OutOfField { field, address, count, size } => {
             out_of_field(*field, size.saturating_sub(1), *address, *count)
         }
         Error::CodeUnknown { field, number } => code_unknown(*field, number),
-        Error::Changed { item } => Text::new("encoder.changed").with_text("item", phrase(item)),
-        Error::NotVerified { item, expected, got } => Text::new("encoder.not_verified")
+        Error::Changed { item } => TEXTS.text("encoder.changed").with_text("item", phrase(item)),
+        Error::NotVerified { item, expected, got } => TEXTS
+            .text("encoder.not_verified")
             .with_text("item", phrase(item))
             .with("expected", expected)
             .with_text("got", phrase(got)),
@@ -148,7 +153,7 @@ pub fn encoder(error: &Error) -> Text {
 /// What has to be set up anew.
 pub fn redo(redo: &Redo) -> Text {
     match redo {
-        Redo::Commutation => Text::new("redo.commutation"),
+        Redo::Commutation => TEXTS.text("redo.commutation"),
         Redo::Value(range) => phrase(&range.to_string()),
     }
 }
@@ -156,24 +161,24 @@ pub fn redo(redo: &Redo) -> Text {
 /// A data field with bytes of unknown meaning that would go onto another encoder.
 pub fn unknown_field(field: &UnknownField) -> Text {
     let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
-    Text::new(id).with("field", field.field).with("bytes", field.bytes)
+    TEXTS.text(id).with("field", field.field).with("bytes", field.bytes)
 }
 
 /// Fields that a write created and that are not deleted where it is undone; `None` where there are none.
 pub fn created_left(fields: &[u8]) -> Option<Text> {
     let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
-    (!fields.is_empty()).then(|| Text::new("review.created_left").with("fields", numbers.join(", ")))
+    (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
 }
 
 /// So many status codes may have been lost on the way.
 pub fn codes_unheard(count: u32) -> Text {
-    Text::new("status.unheard").with("count", count)
+    TEXTS.text("status.unheard").with("count", count)
 }
 
 /// A profile that goes onto another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     let OtherType { profile, device } = types;
-    Text::new("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
+    TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
 }
 
 /// A type by its name, where the table that ships has one, and its code.
@@ -192,21 +197,21 @@ pub fn plan(error: &PlanError) -> Text {
             Text::new("plan.other_device").with("profile", named(profile)).with("device", named(device))
         }
         PlanError::OtherType { profile, device } => {
-            Text::new("plan.other_type").with("profile", type_name(*profile)).with("device", type_name(*device))
+            TEXTS.text("plan.other_type").with("profile", type_name(*profile)).with("device", type_name(*device))
         }
         PlanError::SizeFixed { field, profile, device } => {
-            Text::new("plan.size_fixed").with("field", field).with("profile", profile).with("device", device)
+            TEXTS.text("plan.size_fixed").with("field", field).with("profile", profile).with("device", device)
         }
-        PlanError::Gap { field, missing } => Text::new("plan.gap").with("field", field).with("missing", missing),
-        PlanError::NoMemory { needed, free } => Text::new("plan.no_memory").with("needed", needed).with("free", free),
-        PlanError::WouldLose { field, code } => Text::new("plan.would_lose").with("field", field).with("code", code),
-        PlanError::NotNext { field, next } => Text::new("plan.not_next").with("field", field).with("next", next),
-        PlanError::NotLast { field, last } => Text::new("plan.not_last").with("field", field).with("last", last),
-        PlanError::NoSuchField { field, count: 0 } => Text::new("encoder.no_fields").with("field", field),
+        PlanError::Gap { field, missing } => TEXTS.text("plan.gap").with("field", field).with("missing", missing),
+        PlanError::NoMemory { needed, free } => TEXTS.text("plan.no_memory").with("needed", needed).with("free", free),
+        PlanError::WouldLose { field, code } => TEXTS.text("plan.would_lose").with("field", field).with("code", code),
+        PlanError::NotNext { field, next } => TEXTS.text("plan.not_next").with("field", field).with("next", next),
+        PlanError::NotLast { field, last } => TEXTS.text("plan.not_last").with("field", field).with("last", last),
+        PlanError::NoSuchField { field, count: 0 } => TEXTS.text("encoder.no_fields").with("field", field),
         PlanError::NoSuchField { field, count } => {
-            Text::new("encoder.no_field").with("field", field).with("count", count).with("last", count - 1)
+            TEXTS.text("encoder.no_field").with("field", field).with("count", count).with("last", count - 1)
         }
-        PlanError::WriteProtected { field } => Text::new("plan.write_protected").with("field", field),
+        PlanError::WriteProtected { field } => TEXTS.text("plan.write_protected").with("field", field),
         PlanError::OutOfField { field, last, start, count } => out_of_field(*field, *last, *start, *count),
         PlanError::CodeUnknown { field, code } => code_unknown(*field, code),
     }
@@ -214,12 +219,12 @@ pub fn plan(error: &PlanError) -> Text {
 
 /// Bytes that a field does not have.
 pub fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
-    let text = Text::new(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
+    let text = TEXTS.text(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
     text.with("field", field).with("last", last).with("start", start).with("count", count)
 }
 
 fn code_unknown(field: u8, number: impl ToString) -> Text {
-    Text::new("encoder.code_unknown").with("field", field).with("number", number)
+    TEXTS.text("encoder.code_unknown").with("field", field).with("number", number)
 }
 
 #[cfg(test)]

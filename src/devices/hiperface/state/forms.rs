@@ -4,6 +4,7 @@ use crate::app::Text;
 use crate::devices::hiperface::protocol::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings,
 };
+use crate::devices::hiperface::state::TEXTS;
 use crate::units::CharacterFormat;
 
 /// An access code: one byte in hexadecimal.
@@ -11,7 +12,7 @@ use crate::units::CharacterFormat;
 /// # Errors
 /// In words; the entry itself is not repeated.
 pub fn access_code(text: &str) -> Result<AccessCode, Text> {
-    byte(text).map(AccessCode::new).ok_or_else(|| Text::new("entry.code"))
+    byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
 
 /// A new access code, typed twice, because nobody can read it back.
@@ -20,7 +21,7 @@ pub fn access_code(text: &str) -> Result<AccessCode, Text> {
 /// In words; the entries are not repeated.
 pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
     let code = access_code(text)?;
-    if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(Text::new("entry.codes_differ")) }
+    if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(TEXTS.text("entry.codes_differ")) }
 }
 
 /// An address, 40h…5Fh in hexadecimal.
@@ -28,7 +29,7 @@ pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
 /// # Errors
 /// In words.
 pub fn address(text: &str) -> Result<DeviceAddress, Text> {
-    byte(text).and_then(DeviceAddress::new).ok_or_else(|| Text::new("entry.address").with("entry", text))
+    byte(text).and_then(DeviceAddress::new).ok_or_else(|| TEXTS.text("entry.address").with("entry", text))
 }
 
 /// An analogue channel in hexadecimal.
@@ -36,7 +37,7 @@ pub fn address(text: &str) -> Result<DeviceAddress, Text> {
 /// # Errors
 /// In words.
 pub fn channel(text: &str) -> Result<u8, Text> {
-    byte(text).ok_or_else(|| Text::new("entry.channel").with("entry", text))
+    byte(text).ok_or_else(|| TEXTS.text("entry.channel").with("entry", text))
 }
 
 /// A position in steps, decimal or with `0x` in front; or degrees within the first turn with `°` or `deg`
@@ -47,7 +48,7 @@ pub fn channel(text: &str) -> Result<u8, Text> {
 pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
     let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
-    let refused = || Text::new("entry.position").with("entry", text).with("last", last);
+    let refused = || TEXTS.text("entry.position").with("entry", text).with("last", last);
     let degrees = text.strip_suffix('°').or_else(|| text.strip_suffix("deg"));
     let steps = match (degrees, text.strip_prefix("0x")) {
         (Some(degrees), _) => {
@@ -83,7 +84,7 @@ pub fn settings(
     long_timeout: bool,
     bus: bool,
 ) -> Result<LineSettings, Text> {
-    let refused = || Text::new("entry.settings").with("format", format);
+    let refused = || TEXTS.text("entry.settings").with("format", format);
     Ok(from.with_format(format).ok_or_else(refused)?.with_long_timeout(long_timeout).with_bus(bus))
 }
 

@@ -1,7 +1,6 @@
 //! What the frames of the trace say: a reply is read with the request before it.
 
-use crate::app::Text;
-use crate::app::{Explained, TraceFault};
+use crate::app::{Explained, Text, TraceFault};
 use crate::devices::hiperface::procedures::Damage;
 use crate::devices::hiperface::protocol::{Answer, Frame, Reply, Request, Said, StatusCode, describe};
 use crate::devices::hiperface::state::explain as words;

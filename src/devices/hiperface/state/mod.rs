@@ -18,8 +18,11 @@ mod review;
 pub mod rules;
 mod search;
 mod staged;
+mod texts;
 mod words;
 mod write;
+
+pub use texts::TEXTS;
 
 pub use action::Action;
 pub use connect_form::{LinkForm, LinkKind};

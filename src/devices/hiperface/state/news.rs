@@ -16,12 +16,10 @@ use crate::devices::hiperface::procedures::{Error, Sample, Station};
 use crate::devices::hiperface::profile::{Item, Op};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, KIND, StatusCode};
 use crate::devices::hiperface::state::explain as explained;
-use crate::link::LinkUrl;
-use crate::link::TraceEntry;
+use crate::link::{LinkUrl, TraceEntry};
 use crate::profile::Body;
 use crate::store::Store;
-use crate::worker::OpenError;
-use crate::worker::{JobId, Session};
+use crate::worker::{JobId, OpenError, Session};
 
 impl Kind for Hiperface {
     const KIND: &'static str = KIND;

@@ -3,6 +3,8 @@
 
 use std::time::Duration;
 
+use crate::devices::hiperface::state::TEXTS;
+
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
@@ -144,9 +146,9 @@ impl Watchable for Watch {
 /// What a watched value is called.
 pub fn watch_name(what: Watch) -> Text {
     match what {
-        Watch::TEMPERATURE => Text::new("recorder.temperature"),
-        Watch::Analogue(channel) => Text::new("recorder.channel").with("channel", format!("{channel:02X}h")),
-        Watch::Counter => Text::new("recorder.counter"),
+        Watch::TEMPERATURE => TEXTS.text("recorder.temperature"),
+        Watch::Analogue(channel) => TEXTS.text("recorder.channel").with("channel", format!("{channel:02X}h")),
+        Watch::Counter => TEXTS.text("recorder.counter"),
     }
 }
 

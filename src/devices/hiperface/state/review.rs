@@ -6,6 +6,7 @@ use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared, WEAR_LIMIT};
 use crate::devices::hiperface::procedures::write::Written;
 use crate::devices::hiperface::profile::{Base, Op, RestoreOptions, UnknownField};
 use crate::devices::hiperface::protocol::CodeNumber;
+use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 use crate::profile::Plan;
 
@@ -65,7 +66,7 @@ impl Reviewed for Hiperface {
     fn questions(prepared: &Prepared) -> Vec<Question> {
         let question = |own: &UnknownField| Question {
             what: words::unknown_field(own),
-            no: Text::new("review.leave_field").with("field", own.field),
+            no: TEXTS.text("review.leave_field").with("field", own.field),
             yes: Text::new("review.copy_field").with("field", own.field),
             permit: Permit::Copy(own.field),
             is_on: own.is_copied(),
@@ -82,12 +83,13 @@ impl Reviewed for Hiperface {
                 Op::SetPosition { to, .. } => Some(*to),
                 _ => None,
             });
-            warnings.push(Text::new("review.other_position").with("wanted", wanted).with("set", set.unwrap_or(wanted)));
+            warnings
+                .push(TEXTS.text("review.other_position").with("wanted", wanted).with("set", set.unwrap_or(wanted)));
         }
         let mounting = prepared.mounting_left.iter().map(|range| explain::phrase(&range.to_string())).collect();
-        warnings.extend(review::left_alone("review.missing", &prepared.missing, mounting));
+        warnings.extend(review::left_alone(TEXTS.text("review.missing"), &prepared.missing, mounting));
         if prepared.plan.ops.iter().any(|op| matches!(op, Op::IncrementCounter { .. })) {
-            warnings.push(Text::new("review.counter"));
+            warnings.push(TEXTS.text("review.counter"));
         }
         warnings
     }
@@ -97,11 +99,11 @@ impl Reviewed for Hiperface {
         let mut codes: Vec<CodeNumber> = Vec::new();
         for op in &prepared.plan.ops {
             let need = match op {
-                Op::SetPosition { synchronise: true, .. } => Some(Text::new("review.needs_synchronise")),
-                Op::SetPosition { .. } => Some(Text::new("review.needs_standstill")),
-                Op::SetAddress { .. } => Some(Text::new("review.needs_alone")),
-                Op::Configure { .. } => Some(Text::new("review.needs_restart")),
-                Op::Define { from: Some(_), to, .. } if !to.exists() => Some(Text::new("review.needs_loss")),
+                Op::SetPosition { synchronise: true, .. } => Some(TEXTS.text("review.needs_synchronise")),
+                Op::SetPosition { .. } => Some(TEXTS.text("review.needs_standstill")),
+                Op::SetAddress { .. } => Some(TEXTS.text("review.needs_alone")),
+                Op::Configure { .. } => Some(TEXTS.text("review.needs_restart")),
+                Op::Define { from: Some(_), to, .. } if !to.exists() => Some(TEXTS.text("review.needs_loss")),
                 _ => None,
             };
             needs.extend(need.filter(|need| !needs.contains(need)));
@@ -111,12 +113,12 @@ impl Reviewed for Hiperface {
                 codes.push(status.code());
             }
             if let Op::ChangeCode { .. } = op {
-                needs.push(Text::new("review.needs_code_kept"));
+                needs.push(TEXTS.text("review.needs_code_kept"));
             }
         }
         if !codes.is_empty() {
             let numbers: Vec<String> = codes.iter().map(ToString::to_string).collect();
-            needs.push(Text::new("review.needs_code").with("codes", numbers.join(", ")));
+            needs.push(TEXTS.text("review.needs_code").with("codes", numbers.join(", ")));
         }
         needs
     }
@@ -124,8 +126,8 @@ impl Reviewed for Hiperface {
     fn cost(prepared: &Prepared) -> Text {
         let cycles = prepared.plan.write_cycles();
         match prepared.cycles_seen {
-            Some(seen) => Text::new("review.cost").with("cycles", cycles).with("seen", seen),
-            None => Text::new("review.cost_unknown").with("cycles", cycles),
+            Some(seen) => TEXTS.text("review.cost").with("cycles", cycles).with("seen", seen),
+            None => TEXTS.text("review.cost_unknown").with("cycles", cycles),
         }
     }
 

@@ -8,6 +8,7 @@ use crate::devices::hiperface::profile::{
     FieldImage, HiperfacePlan, Op, PlanError, plan_create, plan_delete, plan_redefine,
 };
 use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
+use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
 /// Whether something may be done; if not, why.
@@ -41,7 +42,7 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowe
 pub fn status(field: &FieldImage) -> Allowed {
     match field.bytes {
         Some(_) => Ok(()),
-        None => Err(Text::new("rules.code_unknown").with("field", field.number).with("number", field.status.code())),
+        None => Err(TEXTS.text("rules.code_unknown").with("field", field.number).with("number", field.status.code())),
     }
 }
 
@@ -81,7 +82,7 @@ pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
 fn edits_stay(staged: &Staged, field: u8, bytes: usize) -> Allowed {
     match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
-        count => Err(Text::new("rules.edits").with("field", field).with("count", count)),
+        count => Err(TEXTS.text("rules.edits").with("field", field).with("count", count)),
     }
 }
 

@@ -13,6 +13,7 @@ use crate::app::studio::{SessionId, Studio};
 use crate::app::{Text, explain};
 use crate::devices::hiperface::jobs::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark, may_have_other_master};
 use crate::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
+use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
 use crate::worker::{Event, Progress};
@@ -58,7 +59,7 @@ impl Search {
             Ok(opened) => {
                 let mut line = Line::new(*opened);
                 let job = HiperfaceJob::Find(self.options.clone());
-                if line.submit(job, Text::new("job.find"), false, services.now()).is_err() {
+                if line.submit(job, TEXTS.text("job.find"), false, services.now()).is_err() {
                     self.end = Some(Text::new("session.ended"));
                 }
                 self.line = Some(line);
@@ -96,12 +97,12 @@ impl Search {
                     (false, true) => "find.done",
                     (_, false) => "find.cut_short",
                 };
-                let text = Text::new(id).with("count", found.len());
+                let text = TEXTS.text(id).with("count", found.len());
                 self.found = found;
                 text
             }
             HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => {
-                Text::new("find.foreign_traffic").with("bytes", bytes)
+                TEXTS.text("find.foreign_traffic").with("bytes", bytes)
             }
             _ => Text::new("session.ended"),
         });
@@ -111,7 +112,7 @@ impl Search {
         match &mut self.line {
             Some(line) => line.stop(),
             // The link is still being opened, which may take for ever.
-            None => self.end = Some(Text::new("find.cut_short").with("count", 0)),
+            None => self.end = Some(TEXTS.text("find.cut_short").with("count", 0)),
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::app::{Text, explain};
 use crate::bits::hex;
 use crate::devices::hiperface::jobs::HiperfaceJob;
+use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
 /// What it is called in the list of jobs.
@@ -11,16 +12,16 @@ pub(super) fn job(job: &HiperfaceJob) -> Text {
         HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),
         HiperfaceJob::Status => Text::new("job.status"),
         HiperfaceJob::Position(_) => Text::new("job.position"),
-        HiperfaceJob::Rest => Text::new("job.rest"),
+        HiperfaceJob::Rest => TEXTS.text("job.rest"),
         HiperfaceJob::Read(item) => Text::new("job.read").with_text("item", explain::phrase(&item.to_string())),
         HiperfaceJob::Save(_) => Text::new("job.save"),
         HiperfaceJob::Check { .. } => Text::new("job.check"),
-        HiperfaceJob::Reset => Text::new("job.reset"),
-        HiperfaceJob::Find(_) => Text::new("job.find"),
+        HiperfaceJob::Reset => TEXTS.text("job.reset"),
+        HiperfaceJob::Find(_) => TEXTS.text("job.find"),
         HiperfaceJob::ConfigureForNow(settings) => {
-            Text::new("job.configure_for_now").with("settings", hex(&[settings.byte()]))
+            TEXTS.text("job.configure_for_now").with("settings", hex(&[settings.byte()]))
         }
-        HiperfaceJob::UseCode { number, .. } => Text::new("job.use_code").with("number", number),
+        HiperfaceJob::UseCode { number, .. } => TEXTS.text("job.use_code").with("number", number),
         HiperfaceJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
         HiperfaceJob::Commit(_) => Text::new("job.write"),
     }

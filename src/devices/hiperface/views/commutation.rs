@@ -9,7 +9,8 @@ use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
     Action as Assistant, Form, Slot, Source, Vector, kind_words, may_read,
 };
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder};
+use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS};
+use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, labelled_entry, paragraph, row, split, text_entry,
     verdict_ui,
@@ -69,22 +70,22 @@ fn ask(encoder: &Encoder, action: Assistant) -> Action {
 }
 
 fn before(ui: &mut Ui, skin: &Skin, form: &mut Form) {
-    card(ui, skin, "commutation.before", |ui| {
+    card(ui, skin, TEXTS.text("commutation.before"), |ui| {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-            paragraph(ui, RichText::new(skin.say("commutation.danger")).color(skin.palette.warn));
+            paragraph(ui, RichText::new(say(skin, "commutation.danger")).color(skin.palette.warn));
         });
-        ui.checkbox(&mut form.disabled, skin.say("commutation.disabled"));
-        ui.checkbox(&mut form.uncoupled, skin.say("commutation.uncoupled"));
-        ui.checkbox(&mut form.released, skin.say("commutation.released"));
+        ui.checkbox(&mut form.disabled, say(skin, "commutation.disabled"));
+        ui.checkbox(&mut form.uncoupled, say(skin, "commutation.uncoupled"));
+        ui.checkbox(&mut form.released, say(skin, "commutation.released"));
         let (current, time) = form.limit_problems();
         number(ui, skin, "commutation.current", &mut form.current_a, "");
         problem_ui(ui, skin, current.as_ref());
         number(ui, skin, "commutation.time", &mut form.time_s, "");
         problem_ui(ui, skin, time.as_ref());
-        entry(ui, skin, &skin.say("commutation.vector"), |ui| {
-            let vectors = Vector::ALL.map(|vector| (vector, skin.say(vector.word())));
-            choice(ui, &skin.say("commutation.vector"), &mut form.vector, vectors);
+        entry(ui, skin, &say(skin, "commutation.vector"), |ui| {
+            let vectors = Vector::ALL.map(|vector| (vector, say(skin, vector.word())));
+            choice(ui, &say(skin, "commutation.vector"), &mut form.vector, vectors);
         });
         if form.vector == Vector::Other {
             number(ui, skin, "commutation.vector_angle", &mut form.vector_deg, "0");
@@ -100,32 +101,32 @@ fn problem_ui(ui: &mut Ui, skin: &Skin, problem: Option<&Text>) {
 }
 
 fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form) {
-    card(ui, skin, "commutation.motor", |ui| {
+    card(ui, skin, TEXTS.text("commutation.motor"), |ui| {
         number(ui, skin, "commutation.pole_pairs", &mut form.pole_pairs, "");
         let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
         number(ui, skin, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
         if let Some(words) = form.other_periods(encoder.geometry()) {
             verdict_ui(ui, skin, Verdict::Warn, &words);
         }
-        entry(ui, skin, &skin.say("commutation.direction"), |ui| {
+        entry(ui, skin, &say(skin, "commutation.direction"), |ui| {
             let directions = [(false, "commutation.with"), (true, "commutation.against")];
-            let directions = directions.map(|(reversed, id)| (reversed, skin.say(id)));
-            choice(ui, &skin.say("commutation.direction"), &mut form.reversed, directions);
+            let directions = directions.map(|(reversed, id)| (reversed, say(skin, id)));
+            choice(ui, &say(skin, "commutation.direction"), &mut form.reversed, directions);
         });
-        entry(ui, skin, &skin.say("commutation.source"), |ui| {
+        entry(ui, skin, &say(skin, "commutation.source"), |ui| {
             let sources = [
                 (Source::Signals, "commutation.from_signals"),
                 (Source::Typed, "commutation.from_typed"),
                 (Source::Absolute, "commutation.from_absolute"),
             ];
-            let sources = sources.map(|(source, id)| (source, skin.say(id)));
-            choice(ui, &skin.say("commutation.source"), &mut form.source, sources);
+            let sources = sources.map(|(source, id)| (source, say(skin, id)));
+            choice(ui, &say(skin, "commutation.source"), &mut form.source, sources);
         });
         if form.source == Source::Typed {
             number(ui, skin, "commutation.phase", &mut form.phase, &skin.number(0.0, 4));
         }
         let limit = number(ui, skin, "commutation.limit", &mut form.limit_deg, "5");
-        limit.on_hover_text(skin.say("commutation.limit_hint"));
+        limit.on_hover_text(say(skin, "commutation.limit_hint"));
         if let Err(why) = form.inputs(encoder.geometry()) {
             paragraph(ui, skin.label(skin.words(&why)));
         }
@@ -133,7 +134,7 @@ fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form) {
 }
 
 fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
-    labelled_entry(ui, skin, id, text, NUMBER, hint)
+    labelled_entry(ui, skin, TEXTS.text(id), text, NUMBER, hint)
 }
 
 fn rest(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
@@ -141,22 +142,22 @@ fn rest(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &
     let any = Slot::ALL.into_iter().any(|slot| commutation.reading(slot).is_some());
     let mut clear = false;
     let aside = |ui: &mut Ui| {
-        clear = icon_button(ui, any, icons::TRASH, &skin.say("commutation.clear")).clicked();
+        clear = icon_button(ui, any, icons::TRASH, &say(skin, "commutation.clear")).clicked();
     };
-    card_with(ui, skin, "commutation.rest", aside, |ui| {
-        paragraph(ui, skin.label(skin.say("commutation.rest_words")));
+    card_with(ui, skin, TEXTS.text("commutation.rest"), aside, |ui| {
+        paragraph(ui, skin.label(say(skin, "commutation.rest_words")));
         let [one, other, _] = &mut form.typed;
         slot(ui, skin, encoder, Slot::OneSide, one, actions);
         slot(ui, skin, encoder, Slot::OtherSide, other, actions);
         match commutation.offset(encoder.geometry()) {
             Ok(offset) => {
                 if let Some(apart) = offset.apart_deg {
-                    let text = Text::new("commutation.apart_value").with_number("apart", apart, 2);
-                    row(ui, skin, &skin.say("commutation.apart"), skin.mono(skin.words(&text)));
+                    let text = TEXTS.text("commutation.apart_value").with_number("apart", apart, 2);
+                    row(ui, skin, &say(skin, "commutation.apart"), skin.mono(skin.words(&text)));
                 }
-                row(ui, skin, &skin.say("commutation.mean"), skin.mono(skin.number(offset.fine_periods, 5)));
+                row(ui, skin, &say(skin, "commutation.mean"), skin.mono(skin.number(offset.fine_periods, 5)));
                 if offset.apart_deg.is_none() {
-                    verdict_ui(ui, skin, Verdict::Warn, &Text::new("commutation.only_one_side"));
+                    verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.only_one_side"));
                 }
             }
             Err(why) if any => {
@@ -172,8 +173,8 @@ fn rest(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &
 }
 
 fn second(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, skin, "commutation.second", |ui| {
-        paragraph(ui, skin.label(skin.say("commutation.second_words")));
+    card(ui, skin, TEXTS.text("commutation.second"), |ui| {
+        paragraph(ui, skin.label(say(skin, "commutation.second_words")));
         number(ui, skin, "commutation.second_angle", &mut form.second_deg, "90");
         let [_, _, typed] = &mut form.typed;
         slot(ui, skin, encoder, Slot::Second, typed, actions);
@@ -199,7 +200,7 @@ fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut Str
         Some(reading) => skin.mono(skin.number(reading.fine_periods, 5)),
         None => skin.mono("–").color(skin.palette.muted),
     };
-    row(ui, skin, &skin.say(slot.word()), shown);
+    row(ui, skin, &say(skin, slot.word()), shown);
     if let Some(reading) = reading {
         ui.label(skin.caption(skin.words(&kind_words(reading))));
     }
@@ -209,16 +210,16 @@ fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut Str
         let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_min_width(size.x);
-            if allowed_button(ui, skin, &allowed, icons::CROSSHAIR, &skin.say(read)).clicked() {
+            if allowed_button(ui, skin, &allowed, icons::CROSSHAIR, &say(skin, read)).clicked() {
                 actions.push(ask(encoder, Assistant::Read(slot)));
             }
         });
         // What is typed for one place has to be told from what is typed for another.
-        let label = format!("{} · {}", skin.say(slot.word()), skin.say("commutation.fine"));
-        let response = text_entry(ui, typed, POSITION, &label, &skin.say("commutation.or_type"));
+        let label = format!("{} · {}", say(skin, slot.word()), say(skin, "commutation.fine"));
+        let response = text_entry(ui, typed, POSITION, &label, &say(skin, "commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let filled = !typed.trim().is_empty();
-        if icon_button(ui, filled, icons::CHECK, &skin.say(take)).clicked() || (enter && filled) {
+        if icon_button(ui, filled, icons::CHECK, &say(skin, take)).clicked() || (enter && filled) {
             actions.push(ask(encoder, Assistant::Use(slot)));
         }
     });

@@ -2,10 +2,13 @@
 
 use std::time::Duration;
 
+use crate::devices::hiperface::state::TEXTS;
+use crate::devices::hiperface::views::say;
+
 use egui::Ui;
 
+use crate::app::Action;
 use crate::app::connect::{Action as Connect, Connect as Dialog};
-use crate::app::{Action, Text};
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
@@ -76,7 +79,7 @@ fn kinds(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
             (LinkKind::Replay, "connect.replay"),
         ];
         for (kind, id) in kinds {
-            let word = skin.say(id);
+            let word = say(skin, id);
             let response = ui.add(egui::Button::selectable(form.kind == kind, &word));
             if name(response, true, &word).clicked() {
                 form.kind = kind;
@@ -86,10 +89,10 @@ fn kinds(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
 }
 
 fn simulated(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
-    entry(ui, skin, &skin.say("connect.model"), |ui| {
+    entry(ui, skin, &say(skin, "connect.model"), |ui| {
         let mut at = LinkForm::models().position(|model| model == form.model).unwrap_or(0);
         let models = LinkForm::models().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
-        if choice(ui, &skin.say("connect.model"), &mut at, models)
+        if choice(ui, &say(skin, "connect.model"), &mut at, models)
             && let Some(model) = LinkForm::models().nth(at)
         {
             model.clone_into(&mut form.model);
@@ -107,8 +110,8 @@ fn line(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
         choice(ui, &skin.say("settings_card.baud"), &mut form.baud, bauds);
         parity(ui, skin, &mut form.parity);
     });
-    entry(ui, skin, &skin.say("connect.address"), |ui| {
-        text_entry(ui, &mut form.address, 96.0, &skin.say("connect.address"), "40");
+    entry(ui, skin, &say(skin, "connect.address"), |ui| {
+        text_entry(ui, &mut form.address, 96.0, &say(skin, "connect.address"), "40");
     });
 }
 
@@ -118,16 +121,16 @@ fn more(ui: &mut Ui, skin: &Skin, form: &mut LinkForm, open: &mut bool) {
         return;
     }
     echo(ui, skin, &mut form.echo);
-    entry(ui, skin, &skin.say("settings_card.timeout"), |ui| {
+    entry(ui, skin, &say(skin, "settings_card.timeout"), |ui| {
         let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
-        let times = times.map(|(long, id)| (long, skin.say(id)));
-        choice(ui, &skin.say("settings_card.timeout"), &mut form.long_timeout, times);
+        let times = times.map(|(long, id)| (long, say(skin, id)));
+        choice(ui, &say(skin, "settings_card.timeout"), &mut form.long_timeout, times);
     });
     margin(ui, skin, &mut form.margin);
-    entry(ui, skin, &skin.say("connect.periods"), |ui| {
-        text_entry(ui, &mut form.periods, 72.0, &skin.say("connect.periods"), "128");
-        ui.label(skin.label(skin.say("connect.turns")));
-        text_entry(ui, &mut form.turns, 72.0, &skin.say("connect.turns"), "4096");
+    entry(ui, skin, &say(skin, "connect.periods"), |ui| {
+        text_entry(ui, &mut form.periods, 72.0, &say(skin, "connect.periods"), "128");
+        ui.label(skin.label(say(skin, "connect.turns")));
+        text_entry(ui, &mut form.turns, 72.0, &say(skin, "connect.turns"), "4096");
     });
 }
 
@@ -135,17 +138,17 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, acti
     let running = dialog.search.as_ref().is_some_and(Search::is_running);
     skin.card().show(ui, |ui| {
         fill(ui);
-        ui.label(skin.heading(skin.say("find.title")));
-        paragraph(ui, skin.label(skin.say("find.words")));
+        ui.label(skin.heading(say(skin, "find.title")));
+        paragraph(ui, skin.label(say(skin, "find.words")));
         ui.add_enabled_ui(!running, |ui| {
-            ui.checkbox(&mut view.one_encoder, skin.say("find.one_encoder"));
+            ui.checkbox(&mut view.one_encoder, say(skin, "find.one_encoder"));
             ui.add_enabled_ui(view.one_encoder, |ui| {
-                ui.checkbox(&mut view.power_cycle, skin.say("find.power_cycle"));
+                ui.checkbox(&mut view.power_cycle, say(skin, "find.power_cycle"));
             });
         });
         ui.horizontal(|ui| {
             if running {
-                if button(ui, icons::X, &skin.say("find.stop")).clicked() {
+                if button(ui, icons::X, &say(skin, "find.stop")).clicked() {
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
                 spinner(ui, skin);
@@ -154,7 +157,7 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, acti
                 skin,
                 &dialog.url().map(drop),
                 icons::MAGNIFYING_GLASS,
-                &skin.say("find.start"),
+                &say(skin, "find.start"),
             )
             .clicked()
             {
@@ -177,12 +180,12 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, acti
 fn found(ui: &mut Ui, skin: &Skin, search: &Search, actions: &mut Vec<Action>) {
     for (at, found) in search.found.iter().enumerate() {
         ui.horizontal(|ui| {
-            let word = Text::new("find.choose").with("address", format!("{:02X}h", found.address));
+            let word = TEXTS.text("find.choose").with("address", format!("{:02X}h", found.address));
             if button(ui, icons::PLUGS_CONNECTED, &skin.words(&word)).clicked() {
                 actions.push(Action::Connect(Connect::Choose(at)));
             }
-            let talking = Text::new("find.talking").with("format", found.format);
-            let stored = Text::new("find.stored").with_text("settings", words::line_settings(found.label.settings));
+            let talking = TEXTS.text("find.talking").with("format", found.format);
+            let stored = TEXTS.text("find.stored").with_text("settings", words::line_settings(found.label.settings));
             ui.label(skin.words(&talking));
             ui.label(skin.label(skin.words(&stored)));
         });

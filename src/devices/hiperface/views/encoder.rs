@@ -1,13 +1,13 @@
 //! Who the encoder is, what its error queue says, the device check, the extended label, the wiring.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::wiring;
-use crate::app::Action;
+use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperface::procedures::Identity;
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder};
+use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS};
+use crate::devices::hiperface::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
@@ -48,14 +48,15 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
         facts(ui, skin, identity);
         if let Some(memory) = identity.memory {
             let id = if memory.fields == 1 { "encoder_card.memory_one" } else { "encoder_card.memory_words" };
-            let text = crate::app::Text::new(id)
+            let text = TEXTS
+                .text(id)
                 .with("total", identity.label.eeprom_bytes())
                 .with("free", memory.bytes())
                 .with("fields", memory.fields);
-            row(ui, skin, &skin.say("encoder_card.memory"), skin.words(&text));
+            row(ui, skin, &say(skin, "encoder_card.memory"), skin.words(&text));
         } else {
             let total = format!("{} B", identity.label.eeprom_bytes());
-            row(ui, skin, &skin.say("encoder_card.memory"), skin.mono(total));
+            row(ui, skin, &say(skin, "encoder_card.memory"), skin.mono(total));
         }
         line_quality(ui, skin, encoder);
     });
@@ -69,7 +70,7 @@ fn line_quality(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     let quality = &encoder.line_quality;
     let words = RichText::new(skin.words(&words::line_quality(quality)));
     let words = if quality.is_troubled() { words.color(skin.palette.warn) } else { words };
-    row(ui, skin, &skin.say("encoder_card.line"), words);
+    row(ui, skin, &say(skin, "encoder_card.line"), words);
 }
 
 fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
@@ -77,17 +78,17 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
     let or_none = |text: &str| if text.is_empty() { none() } else { text.to_owned() };
     let serial = &identity.serial;
     row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(&serial.serial_number)));
-    row(ui, skin, &skin.say("encoder_card.type"), skin.mono(format!("{:02X}h", identity.label.encoder_type)));
+    row(ui, skin, &say(skin, "encoder_card.type"), skin.mono(format!("{:02X}h", identity.label.encoder_type)));
     let resolution = match identity.geometry {
         Some(geometry) => skin.words(&words::geometry(geometry)),
-        None => skin.say("encoder_card.no_geometry"),
+        None => say(skin, "encoder_card.no_geometry"),
     };
-    row(ui, skin, &skin.say("encoder_card.resolution"), resolution);
+    row(ui, skin, &say(skin, "encoder_card.resolution"), resolution);
     let firmware = format!("{}  {}", serial.firmware_version, serial.firmware_date);
     row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware.trim())));
-    row(ui, skin, &skin.say("encoder_card.address"), skin.mono(format!("{:02X}h", identity.address)));
-    row(ui, skin, &skin.say("encoder_card.settings"), skin.words(&words::line_settings(identity.label.settings)));
-    row(ui, skin, &skin.say("encoder_card.options"), skin.mono(format!("{:02X}h", identity.label.options)));
+    row(ui, skin, &say(skin, "encoder_card.address"), skin.mono(format!("{:02X}h", identity.address)));
+    row(ui, skin, &say(skin, "encoder_card.settings"), skin.words(&words::line_settings(identity.label.settings)));
+    row(ui, skin, &say(skin, "encoder_card.options"), skin.mono(format!("{:02X}h", identity.label.options)));
 }
 
 fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -101,12 +102,12 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
     let palette = skin.palette;
     card_with(ui, skin, "status_card.title", read, |ui| match &encoder.codes {
         None => {
-            ui.label(skin.label(skin.say("status_card.nothing")));
+            ui.label(skin.label(say(skin, "status_card.nothing")));
         }
         Some(codes) if codes.is_empty() => {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).color(palette.good));
-                ui.label(skin.say("status_card.good"));
+                ui.label(say(skin, "status_card.good"));
             });
         }
         Some(codes) => {
@@ -119,7 +120,7 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
                     ui.add(egui::Label::new(skin.words(&words::status(*code))).wrap().selectable(true));
                 });
             }
-            ui.label(skin.caption(skin.say("status_card.queue")));
+            ui.label(skin.caption(say(skin, "status_card.queue")));
         }
     });
 }
@@ -127,9 +128,9 @@ fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
 fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
     card(ui, skin, "check_card.title", |ui| {
         let lines = encoder.check.as_deref().map(words::check);
-        lines_ui(ui, skin, lines.as_deref(), "check_card.nothing");
+        lines_ui(ui, skin, lines.as_deref(), TEXTS.text("check_card.nothing"));
         ui.add_space(skin.space.between);
-        ui.checkbox(restart, skin.say("check_card.restart"));
+        ui.checkbox(restart, say(skin, "check_card.restart"));
         if enabled_button(ui, encoder.session.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Hiperface::Check { restart: *restart }));
         }
@@ -139,7 +140,7 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, restart: &mut bool, action
 fn extended_label(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
     ui.add_space(skin.space.groups);
-    card(ui, skin, "label_card.title", |ui| {
+    card(ui, skin, TEXTS.text("label_card.title"), |ui| {
         for part in words::label(bytes) {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().interact_size.y = 18.0;

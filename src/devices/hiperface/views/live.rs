@@ -5,6 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Rgb};
 use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::state::{self, Action as Hiperface, Encoder};
+use crate::devices::hiperface::views::say;
 use crate::ui::controls::{enabled_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::panels::live::{LOW, mark};
 use crate::ui::{Skin, icons};
@@ -19,7 +20,7 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
             (number(position.millimetres().unwrap_or_default(), 4), "mm".to_owned())
         }
         (_, Some(position)) => (number(position.degrees().unwrap_or_default(), 3), "°".to_owned()),
-        (Some(reading), None) => (reading.raw.to_string(), skin.say("live.steps")),
+        (Some(reading), None) => (reading.raw.to_string(), say(skin, "live.steps")),
         (None, None) => ("–".to_owned(), String::new()),
     };
     ui.horizontal(|ui| {
@@ -56,7 +57,7 @@ pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, channel: &
     icon_menu(ui, icons::EYE, &word, |ui| {
         ui.set_max_width(240.0);
         ui.label(skin.heading(&word));
-        paragraph(ui, skin.caption(skin.say("live.watch_words")));
+        paragraph(ui, skin.caption(say(skin, "live.watch_words")));
         let usual = [Watch::TEMPERATURE, Watch::Counter];
         let more = watched.iter().copied().filter(|own| !usual.contains(own));
         for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
@@ -66,10 +67,10 @@ pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, channel: &
             }
         }
         ui.horizontal(|ui| {
-            ui.label(skin.label(skin.say("analogue_card.channel")));
-            text_entry(ui, channel, 48.0, &skin.say("analogue_card.channel"), "48");
+            ui.label(skin.label(say(skin, "analogue_card.channel")));
+            text_entry(ui, channel, 48.0, &say(skin, "analogue_card.channel"), "48");
             let entered = state::forms::channel(channel);
-            if enabled_button(ui, entered.is_ok(), icons::PLUS, &skin.say("live.watch_add")).clicked()
+            if enabled_button(ui, entered.is_ok(), icons::PLUS, &say(skin, "live.watch_add")).clicked()
                 && let Ok(channel) = entered
             {
                 actions.push(Action::device(encoder.session.id, Hiperface::Watch(Watch::Analogue(channel), true)));

@@ -1,16 +1,16 @@
 //! The encoder's memory: the map of its data fields, what can be done with each, the bytes of the one that is selected,
 //! what they mean, and the way to write the edits.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Studio, Text};
+use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, Staged, forms, rules};
+use crate::devices::hiperface::state::{Action as Hiperface, Encoder, Staged, TEXTS, forms, rules};
+use crate::devices::hiperface::views::say;
 use crate::ui::controls::{allowed_button, choice, empty, name, paragraph};
 use crate::ui::widgets::{
     FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, typed_view,
@@ -53,7 +53,7 @@ pub(super) fn page_ui(
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
         let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
-        if empty(ui, skin, &skin.say("memory.nothing"), Some((read.0, &read.1, read.2))) {
+        if empty(ui, skin, &say(skin, "memory.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
@@ -68,7 +68,7 @@ pub(super) fn page_ui(
         (Some(field), _) => field_ui(ui, skin, encoder, field, memory, view, actions),
         (None, Some(memory)) => create(ui, skin, encoder, memory, view, actions),
         (None, None) => {
-            ui.label(skin.label(skin.say("memory.no_fields")));
+            ui.label(skin.label(say(skin, "memory.no_fields")));
         }
     }
 }
@@ -86,7 +86,7 @@ fn map(
         .iter()
         .map(|field| {
             let status = skin.words(&words::field_status(field.status));
-            let label = Text::new("memory.field").with("number", field.number);
+            let label = TEXTS.text("memory.field").with("number", field.number);
             MapField {
                 number: field.number,
                 blocks: usize::from(field.status.size().blocks()),
@@ -106,7 +106,7 @@ fn map(
     let a_line = (ui.available_width() / 48.0) as usize;
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
     let selected = (!view.free).then_some(view.field);
-    let free = skin.words(&Text::new("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
+    let free = skin.words(&TEXTS.text("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
     let last = wanted.last().filter(|_| encoder.session.is_ready());
     let resize = last.zip(memory).map(|(last, memory)| {
         let largest = rules::largest(memory, last);
@@ -117,14 +117,14 @@ fn map(
         free_blocks: shown_free,
         selected,
         free_label: &free,
-        free_tooltip: &skin.say("memory.free_hint"),
+        free_tooltip: &say(skin, "memory.free_hint"),
         block_bytes: FieldSize::BLOCK,
         resize,
     };
     let event = field_map(ui, skin, &model);
     let sizes = fields.iter().map(|field| field.blocks * FieldSize::BLOCK).sum::<usize>();
     let id = if fields.len() == 1 { "memory.used_one" } else { "memory.used" };
-    let used = Text::new(id).with("fields", fields.len()).with("used", sizes);
+    let used = TEXTS.text(id).with("fields", fields.len()).with("used", sizes);
     let words = if memory.is_some() { format!("{} · {free}", skin.words(&used)) } else { skin.words(&used) };
     ui.label(skin.caption(words));
     match event {
@@ -177,7 +177,7 @@ fn field_ui(
     let beside = ui.available_width() >= 820.0;
     let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
     let model = HexModel { device: &device, wanted: bytes, marks: &marks, read_only: read_only.as_ref(), lines };
-    let label = skin.words(&Text::new("memory.bytes").with("number", field.number));
+    let label = skin.words(&TEXTS.text("memory.bytes").with("number", field.number));
     let mut edits = Vec::new();
     if beside {
         ui.horizontal_top(|ui| {
@@ -191,7 +191,7 @@ fn field_ui(
             ui.add_space(skin.space.inside);
             edits = hex_editor(ui, skin, &label, &model, &mut view.hex);
             if let [mark, ..] = marks.as_slice() {
-                let text = Text::new("memory.mounting").with("what", mark.words);
+                let text = TEXTS.text("memory.mounting").with("what", mark.words);
                 ui.label(skin.caption(skin.words(&text)));
             }
             ui.add_space(skin.space.between);
@@ -225,7 +225,7 @@ fn field_head(
 ) {
     let mut change = None;
     ui.horizontal(|ui| {
-        ui.label(skin.heading(skin.words(&Text::new("memory.field").with("number", field.number))));
+        ui.label(skin.heading(skin.words(&TEXTS.text("memory.field").with("number", field.number))));
         ui.label(skin.label(skin.words(&words::field_status(field.status))));
     });
     let Some(memory) = memory else { return };
@@ -234,14 +234,14 @@ fn field_head(
         let lock = field.status.is_writable();
         let (icon, word) =
             if lock { (icons::LOCK_SIMPLE, "memory.lock") } else { (icons::LOCK_SIMPLE_OPEN, "memory.unlock") };
-        if allowed_button(ui, skin, &ready().and_then(|()| rules::status(field)), icon, &skin.say(word)).clicked() {
+        if allowed_button(ui, skin, &ready().and_then(|()| rules::status(field)), icon, &say(skin, word)).clicked() {
             change = Some(Change::LockField { number: field.number, lock });
         }
         code_menu(ui, skin, &ready().and_then(|()| rules::status(field)), field, &mut change);
         let resizable = ready().and_then(|()| rules::resizable(memory, field));
         size_menu(ui, skin, &resizable, memory, (field, &encoder.staged), &mut change);
         let deletable = ready().and_then(|()| rules::delete(memory, field, &encoder.staged));
-        if allowed_button(ui, skin, &deletable, icons::TRASH, &skin.say("memory.delete")).clicked() {
+        if allowed_button(ui, skin, &deletable, icons::TRASH, &say(skin, "memory.delete")).clicked() {
             change = Some(Change::DeleteField { number: field.number });
         }
     });
@@ -249,13 +249,13 @@ fn field_head(
 }
 
 fn code_menu(ui: &mut Ui, skin: &Skin, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
-    let word = skin.say("memory.code");
+    let word = say(skin, "memory.code");
     ui.add_enabled_ui(allowed.is_ok(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::KEY), |ui| {
             for code in CodeNumber::all() {
                 for required in [true, false] {
                     let id = if required { "memory.code_required" } else { "memory.code_free" };
-                    let words = skin.words(&Text::new(id).with("number", code));
+                    let words = skin.words(&TEXTS.text(id).with("number", code));
                     let is_own = field.status.code() == code && field.status.code_required() == required;
                     if ui.selectable_label(is_own, words).clicked() {
                         let status = field.status.with_code(code, required);
@@ -277,7 +277,7 @@ fn size_menu(
     (field, staged): (&FieldImage, &Staged),
     change: &mut Option<Change>,
 ) {
-    let word = skin.say("memory.resize");
+    let word = say(skin, "memory.resize");
     if allowed.is_err() {
         allowed_button(ui, skin, allowed, icons::ARROWS_OUT_LINE_HORIZONTAL, &word);
         return;
@@ -302,23 +302,23 @@ fn size_menu(
 
 /// A new field in the free memory.
 fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view: &mut View, actions: &mut Vec<Action>) {
-    ui.label(skin.heading(skin.words(&Text::new("memory.create_title").with("number", memory.fields))));
-    ui.label(skin.label(skin.say("memory.create_words")));
+    ui.label(skin.heading(skin.words(&TEXTS.text("memory.create_title").with("number", memory.fields))));
+    ui.label(skin.label(say(skin, "memory.create_words")));
     ui.add_space(skin.space.inside);
     ui.horizontal_wrapped(|ui| {
-        ui.label(skin.label(skin.say("memory.size")));
+        ui.label(skin.label(say(skin, "memory.size")));
         let sizes = FieldSize::all().map(|size| (size, format!("{} B", size.bytes())));
-        choice(ui, &skin.say("memory.size"), &mut view.size, sizes);
-        ui.label(skin.label(skin.say("memory.code")));
+        choice(ui, &say(skin, "memory.size"), &mut view.size, sizes);
+        ui.label(skin.label(say(skin, "memory.code")));
         let codes = CodeNumber::all().map(|code| (code, code.to_string()));
-        choice(ui, &skin.say("memory.code"), &mut view.code, codes);
-        ui.checkbox(&mut view.code_required, skin.say("memory.required"));
+        choice(ui, &say(skin, "memory.code"), &mut view.code, codes);
+        ui.checkbox(&mut view.code_required, say(skin, "memory.required"));
         let allowed = if encoder.session.is_ready() {
             rules::create(memory, view.size, view.code, view.code_required)
         } else {
             Err(Text::new("session.not_ready"))
         };
-        if allowed_button(ui, skin, &allowed, icons::PLUS, &skin.say("memory.create")).clicked() {
+        if allowed_button(ui, skin, &allowed, icons::PLUS, &say(skin, "memory.create")).clicked() {
             let status = forms::new_field(view.size, view.code, view.code_required);
             let change = Change::CreateField { number: memory.fields, status };
             actions.push(Action::device(encoder.session.id, Hiperface::Plan(change)));

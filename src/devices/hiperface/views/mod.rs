@@ -12,7 +12,7 @@ mod wiring;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio};
-use crate::devices::hiperface::state::Encoder;
+use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page};
 
@@ -134,4 +134,9 @@ impl TypedDeviceView for HiperfaceView {
     fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
         live::watch_menu(ui, skin, encoder, &mut view.channel, actions);
     }
+}
+
+/// A text of this folder's catalogue, or a common one, in the window's language.
+pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
+    skin.words(&TEXTS.text(id))
 }

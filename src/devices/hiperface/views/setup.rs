@@ -7,7 +7,8 @@ use crate::app::{Action, Text, explain};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::protocol::{BAUDS, CodeNumber, LineSettings};
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, forms};
+use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS, forms};
+use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
     card, choice, enabled_button, entry, forget_secret, paragraph, problem, row, secret_entry, text_entry, two_columns,
 };
@@ -76,24 +77,25 @@ fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Te
 fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     let geometry = encoder.identity.as_ref().and_then(|identity| identity.geometry);
     let kit = encoder.identity.as_ref().and_then(|identity| identity.kit);
-    card(ui, skin, "position_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("position_card.words")));
-        entry(ui, skin, &skin.say("position_card.wanted"), |ui| {
-            let hint = skin.say("position_card.hint");
-            text_entry(ui, &mut view.position, 168.0, &skin.say("position_card.wanted"), &hint);
+    card(ui, skin, TEXTS.text("position_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "position_card.words")));
+        entry(ui, skin, &say(skin, "position_card.wanted"), |ui| {
+            let hint = say(skin, "position_card.hint");
+            text_entry(ui, &mut view.position, 168.0, &say(skin, "position_card.wanted"), &hint);
         });
-        ui.checkbox(&mut view.exact, skin.say("position_card.exact"))
-            .on_hover_text(skin.say("position_card.exact_hint"));
-        let hint = skin.say("position_card.synchronise_hint");
+        ui.checkbox(&mut view.exact, say(skin, "position_card.exact"))
+            .on_hover_text(say(skin, "position_card.exact_hint"));
+        let hint = say(skin, "position_card.synchronise_hint");
         ui.add_enabled_ui(kit != Some(false), |ui| {
-            ui.checkbox(&mut view.synchronise, skin.say("position_card.synchronise"))
+            ui.checkbox(&mut view.synchronise, say(skin, "position_card.synchronise"))
                 .on_hover_text(&hint)
                 .on_disabled_hover_text(&hint);
         });
         if view.synchronise && kit.is_none() {
-            ui.checkbox(&mut view.kit, skin.say("position_card.kit"));
+            ui.checkbox(&mut view.kit, say(skin, "position_card.kit"));
         }
-        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &skin.say("position_card.plan")).clicked() {
+        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &say(skin, "position_card.plan")).clicked()
+        {
             let wanted = forms::position(&view.position, geometry);
             let (exact, kit) = (view.exact, view.kit);
             let synchronise = view.synchronise && encoder.identity.as_ref().is_some_and(|own| own.kit != Some(false));
@@ -103,10 +105,10 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         problem(ui, skin, view.position_problem.as_ref());
         if let Some((from, to)) = encoder.position_set {
             let steps = i64::from(from) - i64::from(to);
-            let text = Text::new("position_card.last").with("from", from).with("to", to);
+            let text = TEXTS.text("position_card.last").with("from", from).with("to", to);
             ui.horizontal_wrapped(|ui| {
                 ui.label(skin.label(skin.words(&text)));
-                let undo = skin.say("position_card.undo");
+                let undo = say(skin, "position_card.undo");
                 if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
                     actions.push(Action::device(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
                 }
@@ -116,17 +118,17 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
 }
 
 fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, "codes_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("codes_card.words")));
-        entry(ui, skin, &skin.say("codes_card.number"), |ui| {
+    card(ui, skin, TEXTS.text("codes_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "codes_card.words")));
+        entry(ui, skin, &say(skin, "codes_card.number"), |ui| {
             let numbers = CodeNumber::all().map(|number| (number, number.to_string()));
-            choice(ui, &skin.say("codes_card.number"), &mut view.code_number, numbers);
+            choice(ui, &say(skin, "codes_card.number"), &mut view.code_number, numbers);
         });
         let number = view.code_number;
         let ready = encoder.session.is_ready();
-        entry(ui, skin, &skin.say("codes_card.known"), |ui| {
-            let response = secret_entry(ui, &mut view.code, 64.0, &skin.say("codes_card.known"));
-            if enabled_button(ui, ready, icons::KEY, &skin.say("codes_card.use")).clicked() {
+        entry(ui, skin, &say(skin, "codes_card.known"), |ui| {
+            let response = secret_entry(ui, &mut view.code, 64.0, &say(skin, "codes_card.known"));
+            if enabled_button(ui, ready, icons::KEY, &say(skin, "codes_card.use")).clicked() {
                 let code = forms::access_code(&view.code);
                 forget_secret(ui, &response, &mut view.code);
                 match code {
@@ -138,12 +140,12 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                 }
             }
         });
-        let new = entry(ui, skin, &skin.say("codes_card.new"), |ui| {
-            secret_entry(ui, &mut view.new_code, 64.0, &skin.say("codes_card.new"))
+        let new = entry(ui, skin, &say(skin, "codes_card.new"), |ui| {
+            secret_entry(ui, &mut view.new_code, 64.0, &say(skin, "codes_card.new"))
         });
-        entry(ui, skin, &skin.say("codes_card.again"), |ui| {
-            let again = secret_entry(ui, &mut view.new_again, 64.0, &skin.say("codes_card.again"));
-            if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &skin.say("codes_card.change")).clicked() {
+        entry(ui, skin, &say(skin, "codes_card.again"), |ui| {
+            let again = secret_entry(ui, &mut view.new_again, 64.0, &say(skin, "codes_card.again"));
+            if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &say(skin, "codes_card.change")).clicked() {
                 let code = forms::new_access_code(&view.new_code, &view.new_again);
                 forget_secret(ui, &new, &mut view.new_code);
                 forget_secret(ui, &again, &mut view.new_again);
@@ -157,12 +159,12 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
 
 fn address(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     let now = encoder.identity.as_ref().map_or_else(|| "–".to_owned(), |own| format!("{:02X}h", own.address));
-    card(ui, skin, "address_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("address_card.words")));
-        entry(ui, skin, &skin.say("address_card.now"), |ui| ui.label(skin.mono(now)));
-        entry(ui, skin, &skin.say("address_card.new"), |ui| {
-            text_entry(ui, &mut view.address, 64.0, &skin.say("address_card.new"), "41");
-            if enabled_button(ui, encoder.session.is_ready(), icons::PENCIL_SIMPLE, &skin.say("address_card.plan"))
+    card(ui, skin, TEXTS.text("address_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "address_card.words")));
+        entry(ui, skin, &say(skin, "address_card.now"), |ui| ui.label(skin.mono(now)));
+        entry(ui, skin, &say(skin, "address_card.new"), |ui| {
+            text_entry(ui, &mut view.address, 64.0, &say(skin, "address_card.new"), "41");
+            if enabled_button(ui, encoder.session.is_ready(), icons::PENCIL_SIMPLE, &say(skin, "address_card.plan"))
                 .clicked()
             {
                 let change = forms::address(&view.address).map(Change::SetAddress);
@@ -174,13 +176,13 @@ fn address(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions
 }
 
 fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, "settings_card.title", |ui| {
+    card(ui, skin, TEXTS.text("settings_card.title"), |ui| {
         let Some(stored) = encoder.identity.as_ref().map(|identity| identity.label.settings) else {
-            ui.label(skin.label(skin.say("settings_card.nothing")));
+            ui.label(skin.label(say(skin, "settings_card.nothing")));
             return;
         };
         let stored_words = skin.words(&words::line_settings(stored));
-        row(ui, skin, &skin.say("settings_card.stored"), stored_words);
+        row(ui, skin, &say(skin, "settings_card.stored"), stored_words);
         let mut chosen = view.settings.unwrap_or_else(|| chosen_of(stored));
         entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
             let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
@@ -191,23 +193,23 @@ fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             let parities = parities.map(|parity| (parity, skin.words(&explain::parity(parity))));
             choice(ui, &skin.say("settings_card.parity"), &mut chosen.format.parity, parities);
         });
-        entry(ui, skin, &skin.say("settings_card.timeout"), |ui| {
+        entry(ui, skin, &say(skin, "settings_card.timeout"), |ui| {
             let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
-            let times = times.map(|(long, id)| (long, skin.say(id)));
-            choice(ui, &skin.say("settings_card.timeout"), &mut chosen.long_timeout, times);
+            let times = times.map(|(long, id)| (long, say(skin, id)));
+            choice(ui, &say(skin, "settings_card.timeout"), &mut chosen.long_timeout, times);
         });
-        ui.checkbox(&mut chosen.bus, skin.say("settings_card.bus"));
+        ui.checkbox(&mut chosen.bus, say(skin, "settings_card.bus"));
         view.settings = Some(chosen).filter(|chosen| *chosen != chosen_of(stored));
         let ready = encoder.session.is_ready();
         ui.add_space(skin.space.inside);
         ui.horizontal_wrapped(|ui| {
             let wanted = || forms::settings(stored, chosen.format, chosen.long_timeout, chosen.bus);
-            let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &skin.say("settings_card.plan"));
-            if store.on_hover_text(skin.say("settings_card.plan_hint")).clicked() {
+            let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &say(skin, "settings_card.plan"));
+            if store.on_hover_text(say(skin, "settings_card.plan_hint")).clicked() {
                 plan(encoder, wanted().map(Change::Configure), &mut view.settings_problem, actions);
             }
-            let now = enabled_button(ui, ready, icons::LIGHTNING, &skin.say("settings_card.now"));
-            if now.on_hover_text(skin.say("settings_card.now_hint")).clicked() {
+            let now = enabled_button(ui, ready, icons::LIGHTNING, &say(skin, "settings_card.now"));
+            if now.on_hover_text(say(skin, "settings_card.now_hint")).clicked() {
                 match wanted() {
                     Ok(wanted) => actions.push(Action::device(encoder.session.id, Hiperface::ConfigureForNow(wanted))),
                     Err(why) => view.settings_problem = Some(why),
@@ -227,9 +229,9 @@ fn chosen_of(stored: LineSettings) -> Chosen {
 }
 
 fn restart(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, skin, "restart_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("restart_card.words")));
-        if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &skin.say("restart_card.run")).clicked() {
+    card(ui, skin, TEXTS.text("restart_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "restart_card.words")));
+        if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &say(skin, "restart_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Hiperface::Reset));
         }
     });

@@ -4,7 +4,8 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
 use crate::devices::hiperface::jobs::Change;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, forms};
+use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS, forms};
+use crate::devices::hiperface::views::say;
 use crate::ui::controls::{card, card_with, enabled_button, entry, paragraph, text_entry, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -32,20 +33,20 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 
 fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     let palette = skin.palette;
-    card(ui, skin, "analogue_card.title", |ui| {
-        paragraph(ui, skin.label(skin.say("analogue_card.words")));
+    card(ui, skin, TEXTS.text("analogue_card.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "analogue_card.words")));
         for (channel, value) in &encoder.analogue {
             entry(ui, skin, &format!("{channel:02X}h"), |ui| match value {
                 Ok((value, limit)) => {
                     let over = limit.is_some_and(|limit| *value > limit);
                     ui.label(skin.value(value.to_string()).color(if over { palette.bad } else { palette.text }));
                     if let Some(limit) = limit {
-                        let text = Text::new("analogue_card.limit").with("limit", limit);
+                        let text = TEXTS.text("analogue_card.limit").with("limit", limit);
                         ui.label(skin.label(skin.words(&text)));
                     }
                     if over {
                         ui.label(RichText::new(icons::WARNING).color(palette.bad));
-                        ui.label(RichText::new(skin.say("analogue_card.over")).color(palette.bad));
+                        ui.label(RichText::new(say(skin, "analogue_card.over")).color(palette.bad));
                     }
                 }
                 Err(why) => {
@@ -54,11 +55,11 @@ fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             });
         }
         ui.add_space(skin.space.inside);
-        entry(ui, skin, &skin.say("analogue_card.channel"), |ui| {
-            let label = skin.say("analogue_card.channel");
+        entry(ui, skin, &say(skin, "analogue_card.channel"), |ui| {
+            let label = say(skin, "analogue_card.channel");
             let response = text_entry(ui, &mut view.channel, 48.0, &label, "48");
             let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            let read = enabled_button(ui, encoder.session.is_ready(), icons::EYE, &skin.say("analogue_card.read"));
+            let read = enabled_button(ui, encoder.session.is_ready(), icons::EYE, &say(skin, "analogue_card.read"));
             if read.clicked() || (enter && encoder.session.is_ready()) {
                 match forms::channel(&view.channel) {
                     Ok(channel) => {
@@ -78,19 +79,19 @@ fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
 fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_ready();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("counter_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "counter_card.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Hiperface::ReadCounter));
         }
     };
     let mut change = None;
-    card_with(ui, skin, "counter_card.title", read, |ui| {
+    card_with(ui, skin, TEXTS.text("counter_card.title"), read, |ui| {
         ui.label(skin.value(encoder.counter.map_or_else(|| "–".to_owned(), |counter| counter.to_string())));
-        paragraph(ui, skin.label(skin.say("counter_card.words")));
+        paragraph(ui, skin.label(say(skin, "counter_card.words")));
         ui.horizontal(|ui| {
-            if enabled_button(ui, ready, icons::PLUS, &skin.say("counter_card.increment")).clicked() {
+            if enabled_button(ui, ready, icons::PLUS, &say(skin, "counter_card.increment")).clicked() {
                 change = Some(Change::IncrementCounter);
             }
-            if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("counter_card.clear")).clicked() {
+            if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "counter_card.clear")).clicked() {
                 change = Some(Change::ClearCounter);
             }
         });

@@ -3,6 +3,8 @@
 
 use egui::Ui;
 
+use crate::devices::hiperface::state::TEXTS;
+use crate::devices::hiperface::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph};
 use crate::ui::wires::wires_ui;
@@ -26,10 +28,10 @@ const NOTES: [&str; 4] = ["wiring.termination", "wiring.bus", "wiring.screen", "
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
-        wires_ui(ui, skin, WIRE, &WIRES);
+        wires_ui(ui, skin, &TEXTS, WIRE, &WIRES);
         ui.add_space(skin.space.inside);
         for note in NOTES {
-            paragraph(ui, skin.caption(skin.say(note)));
+            paragraph(ui, skin.caption(say(skin, note)));
         }
     });
 }
@@ -37,6 +39,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
 #[cfg(test)]
 mod tests {
     use super::{NOTES, WIRES};
+    use crate::devices::hiperface::state::TEXTS;
     use crate::ui::wires::{check_notes, check_wires};
 
     /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7…12 V, typically 8 V, overall screen, twisted in
@@ -45,6 +48,7 @@ mod tests {
     #[test]
     fn the_card_says_what_the_manual_says() {
         check_wires(
+            &TEXTS,
             &WIRES,
             &[
                 ("US", &["7…12 V", "typically 8 V", "at most 250 mA"]),
@@ -57,8 +61,12 @@ mod tests {
                 ("DATA −", &["RS-485"]),
             ],
         );
-        check_notes(&NOTES, &["130 Ω and 1 kΩ pull-up and pull-down are built into the standard version"]);
-        check_notes(&NOTES, &["BUS version (up to 8 encoders): no 130 Ω inside", "farthest from the controller"]);
-        check_notes(&NOTES, &["overall screen and four twisted pairs"]);
+        check_notes(&TEXTS, &NOTES, &["130 Ω and 1 kΩ pull-up and pull-down are built into the standard version"]);
+        check_notes(
+            &TEXTS,
+            &NOTES,
+            &["BUS version (up to 8 encoders): no 130 Ω inside", "farthest from the controller"],
+        );
+        check_notes(&TEXTS, &NOTES, &["overall screen and four twisted pairs"]);
     }
 }

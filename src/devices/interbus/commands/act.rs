@@ -8,17 +8,16 @@ use super::inspect::mode;
 use super::plan::{commit, operations, prepare};
 use super::run::Runner;
 use super::value::value;
-use crate::app::Text;
 use crate::cli::args::{Common, Do};
-use crate::cli::check;
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_done;
 use crate::cli::runner::unexpected;
-use crate::cli::{Done, Failure, Result};
+use crate::cli::{Done, Failure, Result, check};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{Item, ItemValue};
 use crate::devices::interbus::protocol::{KIND, Reply};
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 
 const ACTIONS: &str = "check, preset, default and lead-back";
@@ -30,7 +29,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         (InterbusAction::Check, []) => check_device(common, output),
         (InterbusAction::LeadBack, []) => lead_back(common, output),
         (InterbusAction::Default, []) => {
-            output.remark(&Text::new("ib_disturbs.default").terminal());
+            output.remark(&TEXTS.text("ib_disturbs.default").terminal());
             change(common, output, act, |_| Ok(Change::Default))
         }
         (InterbusAction::Preset, []) => {

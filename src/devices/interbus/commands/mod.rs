@@ -17,7 +17,6 @@ use clap::Arg;
 use clap::builder::PossibleValue;
 
 use self::args::{InterbusAction, WordOptions};
-use crate::app::Text;
 use crate::cli::args::{Common, Consenting, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
 use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::consent::{ask, can_ask};
@@ -26,6 +25,7 @@ use crate::cli::simulate::Simulated;
 use crate::cli::{Failure, Result};
 use crate::devices::interbus::profile::{Item, ItemError};
 use crate::devices::interbus::protocol::KIND;
+use crate::devices::interbus::state::TEXTS;
 use crate::link::Scheme;
 use crate::profile::{Body, Comparison, ProfileError};
 
@@ -177,6 +177,6 @@ impl Disturbs {
             Disturbs::Programs => "ib_disturbs.programs",
             Disturbs::LeadingBack => "ib_disturbs.lead_back",
         };
-        output.remark(&Text::new(id).terminal());
+        output.remark(&TEXTS.text(id).terminal());
     }
 }

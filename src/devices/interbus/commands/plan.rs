@@ -3,7 +3,6 @@
 use serde_json::Value as Json;
 
 use super::run::Runner;
-use crate::app::Text;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agree, check_wear};
@@ -15,6 +14,7 @@ use crate::devices::interbus::jobs::{
 };
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 use crate::profile::{Consent, Operation as _};
 
@@ -31,7 +31,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
         other => return Err(unexpected(&other)),
     };
     if !reads_all && prepared.plan.ops.iter().any(is_shorter) {
-        output.remark(&Text::new("ib_disturbs.shorter").terminal());
+        output.remark(&TEXTS.text("ib_disturbs.shorter").terminal());
     }
     Ok(prepared)
 }
@@ -53,7 +53,7 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     if let Some(said) = &said {
         output.remark(said);
     }
-    let stop = Text::new("ib_disturbs.writing").terminal();
+    let stop = TEXTS.text("ib_disturbs.writing").terminal();
     agree(output, consent, &format!("{}{stop}", shown(&prepared).text))?;
     if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(said)) = (wear, &said) {
         // More than the maker names: once more.

@@ -2,9 +2,10 @@
 
 use proptest::prelude::*;
 
-use super::*;
 use Mode::{Cam as Cams, Parameterisation, Position, ReadOut as Reading, Velocity};
 use Parameter as P;
+
+use super::*;
 
 fn value(number: u32) -> Value {
     Value::new(number).unwrap()

@@ -3,14 +3,14 @@
 use super::action::Action;
 use super::encoder::Encoder;
 use super::staged::Edit;
-use crate::app::DeviceCommand;
 use crate::app::action::FileQuestion;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
-use crate::app::{Severity, Text};
+use crate::app::{DeviceCommand, Severity, Text};
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::protocol::ProgramNumber;
+use crate::devices::interbus::state::TEXTS;
 use crate::profile::Body;
 
 impl Encoder {
@@ -30,7 +30,7 @@ impl Encoder {
                 services.file_question = Some(FileQuestion::OpenCams { session: self.session.id });
             }
             Action::OpenTable(path) => self.open_table(path, services),
-            Action::PasteTable(program, text) => self.read_table(Text::new("ib_table.pasted"), text, program),
+            Action::PasteTable(program, text) => self.read_table(TEXTS.text("ib_table.pasted"), text, program),
             Action::TakeTable(take) => self.take_table(take),
             Action::AskSaveTable { decimal_comma } => {
                 let suggested = self.session.suggested_file().with_extension("csv");
@@ -84,7 +84,7 @@ impl Encoder {
             DeviceCommand::AskSave
                 if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() =>
             {
-                services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
+                services.tell(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
             }
             DeviceCommand::AskSave => self.session.ask_where_to_save(services),
             DeviceCommand::Restore(path) => self.read_backup(path, services),

@@ -1,9 +1,9 @@
 //! What can be asked of an INTERBUS encoder that is shown.
 
-use crate::app::DeviceAction;
 use std::path::PathBuf;
 
 use super::staged::Edit;
+use crate::app::DeviceAction;
 use crate::devices::interbus::jobs::Change;
 use crate::devices::interbus::profile::Scale;
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOut, StartupMode};

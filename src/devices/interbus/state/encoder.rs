@@ -3,14 +3,13 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::cams;
 use super::preview::Preview;
 use super::record::Record;
 use super::review::Review;
 use super::staged::{Mark, Place, Staged, Wanted};
 use super::table::Import;
 use super::trace::Meaning;
-use super::words;
+use super::{cams, words};
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, ProfileFile, Saved, Session, Source, some};
@@ -20,6 +19,7 @@ use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::procedures::{Handshake, Identity, Reading, Survey};
 use crate::devices::interbus::profile::{InterbusProfile, ProfileIdentity, Scale};
 use crate::devices::interbus::protocol::{Mode, ProgramNumber, ReadOut, StartupMode, Value, WindowShift, WordOrder};
+use crate::devices::interbus::state::TEXTS;
 use crate::link::LinkUrl;
 use crate::profile::Document;
 use crate::sim::Motor;
@@ -276,7 +276,8 @@ impl Encoder {
 
     fn log_answer(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
-        let fact = Text::new("log.interbus")
+        let fact = TEXTS
+            .text("log.interbus")
             .with("serial", &identity.serial_number)
             .with("version", identity.software_version)
             .with_text("range", words::range(identity.steps, identity.revolutions));

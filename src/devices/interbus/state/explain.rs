@@ -5,6 +5,7 @@ mod gateway;
 mod item;
 mod write;
 
+use crate::devices::interbus::state::TEXTS;
 pub use check::check;
 pub use gateway::{damage, exception};
 pub use item::{direction, parameter, read_out, startup};
@@ -52,52 +53,56 @@ pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
         Error::NoReply { asked, tries } => {
-            Text::new("interbus.no_reply").with_text("asked", gateway::asked(*asked)).with("tries", tries)
+            TEXTS.text("interbus.no_reply").with_text("asked", gateway::asked(*asked)).with("tries", tries)
         }
-        Error::Damaged { asked, tries, cause } => Text::new("interbus.damaged")
+        Error::Damaged { asked, tries, cause } => TEXTS
+            .text("interbus.damaged")
             .with_text("asked", gateway::asked(*asked))
             .with("tries", tries)
             .with_text("why", gateway::damage(*cause)),
-        Error::NeverSilent => Text::new("interbus.never_silent"),
-        Error::Exception { asked, exception } => Text::new("interbus.exception")
+        Error::NeverSilent => TEXTS.text("interbus.never_silent"),
+        Error::Exception { asked, exception } => TEXTS
+            .text("interbus.exception")
             .with_text("asked", gateway::asked(*asked))
             .with("code", format!("0x{:02X}", exception.code()))
             .with("name", exception.name())
             .with_text("cause", gateway::exception(*exception)),
         Error::Cancelled => Text::new("encoder.cancelled"),
-        Error::Illegal(refused) => Text::new("interbus.illegal").with("word", word(refused.command.emit())),
-        Error::Refused { sent, error } => Text::new("interbus.refused")
+        Error::Illegal(refused) => TEXTS.text("interbus.illegal").with("word", word(refused.command.emit())),
+        Error::Refused { sent, error } => TEXTS
+            .text("interbus.refused")
             .with("word", word(sent.emit()))
             .with("error", word(Reply::Error(*error).emit()))
             .with_text("why", refusal(*error)),
-        Error::UnknownReadOut { command } => Text::new("interbus.no_read_out").with("word", word(command.emit())),
+        Error::UnknownReadOut { command } => TEXTS.text("interbus.no_read_out").with("word", word(command.emit())),
         Error::TimeOut { awaited, sent, input, milliseconds } => {
             let text = match Reply::parse(*input) {
-                Reply::Busy { .. } => Text::new("interbus.still_busy"),
-                Reply::Echo { .. } => Text::new("interbus.other_echo"),
+                Reply::Busy { .. } => TEXTS.text("interbus.still_busy"),
+                Reply::Echo { .. } => TEXTS.text("interbus.other_echo"),
                 _ => time_out(*awaited),
             };
             text.with("sent", word(*sent)).with("input", word(*input)).with("milliseconds", milliseconds)
         }
         Error::OtherMaster { sent, output } => {
-            Text::new("interbus.other_master_out").with("sent", word(*sent)).with("seen", word(*output))
+            TEXTS.text("interbus.other_master_out").with("sent", word(*sent)).with("seen", word(*output))
         }
-        Error::NotRunning { input } => Text::new("interbus.not_running").with("input", word(*input)),
+        Error::NotRunning { input } => TEXTS.text("interbus.not_running").with("input", word(*input)),
         Error::WordOrder { input, swapped } => {
-            Text::new("interbus.word_order").with("input", word(*input)).with("swapped", word(*swapped))
+            TEXTS.text("interbus.word_order").with("input", word(*input)).with("swapped", word(*swapped))
         }
         Error::Implausible(why) => implausible(*why),
         Error::NoMode { wanted, is } => {
-            Text::new("interbus.no_mode").with_text("wanted", startup(*wanted)).with_text("is", startup(*is))
+            TEXTS.text("interbus.no_mode").with_text("wanted", startup(*wanted)).with_text("is", startup(*is))
         }
-        Error::NotSelectable { mode } => Text::new("interbus.not_selectable").with_text("mode", startup(*mode)),
-        Error::UnknownMode { mode } => Text::new("interbus.unknown_mode").with_text("mode", startup(*mode)),
-        Error::Moving { from, to } => Text::new("interbus.moving").with("from", from).with("to", to),
+        Error::NotSelectable { mode } => TEXTS.text("interbus.not_selectable").with_text("mode", startup(*mode)),
+        Error::UnknownMode { mode } => TEXTS.text("interbus.unknown_mode").with_text("mode", startup(*mode)),
+        Error::Moving { from, to } => TEXTS.text("interbus.moving").with("from", from).with("to", to),
         Error::NotTaken { item, wanted, reads } => {
-            Text::new("interbus.not_taken").with("item", item).with("wanted", wanted).with("reads", reads)
+            TEXTS.text("interbus.not_taken").with("item", item).with("wanted", wanted).with("reads", reads)
         }
-        Error::Changed { item } => Text::new("interbus.changed").with("item", item),
-        Error::NotLedBack { cause, standing } => Text::new("interbus.not_led_back")
+        Error::Changed { item } => TEXTS.text("interbus.changed").with("item", item),
+        Error::NotLedBack { cause, standing } => TEXTS
+            .text("interbus.not_led_back")
             .with_text("cause", encoder(cause))
             .with_text("standing", self::standing(standing)),
         Error::OtherPlan => Text::new("interbus.other_plan"),
@@ -105,7 +110,7 @@ pub fn encoder(error: &Error) -> Text {
 }
 
 fn time_out(awaited: Awaited) -> Text {
-    Text::new(match awaited {
+    TEXTS.text(match awaited {
         Awaited::Echo => "interbus.no_echo",
         Awaited::Value => "interbus.no_value",
         Awaited::Run => "interbus.no_run",
@@ -115,7 +120,7 @@ fn time_out(awaited: Awaited) -> Text {
 
 /// Why an encoder sends an error word, and what to do.
 pub fn refusal(error: ErrorWord) -> Text {
-    Text::new(match (error.code.get(), error.data.get()) {
+    TEXTS.text(match (error.code.get(), error.data.get()) {
         (1, _) => "ib_refused.data",
         (2, _) => "ib_refused.code",
         (3, _) => "ib_refused.lost",
@@ -128,13 +133,13 @@ pub fn refusal(error: ErrorWord) -> Text {
 /// What an encoder says of itself and cannot be.
 pub fn implausible(why: Implausible) -> Text {
     match why {
-        Implausible::Gear(GearError::Turns { turns }) => Text::new("interbus.implausible_turns").with("turns", turns),
+        Implausible::Gear(GearError::Turns { turns }) => TEXTS.text("interbus.implausible_turns").with("turns", turns),
         Implausible::Gear(GearError::Steps { steps, turns, most }) => {
-            Text::new("interbus.implausible_steps").with("steps", steps).with("turns", turns).with("most", most)
+            TEXTS.text("interbus.implausible_steps").with("steps", steps).with("turns", turns).with("most", most)
         }
-        Implausible::Direction(code) => Text::new("interbus.implausible_direction").with("code", code),
+        Implausible::Direction(code) => TEXTS.text("interbus.implausible_direction").with("code", code),
         Implausible::Value { read, value } => {
-            Text::new("interbus.implausible_value").with("read", word(read)).with("value", value)
+            TEXTS.text("interbus.implausible_value").with("read", word(read)).with("value", value)
         }
     }
 }
@@ -142,13 +147,16 @@ pub fn implausible(why: Implausible) -> Text {
 /// In which state an encoder may be that could not be led back; the part of a sentence.
 fn standing(standing: &Standing) -> Text {
     let id = if standing.parameterising { "ib_standing.set" } else { "ib_standing.out" };
-    let state = Text::new(id).with("out", word(standing.out));
+    let state = TEXTS.text(id).with("out", word(standing.out));
     match (standing.found, standing.is) {
-        (Some(found), Some(is)) if found != is => Text::new("ib_standing.other")
+        (Some(found), Some(is)) if found != is => TEXTS
+            .text("ib_standing.other")
             .with_text("state", state)
             .with_text("found", startup(found))
             .with_text("is", startup(is)),
-        (Some(found), _) => Text::new("ib_standing.found").with_text("state", state).with_text("found", startup(found)),
+        (Some(found), _) => {
+            TEXTS.text("ib_standing.found").with_text("state", state).with_text("found", startup(found))
+        }
         (None, _) => state,
     }
 }
@@ -157,7 +165,7 @@ fn standing(standing: &Standing) -> Text {
 pub fn doing(doing: &Doing) -> Text {
     match doing {
         Doing::ReadOut(read_out) => item::read_out(*read_out),
-        Doing::Program(program) => Text::new("ib_startup.program").with("program", program.get()),
+        Doing::Program(program) => TEXTS.text("ib_startup.program").with("program", program.get()),
         Doing::Operation(item) => plain(item),
     }
 }

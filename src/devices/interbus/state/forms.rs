@@ -6,6 +6,7 @@ use crate::app::Text;
 use crate::app::number::number as decimal;
 use crate::devices::interbus::profile::{Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Parameter, Value};
+use crate::devices::interbus::state::TEXTS;
 
 /// A whole number, with blanks or apostrophes between its digits if need be.
 pub fn number(text: &str) -> Result<u32, Text> {
@@ -14,7 +15,7 @@ pub fn number(text: &str) -> Result<u32, Text> {
         Some(hex) => u32::from_str_radix(hex, 16).ok(),
         None => digits.parse().ok(),
     };
-    number.ok_or_else(|| Text::new("ib_entry.number").with("entry", text.trim()))
+    number.ok_or_else(|| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
 /// The edit of a parameter that was typed. Whether it goes together with the others the edit says.
@@ -29,7 +30,7 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
         Parameter::Preset => Edit::Preset(within(parameter, value, now)?),
         Parameter::ZeroShift => Edit::ZeroShift(within(parameter, value, now)?),
         Parameter::Direction | Parameter::Default => {
-            return Err(Text::new("ib_entry.number").with("entry", text.trim()));
+            return Err(TEXTS.text("ib_entry.number").with("entry", text.trim()));
         }
     })
 }
@@ -51,7 +52,7 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
 /// No number, in words.
 pub fn offset(text: &str) -> Result<i64, Text> {
     let entry = text.trim().replace('\u{2212}', "-");
-    entry.parse::<i32>().map(i64::from).map_err(|_| Text::new("ib_entry.number").with("entry", text.trim()))
+    entry.parse::<i32>().map(i64::from).map_err(|_| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
 /// A position as it is typed: in the units of the machine.
@@ -67,10 +68,11 @@ pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
 /// # Errors
 /// No number, or beyond the measuring range, in words.
 pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
-    let refused = || Text::new("ib_entry.position").with("entry", text.trim());
+    let refused = || TEXTS.text("ib_entry.position").with("entry", text.trim());
     let value = decimal(text).ok_or_else(refused)?;
     let placed = scale.place(value, range).map_err(|error| {
-        Text::new("ib_entry.outside")
+        TEXTS
+            .text("ib_entry.outside")
             .with_number("value", error.value, scale.decimals())
             .with_number("least", error.least, scale.decimals())
             .with_number("most", error.most, scale.decimals())
@@ -102,7 +104,7 @@ pub fn steps_of(scale: &Scale) -> Option<f64> {
 /// # Errors
 /// No number above 0, in words.
 pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
-    let refused = || Text::new("ib_entry.scale").with("entry", text.trim());
+    let refused = || TEXTS.text("ib_entry.scale").with("entry", text.trim());
     let steps = decimal(text).ok_or_else(refused)?;
     Scale::new(unit, steps, zero).map_err(|_| refused())
 }
@@ -115,11 +117,11 @@ pub fn with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
     let zero = number(text)?;
     let last = range.saturating_sub(1);
     if zero > last {
-        let text = Text::new("ib_entry.range").with_text("what", Text::new("ib_scale.zero")).with("value", zero);
+        let text = TEXTS.text("ib_entry.range").with_text("what", TEXTS.text("ib_scale.zero")).with("value", zero);
         return Err(text.with("low", 0).with("high", last));
     }
     Scale::new(own.unit(), steps_of(own).unwrap_or(1.0), zero)
-        .map_err(|_| Text::new("ib_entry.scale").with("entry", text))
+        .map_err(|_| TEXTS.text("ib_entry.scale").with("entry", text))
 }
 
 fn within(parameter: Parameter, value: u32, now: &Parameters) -> Result<u32, Text> {
@@ -130,7 +132,8 @@ fn within(parameter: Parameter, value: u32, now: &Parameters) -> Result<u32, Tex
     if range.contains(&value) && Value::new(value).is_some() {
         return Ok(value);
     }
-    Err(Text::new("ib_entry.range")
+    Err(TEXTS
+        .text("ib_entry.range")
         .with_text("what", words::parameter(parameter))
         .with("value", value)
         .with("low", range.start())

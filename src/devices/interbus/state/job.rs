@@ -2,19 +2,20 @@
 
 use crate::app::Text;
 use crate::devices::interbus::jobs::InterbusJob;
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 
 /// What it is called in the list of jobs.
 pub(super) fn words(job: &InterbusJob) -> Text {
     match job {
-        InterbusJob::Hello | InterbusJob::Position => Text::new("ib_job.word"),
-        InterbusJob::Survey | InterbusJob::Identify => Text::new("ib_job.survey"),
-        InterbusJob::Programs(_) => Text::new("ib_job.programs"),
+        InterbusJob::Hello | InterbusJob::Position => TEXTS.text("ib_job.word"),
+        InterbusJob::Survey | InterbusJob::Identify => TEXTS.text("ib_job.survey"),
+        InterbusJob::Programs(_) => TEXTS.text("ib_job.programs"),
         InterbusJob::Status => Text::new("job.status"),
         InterbusJob::Check => Text::new("job.check"),
         InterbusJob::Read(item) => Text::new("job.read").with("item", item),
         InterbusJob::ReadOut(what) => Text::new("job.read").with_text("item", words::read_out(*what)),
-        InterbusJob::Select(mode) => Text::new("ib_job.select").with_text("mode", words::startup(*mode)),
+        InterbusJob::Select(mode) => TEXTS.text("ib_job.select").with_text("mode", words::startup(*mode)),
         InterbusJob::Save { .. } => Text::new("job.save"),
         InterbusJob::Prepare(change) => Text::new("job.prepare").with_text("change", words::change(change)),
         InterbusJob::Commit(_) => Text::new("job.write"),

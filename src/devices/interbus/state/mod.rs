@@ -20,9 +20,12 @@ mod review;
 pub mod said;
 pub mod staged;
 mod table;
+mod texts;
 mod trace;
 pub mod words;
 mod write;
+
+pub use texts::TEXTS;
 
 pub use action::Action;
 pub use connect_form::{InterbusForm, InterbusWay};

@@ -12,13 +12,12 @@ use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::KIND;
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
-use crate::link::LinkUrl;
-use crate::link::TraceEntry;
+use crate::link::{LinkUrl, TraceEntry};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::OpenError;
-use crate::worker::Session;
+use crate::worker::{OpenError, Session};
 
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
@@ -111,7 +110,7 @@ impl OnLine for Encoder {
         match output {
             InterbusOutput::Hello(reading) => {
                 if std::mem::take(&mut self.session.just_connected) {
-                    let word = Text::new("log.interbus_word").with("word", format!("0x{:08X}", reading.word));
+                    let word = TEXTS.text("log.interbus_word").with("word", format!("0x{:08X}", reading.word));
                     self.session.log_answer(vec![word], services);
                 }
                 self.record.glimpse(reading);
@@ -168,7 +167,7 @@ impl OnLine for Encoder {
     /// What takes the position away or switches outputs is done only where the machine stands.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
         if job::disturbs(&job) && !self.is_stopped() {
-            services.tell(Severity::Warning, vec![Text::new("ib_stop.first")], Some(&self.session.name()));
+            services.tell(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
             return false;
         }
         if job::disturbs(&job) && self.session.is_ready() {

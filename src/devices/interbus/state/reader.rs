@@ -3,6 +3,7 @@
 use super::said::{self, Known};
 use crate::app::Text;
 use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
+use crate::devices::interbus::state::TEXTS;
 
 /// Which way a word goes, and of which class of encoders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,12 +88,12 @@ impl Reading {
         let digits = self.way.digits();
         let number = Some(bare).filter(|own| own.len() == digits).and_then(|own| u32::from_str_radix(own, 16).ok());
         let Some(number) = number else {
-            let why = Text::new("ib_reader.no_word").with("word", typed).with("digits", digits);
+            let why = TEXTS.text("ib_reader.no_word").with("word", typed).with("digits", digits);
             return Line { word: typed.to_owned(), says: Err(why), warning: None };
         };
         let single = |own: Single| {
-            let position = Text::new("ib_word.position").with("position", own.position().get());
-            let bits = || Text::new("ib_word.stray").with("bits", format!("0x{:X}", own.stray()));
+            let position = TEXTS.text("ib_word.position").with("position", own.position().get());
+            let bits = || TEXTS.text("ib_word.stray").with("bits", format!("0x{:X}", own.stray()));
             (position, (own.stray() != 0).then(bits))
         };
         let known = Known { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };

@@ -3,10 +3,11 @@
 
 use std::time::Duration;
 
+use crate::devices::interbus::state::TEXTS;
+
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
-use crate::app::Text;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::devices::interbus::procedures::Reading;
@@ -136,10 +137,10 @@ impl Watchable for Beside {
         match self {
             Beside::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 0)];
-                Line::of(group, 0, Text::new("ib_live.speed"), "encoder speed".to_owned(), scales)
+                Line::of(group, 0, TEXTS.text("ib_live.speed"), "encoder speed".to_owned(), scales)
             }
             Beside::Cam(cam) => {
-                let name = Text::new("ib_live.cam").with("cam", cam.get());
+                let name = TEXTS.text("ib_live.cam").with("cam", cam.get());
                 Line::of(group, 0, name, format!("cam {}", cam.get()), vec![Scale::new("unit.counts", 1.0, 0)])
             }
         }

@@ -5,6 +5,7 @@ use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, Wear};
 use crate::devices::interbus::procedures::write::Written;
 use crate::devices::interbus::profile::{Base, Op};
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 use crate::profile::Plan;
 
@@ -55,21 +56,21 @@ impl Reviewed for Interbus {
         warnings.extend(prepared.other_type.map(words::other_type));
         warnings.extend(words::wear(prepared));
         if prepared.plan.ops.contains(&Op::Default) {
-            warnings.push(Text::new("ib_review.experimental"));
+            warnings.push(TEXTS.text("ib_review.experimental"));
         }
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        warnings.extend(review::left_alone("ib_review.missing", &prepared.missing, mounting));
+        warnings.extend(review::left_alone(TEXTS.text("ib_review.missing"), &prepared.missing, mounting));
         warnings
     }
 
     fn needs(_: &Change, prepared: &Prepared) -> Vec<Text> {
         let ops = &prepared.plan.ops;
-        let mut needs = vec![Text::new("ib_review.needs_stop")];
+        let mut needs = vec![TEXTS.text("ib_review.needs_stop")];
         if ops.iter().any(|op| matches!(op, Op::Program(_))) {
-            needs.push(Text::new("ib_review.switches"));
+            needs.push(TEXTS.text("ib_review.switches"));
         }
         if ops.iter().any(|op| matches!(op, Op::FirePreset { .. })) {
-            needs.push(Text::new("ib_review.needs_standstill"));
+            needs.push(TEXTS.text("ib_review.needs_standstill"));
         }
         needs
     }
@@ -77,11 +78,11 @@ impl Reviewed for Interbus {
     fn cost(prepared: &Prepared) -> Text {
         let stores = prepared.plan.write_cycles();
         if stores == 0 {
-            return Text::new("ib_review.cost_nothing");
+            return TEXTS.text("ib_review.cost_nothing");
         }
         match prepared.cycles_seen {
-            Some(seen) => Text::new("ib_review.cost").with("stores", stores).with("seen", seen),
-            None => Text::new("ib_review.cost_unknown").with("stores", stores),
+            Some(seen) => TEXTS.text("ib_review.cost").with("stores", stores).with("seen", seen),
+            None => TEXTS.text("ib_review.cost_unknown").with("stores", stores),
         }
     }
 

@@ -7,6 +7,7 @@ use crate::app::explain::plain;
 use crate::devices::interbus::protocol::{
     CamOutput, Command, ErrorWord, Mode, Parameter, ReadOut, ReadOutValue, Reply, Value, WindowShift,
 };
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 
 /// What has to be known of an encoder to read its IN words.
@@ -32,8 +33,9 @@ impl Known {
 pub fn out(word: u32, mode: Mode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => asked(command),
-        Err(refused) if matches!(refused.command, Command::Unknown(_)) => Text::new("ib_word.unknown"),
-        Err(refused) => Text::new("ib_word.illegal")
+        Err(refused) if matches!(refused.command, Command::Unknown(_)) => TEXTS.text("ib_word.unknown"),
+        Err(refused) => TEXTS
+            .text("ib_word.illegal")
             .with_text("mode", words::mode(refused.mode))
             .with_text("elsewhere", asked(refused.command)),
     }
@@ -41,30 +43,31 @@ pub fn out(word: u32, mode: Mode) -> Text {
 
 /// A command.
 pub fn asked(command: Command) -> Text {
-    let cam = |id, number: u8| Text::new(id).with("cam", number);
+    let cam = |id, number: u8| TEXTS.text(id).with("cam", number);
     match command {
-        Command::Normal => Text::new("ib_word.normal"),
-        Command::Run => Text::new("ib_word.run"),
-        Command::Preset => Text::new("ib_word.preset"),
-        Command::FrabaPreset => Text::new("ib_word.fraba"),
-        Command::Set(Parameter::Default, _) => Text::new("ib_word.default"),
-        Command::Set(parameter, value) => Text::new("ib_word.set")
+        Command::Normal => TEXTS.text("ib_word.normal"),
+        Command::Run => TEXTS.text("ib_word.run"),
+        Command::Preset => TEXTS.text("ib_word.preset"),
+        Command::FrabaPreset => TEXTS.text("ib_word.fraba"),
+        Command::Set(Parameter::Default, _) => TEXTS.text("ib_word.default"),
+        Command::Set(parameter, value) => TEXTS
+            .text("ib_word.set")
             .with_text("parameter", words::parameter(parameter))
             .with_text("value", words::setting(parameter, value.get())),
-        Command::Velocity(true) => Text::new("ib_word.velocity_on"),
-        Command::Velocity(false) => Text::new("ib_word.velocity_off"),
-        Command::ReadOut(read_out) => Text::new("ib_word.read_out").with_text("what", explained::read_out(read_out)),
-        Command::Cams(Some(program)) => Text::new("ib_word.program").with("program", program.get()),
-        Command::Cams(None) => Text::new("ib_word.position_mode"),
-        Command::Activate(mask) => Text::new("ib_word.mask").with_text("cams", cams(mask)),
-        Command::Shift(shift) => Text::new("ib_word.shift").with("shift", shift.get()),
+        Command::Velocity(true) => TEXTS.text("ib_word.velocity_on"),
+        Command::Velocity(false) => TEXTS.text("ib_word.velocity_off"),
+        Command::ReadOut(read_out) => TEXTS.text("ib_word.read_out").with_text("what", explained::read_out(read_out)),
+        Command::Cams(Some(program)) => TEXTS.text("ib_word.program").with("program", program.get()),
+        Command::Cams(None) => TEXTS.text("ib_word.position_mode"),
+        Command::Activate(mask) => TEXTS.text("ib_word.mask").with_text("cams", cams(mask)),
+        Command::Shift(shift) => TEXTS.text("ib_word.shift").with("shift", shift.get()),
         Command::CamStart(number, at) => cam("ib_word.start", number.get()).with("at", at.get()),
         Command::CamStop(number, at) => cam("ib_word.stop", number.get()).with("at", at.get()),
-        Command::ReadActivation => Text::new("ib_word.read_mask"),
+        Command::ReadActivation => TEXTS.text("ib_word.read_mask"),
         Command::ReadCamStart(number) => cam("ib_word.read_start", number.get()),
         Command::ReadCamStop(number) => cam("ib_word.read_stop", number.get()),
-        Command::ReadShift => Text::new("ib_word.read_shift"),
-        Command::Unknown(_) => Text::new("ib_word.unknown"),
+        Command::ReadShift => TEXTS.text("ib_word.read_shift"),
+        Command::Unknown(_) => TEXTS.text("ib_word.unknown"),
     }
 }
 
@@ -78,22 +81,24 @@ pub fn told(word: u32, known: &Known) -> Text {
     let reply = Reply::parse(word);
     match reply {
         Reply::Run { value, .. } => match known.mode {
-            Mode::Velocity => Text::new("ib_word.speed").with("rpm", value.signed()),
+            Mode::Velocity => TEXTS.text("ib_word.speed").with("rpm", value.signed()),
             Mode::Cam => outputs(word, known.shift),
             Mode::Position | Mode::Parameterisation | Mode::ReadOut => {
-                Text::new("ib_word.position").with("position", value.get())
+                TEXTS.text("ib_word.position").with("position", value.get())
             }
         },
         Reply::Busy { .. } | Reply::Echo { .. } => echo(reply, known.mode),
         Reply::ReadOut(value) => match known.read_out {
-            Some(read_out) => Text::new("ib_word.value")
+            Some(read_out) => TEXTS
+                .text("ib_word.value")
                 .with_text("what", explained::read_out(read_out))
                 .with_text("value", words::read_out_value(read_out.value(value))),
-            None => Text::new("ib_word.some_value")
+            None => TEXTS
+                .text("ib_word.some_value")
                 .with_text("value", words::read_out_value(ReadOutValue::Plain(value.get()))),
         },
-        Reply::UnknownReadOut(_) => Text::new("ib_word.no_read_out"),
-        Reply::Unknown { code, .. } => Text::new("ib_word.unknown_reply").with("code", code.get()),
+        Reply::UnknownReadOut(_) => TEXTS.text("ib_word.no_read_out"),
+        Reply::Unknown { code, .. } => TEXTS.text("ib_word.unknown_reply").with("code", code.get()),
         Reply::Error(own) => error(own),
     }
 }
@@ -102,7 +107,7 @@ pub fn told(word: u32, known: &Known) -> Text {
 pub fn stray(word: u32) -> Option<Text> {
     match Reply::parse(word) {
         Reply::Run { stray, .. } if stray != 0 => {
-            Some(Text::new("ib_word.stray").with("bits", format!("0x{:08X}", u32::from(stray) << Value::BITS)))
+            Some(TEXTS.text("ib_word.stray").with("bits", format!("0x{:08X}", u32::from(stray) << Value::BITS)))
         }
         _ => None,
     }
@@ -118,32 +123,33 @@ fn error(error: ErrorWord) -> Text {
         (0xC, _) => "ib_error.maker",
         _ => "ib_error.invalid",
     };
-    Text::new(id).with("word", format!("0x{:08X}", Reply::Error(error).emit()))
+    TEXTS.text(id).with("word", format!("0x{:08X}", Reply::Error(error).emit()))
 }
 
 fn echo(reply: Reply, mode: Mode) -> Text {
     let in_mode = if mode == Mode::Cam { Mode::Cam } else { Mode::Parameterisation };
     match reply.echoed(in_mode) {
-        Some(command) => Text::new("ib_word.echo").with_text("command", asked(command)),
-        None if matches!(reply, Reply::Busy { .. }) => Text::new("ib_word.busy"),
-        None => Text::new("ib_word.other_echo"),
+        Some(command) => TEXTS.text("ib_word.echo").with_text("command", asked(command)),
+        None if matches!(reply, Reply::Busy { .. }) => TEXTS.text("ib_word.busy"),
+        None => TEXTS.text("ib_word.other_echo"),
     }
 }
 
 /// Which cams are in a mask.
 fn cams(mask: u16) -> Text {
     let numbers: Vec<String> = (0..16).filter(|bit| mask >> bit & 1 != 0).map(|bit| bit.to_string()).collect();
-    if numbers.is_empty() { Text::new("ib_item.no_cam") } else { plain(numbers.join(", ")) }
+    if numbers.is_empty() { TEXTS.text("ib_item.no_cam") } else { plain(numbers.join(", ")) }
 }
 
 fn outputs(word: u32, shift: Option<WindowShift>) -> Text {
-    let Ok(output) = CamOutput::parse(word) else { return Text::new("ib_word.outputs_invalid") };
+    let Ok(output) = CamOutput::parse(word) else { return TEXTS.text("ib_word.outputs_invalid") };
     let on = cams(output.outputs.into());
     match shift {
-        Some(shift) if shift.mask() != 0 => Text::new("ib_word.outputs")
+        Some(shift) if shift.mask() != 0 => TEXTS
+            .text("ib_word.outputs")
             .with_text("cams", on)
             .with("position", format!("0x{:07X}", output.position_bits(shift))),
-        _ => Text::new("ib_word.outputs_only").with_text("cams", on),
+        _ => TEXTS.text("ib_word.outputs_only").with_text("cams", on),
     }
 }
 

@@ -5,6 +5,7 @@ use super::said::{self, Known};
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::interbus::procedures::{Carried, Fault, carried, fault};
 use crate::devices::interbus::protocol::{Command, Mode, ReadOut, Reply, WindowShift, WordOrder};
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
@@ -93,7 +94,7 @@ impl Meaning {
 }
 
 fn word_of(id: &'static str, word: u32) -> Text {
-    Text::new(id).with("word", format!("0x{word:08X}"))
+    TEXTS.text(id).with("word", format!("0x{word:08X}"))
 }
 
 #[cfg(test)]

@@ -4,11 +4,12 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Flags, Interface, LedRow, Mode, Parameter, ReadOut, ReadOutValue, Value};
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain::{direction, startup};
 
 /// A parameter.
 pub fn parameter(parameter: Parameter) -> Text {
-    Text::new(match parameter {
+    TEXTS.text(match parameter {
         Parameter::Steps => "ib_parameter.steps",
         Parameter::Turns => "ib_parameter.turns",
         Parameter::Direction => "ib_parameter.direction",
@@ -28,7 +29,7 @@ pub fn setting(parameter: Parameter, number: u32) -> Text {
 
 /// A mode, in a sentence.
 pub fn mode(mode: Mode) -> Text {
-    Text::new(match mode {
+    TEXTS.text(match mode {
         Mode::Position => "ib_mode.position",
         Mode::Parameterisation => "ib_mode.parameterisation",
         Mode::ReadOut => "ib_mode.read_out",
@@ -41,9 +42,11 @@ pub fn mode(mode: Mode) -> Text {
 pub fn read_out_value(value: ReadOutValue) -> Text {
     match value {
         ReadOutValue::Plain(number) => plain(format!("{number} (0x{number:X})")),
-        ReadOutValue::Minutes(minutes) => {
-            Text::new("ib_read_out.minutes").with("minutes", minutes).with_number("hours", f64::from(minutes) / 60.0, 1)
-        }
+        ReadOutValue::Minutes(minutes) => TEXTS.text("ib_read_out.minutes").with("minutes", minutes).with_number(
+            "hours",
+            f64::from(minutes) / 60.0,
+            1,
+        ),
         ReadOutValue::TenthsOfDegree(tenths) => celsius(tenths),
         ReadOutValue::StartupMode(own) => startup(own),
         ReadOutValue::Flags(own) => flags(own),
@@ -52,20 +55,20 @@ pub fn read_out_value(value: ReadOutValue) -> Text {
 
 /// Tenths of a degree.
 pub fn celsius(tenths: i32) -> Text {
-    Text::new("ib_read_out.celsius").with_number("celsius", f64::from(tenths) / 10.0, 1)
+    TEXTS.text("ib_read_out.celsius").with_number("celsius", f64::from(tenths) / 10.0, 1)
 }
 
 /// What an encoder is.
 pub fn flags(flags: Flags) -> Text {
-    let turns = Text::new(if flags.multiturn() { "ib_flags.multiturn" } else { "ib_flags.single_turn" });
+    let turns = TEXTS.text(if flags.multiturn() { "ib_flags.multiturn" } else { "ib_flags.single_turn" });
     let mut all = vec![turns];
     if flags.steps_minus_one() {
-        all.push(Text::new("ib_flags.steps_minus_one"));
+        all.push(TEXTS.text("ib_flags.steps_minus_one"));
     }
     if flags.unknown() != 0 {
-        all.push(Text::new("ib_flags.unknown").with("bits", format!("0x{:X}", flags.unknown())));
+        all.push(TEXTS.text("ib_flags.unknown").with("bits", format!("0x{:X}", flags.unknown())));
     }
-    Text::new("ib_flags.all").with_list("flags", all)
+    TEXTS.text("ib_flags.all").with_list("flags", all)
 }
 
 /// What lamps say, and what to do.
@@ -77,12 +80,12 @@ pub fn lamps(row: &LedRow) -> (Text, Text) {
         (_, On) => ("ib_leds.bus_error", "ib_leds.bus_error_remedy"),
         _ => ("ib_leds.no_run", "ib_leds.no_run_remedy"),
     };
-    (Text::new(says), Text::new(remedy))
+    (TEXTS.text(says), TEXTS.text(remedy))
 }
 
 /// What carries the bus.
 pub fn interface(interface: Interface) -> Text {
-    Text::new(match interface {
+    TEXTS.text(match interface {
         Interface::Standard => "ib_id.standard",
         Interface::OpticalFibre => "ib_id.fibre",
         Interface::Loop2 => "ib_id.loop2",
@@ -92,7 +95,7 @@ pub fn interface(interface: Interface) -> Text {
 /// A measuring range.
 pub fn range(steps: u32, turns: u32) -> Text {
     let id = if turns == 1 { "ib_card.range_one" } else { "ib_card.range_of" };
-    Text::new(id).with("steps", steps).with("turns", turns)
+    TEXTS.text(id).with("steps", steps).with("turns", turns)
 }
 
 /// What was read out, as it is written beside its name.

@@ -11,6 +11,7 @@ use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device, other_type,
 };
 use crate::devices::interbus::protocol::ProgramNumber;
+use crate::devices::interbus::state::TEXTS;
 use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 
@@ -114,7 +115,7 @@ impl Saved for Encoder {
         let is_missing = |number: &ProgramNumber| base.image.program(*number).is_none();
         let missing: Vec<Text> = ProgramNumber::all()
             .filter(is_missing)
-            .map(|number| Text::new("ib_startup.program").with("program", number.get()))
+            .map(|number| TEXTS.text("ib_startup.program").with("program", number.get()))
             .collect();
         if !missing.is_empty() {
             return Some(Err(missing));

@@ -13,7 +13,8 @@ use egui::Ui;
 use crate::app::Action;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::Chart;
-use crate::devices::interbus::state::{Action as Interbus, Encoder};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS};
+use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, empty, enabled_button, paragraph, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -63,22 +64,22 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 
 /// A program of which nothing is known, and the way to know it.
 fn unread(ui: &mut Ui, skin: &Skin, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
-    card(ui, skin, "ib_cams.title", |ui| {
+    card(ui, skin, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;
         if encoder.staged.wanted().is_none() {
-            empty(ui, skin, &skin.say("ib_set.nothing"), None);
+            empty(ui, skin, &say(skin, "ib_set.nothing"), None);
             return;
         }
-        empty(ui, skin, &skin.say("ib_cams.unread"), None);
+        empty(ui, skin, &say(skin, "ib_cams.unread"), None);
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         ui.vertical_centered(|ui| {
-            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("ib_cams.read_one")).clicked() {
+            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "ib_cams.read_one")).clicked() {
                 actions.push(Action::device(id, Interbus::ReadPrograms(vec![program])));
             }
-            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("ib_cams.read_all")).clicked() {
+            if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "ib_cams.read_all")).clicked() {
                 actions.push(Action::device(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
             }
         });
-        paragraph(ui, skin.caption(skin.say("ib_cams.read_words")));
+        paragraph(ui, skin.caption(say(skin, "ib_cams.read_words")));
     });
 }

@@ -5,6 +5,7 @@ use egui::Ui;
 use crate::app::Action;
 use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::devices::interbus::state::{InterbusForm, InterbusWay};
+use crate::devices::interbus::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
@@ -40,7 +41,7 @@ impl TypedConnectForm for InterbusConnectForm {
         ];
         segments(ui, skin, &mut form.way, ways);
         if form.way == InterbusWay::Gateway {
-            paragraph(ui, skin.caption(skin.say("connect.gateway_words")));
+            paragraph(ui, skin.caption(say(skin, "connect.gateway_words")));
         }
         ui.add_space(skin.space.between);
         match form.way {
@@ -64,7 +65,7 @@ impl TypedConnectForm for InterbusConnectForm {
             if form.way == InterbusWay::Virtual {
                 registers(ui, skin, form);
             }
-            let word = skin.say("connect.handshake");
+            let word = say(skin, "connect.handshake");
             entry(ui, skin, &word, |ui| {
                 text_entry(ui, &mut form.handshake, 96.0, &word, "2000");
                 ui.label(skin.label("ms"));
@@ -75,20 +76,20 @@ impl TypedConnectForm for InterbusConnectForm {
 
 /// Where the words stand in the gateway.
 fn registers(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
-    let word = skin.say("connect.unit");
+    let word = say(skin, "connect.unit");
     entry(ui, skin, &word, |ui| text_entry(ui, &mut form.unit, 96.0, &word, "1"));
-    let word = skin.say("connect.input");
+    let word = say(skin, "connect.input");
     entry(ui, skin, &word, |ui| text_entry(ui, &mut form.input, 96.0, &word, "0"));
-    let word = skin.say("connect.output");
+    let word = say(skin, "connect.output");
     entry(ui, skin, &word, |ui| text_entry(ui, &mut form.output, 96.0, &word, "0"));
     order(ui, skin, form);
 }
 
 fn order(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
-    let word = skin.say("connect.word_order");
+    let word = say(skin, "connect.word_order");
     entry(ui, skin, &word, |ui| {
         let orders = [(false, "connect.high_first"), (true, "connect.low_first")];
-        choice(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, skin.say(id))));
+        choice(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, say(skin, id))));
     });
 }
 

@@ -1,12 +1,11 @@
 //! Who the encoder is, what it sends, and how it is wired.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
-use crate::app::Action;
+use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOutValue, Reply, StartupMode};
-use crate::devices::interbus::state::explain;
-use crate::devices::interbus::state::{Action as Interbus, Encoder, said, words};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, explain, said, words};
+use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, paragraph, row, two_columns};
 use crate::ui::{Skin, icons, motor};
@@ -55,29 +54,29 @@ fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Actio
         let serial = skin.say("encoder_card.serial");
         if let Some(survey) = &encoder.survey {
             let identity = &survey.identity;
-            ui.label(skin.value(skin.say("ib_card.class")));
+            ui.label(skin.value(say(skin, "ib_card.class")));
             ui.add_space(skin.space.inside);
             row(ui, skin, &serial, skin.mono(&identity.serial_number));
-            row(ui, skin, &skin.say("ib_card.version"), skin.mono(identity.software_version.to_string()));
-            row(ui, skin, &skin.say("ib_card.flags"), skin.words(&words::flags(identity.flags)));
-            row(ui, skin, &skin.say("ib_card.mode"), skin.words(&explain::startup(identity.mode)));
+            row(ui, skin, &say(skin, "ib_card.version"), skin.mono(identity.software_version.to_string()));
+            row(ui, skin, &say(skin, "ib_card.flags"), skin.words(&words::flags(identity.flags)));
+            row(ui, skin, &say(skin, "ib_card.mode"), skin.words(&explain::startup(identity.mode)));
             let range = words::range(identity.steps, identity.revolutions);
-            row(ui, skin, &skin.say("ib_card.range"), skin.words(&range));
+            row(ui, skin, &say(skin, "ib_card.range"), skin.words(&range));
             let time = words::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
-            row(ui, skin, &skin.say("ib_card.time"), skin.words(&time));
+            row(ui, skin, &say(skin, "ib_card.time"), skin.words(&time));
             let celsius = words::celsius(survey.temperature_tenths);
-            row(ui, skin, &skin.say("ib_card.temperature"), skin.words(&celsius));
+            row(ui, skin, &say(skin, "ib_card.temperature"), skin.words(&celsius));
         } else if let Some(profile) = encoder.profile() {
-            ui.label(skin.value(skin.say("ib_card.class")));
+            ui.label(skin.value(say(skin, "ib_card.class")));
             ui.add_space(skin.space.inside);
             row(ui, skin, &serial, skin.mono(&profile.identity.serial_number));
             let parameters = &profile.image.parameters;
             let range = words::range(parameters.steps, parameters.revolutions);
-            row(ui, skin, &skin.say("ib_card.range"), skin.words(&range));
+            row(ui, skin, &say(skin, "ib_card.range"), skin.words(&range));
             let programs = profile.image.known().count();
-            row(ui, skin, &skin.say("ib_card.programs"), programs.to_string());
+            row(ui, skin, &say(skin, "ib_card.programs"), programs.to_string());
         } else {
-            empty(ui, skin, &skin.say("ib_card.nothing"), None);
+            empty(ui, skin, &say(skin, "ib_card.nothing"), None);
         }
     });
 }
@@ -90,40 +89,40 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {
-        lines_ui(ui, skin, encoder.check.as_deref(), "ib_check.nothing");
+        lines_ui(ui, skin, encoder.check.as_deref(), TEXTS.text("ib_check.nothing"));
     });
 }
 
 /// The word that comes, and what comes: position, speed, or the outputs of a program.
 fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, skin, "ib_sends.title", |ui| {
+    card(ui, skin, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
             None => {
-                empty(ui, skin, &skin.say("ib_sends.nothing"), None);
+                empty(ui, skin, &say(skin, "ib_sends.nothing"), None);
             }
             Some(reading) => {
-                row(ui, skin, &skin.say("ib_sends.word"), skin.mono(format!("0x{:08X}", reading.word)));
+                row(ui, skin, &say(skin, "ib_sends.word"), skin.mono(format!("0x{:08X}", reading.word)));
                 let says = said::told(reading.word, &encoder.known());
-                row(ui, skin, &skin.say("ib_sends.says"), skin.words(&says));
+                row(ui, skin, &say(skin, "ib_sends.says"), skin.words(&says));
                 if let Some(warning) = said::stray(reading.word) {
                     paragraph(ui, RichText::new(skin.words(&warning)).color(skin.palette.warn));
-                    paragraph(ui, skin.caption(skin.say("ib_sends.swapped")));
+                    paragraph(ui, skin.caption(say(skin, "ib_sends.swapped")));
                 }
             }
         }
         ui.add_space(skin.space.inside);
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         if encoder.record.last().is_some_and(|own| matches!(own.reply(), Reply::Echo { .. } | Reply::Busy { .. })) {
-            paragraph(ui, RichText::new(skin.say("ib_sends.left")).color(skin.palette.warn));
+            paragraph(ui, RichText::new(say(skin, "ib_sends.left")).color(skin.palette.warn));
         }
         if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &skin.say("lead_back_card.button")).clicked() {
             actions.push(Action::device(encoder.session.id, Interbus::LeadBack));
         }
         let Some(own) = encoder.mode() else {
-            paragraph(ui, skin.caption(skin.say("ib_sends.mode_unknown")));
+            paragraph(ui, skin.caption(say(skin, "ib_sends.mode_unknown")));
             return;
         };
-        let word = skin.say("ib_sends.mode");
+        let word = say(skin, "ib_sends.mode");
         let mut wanted = own;
         let programs = ProgramNumber::all().map(StartupMode::Cams);
         let usual = if own == StartupMode::K2 { StartupMode::K2 } else { StartupMode::K3 };
@@ -136,7 +135,7 @@ fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
         if wanted != own {
             actions.push(Action::device(encoder.session.id, Interbus::Select(wanted)));
         }
-        paragraph(ui, skin.caption(skin.say("ib_sends.mode_words")));
+        paragraph(ui, skin.caption(say(skin, "ib_sends.mode_words")));
     });
 }
 
@@ -146,7 +145,7 @@ const WIRING: [&str; 5] =
 fn wiring(ui: &mut Ui, skin: &Skin) {
     card(ui, skin, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, skin.label(skin.say(note)));
+            paragraph(ui, skin.label(say(skin, note)));
         }
     });
 }
@@ -154,14 +153,19 @@ fn wiring(ui: &mut Ui, skin: &Skin) {
 #[cfg(test)]
 mod tests {
     use super::WIRING;
+    use crate::devices::interbus::state::TEXTS;
     use crate::ui::wires::check_notes;
 
     /// Issue 22.23: INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, in: male, out: female; no addresses; shield to
     /// the housing, Loop: housing to PE), 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2 MBaud).
     #[test]
     fn the_card_says_what_the_manual_says() {
-        check_notes(&WIRING, &["two 9-pin round connectors", "male for the incoming and female for the outgoing line"]);
-        check_notes(&WIRING, &["10 … 30 V DC (absolute limits)", "at most 3.5 W", "500 kbit/s or 2 Mbit/s"]);
-        check_notes(&WIRING, &["shield to the encoder's housing", "housing to PE", "no address switch"]);
+        check_notes(
+            &TEXTS,
+            &WIRING,
+            &["two 9-pin round connectors", "male for the incoming and female for the outgoing line"],
+        );
+        check_notes(&TEXTS, &WIRING, &["10 … 30 V DC (absolute limits)", "at most 3.5 W", "500 kbit/s or 2 Mbit/s"]);
+        check_notes(&TEXTS, &WIRING, &["shield to the encoder's housing", "housing to PE", "no address switch"]);
     }
 }

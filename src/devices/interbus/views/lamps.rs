@@ -2,9 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::{Action, Text};
+use crate::app::Action;
 use crate::devices::interbus::protocol::{Class, Interface, Lamp, Leds, id_code};
-use crate::devices::interbus::state::words;
+use crate::devices::interbus::state::{TEXTS, words};
+use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, name, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
 
@@ -28,8 +29,8 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, view: &mut View) {
 }
 
 fn lamps(ui: &mut Ui, skin: &Skin, view: &mut View) {
-    card(ui, skin, "ib_leds.title", |ui| {
-        paragraph(ui, skin.label(skin.say("ib_leds.words")));
+    card(ui, skin, TEXTS.text("ib_leds.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "ib_leds.words")));
         ui.horizontal_wrapped(|ui| {
             let View { leds } = view;
             for (word, lamp, blinks) in [
@@ -43,7 +44,7 @@ fn lamps(ui: &mut Ui, skin: &Skin, view: &mut View) {
         });
         ui.add_space(skin.space.inside);
         let Some(own) = view.leds.row() else {
-            paragraph(ui, RichText::new(skin.say("ib_leds.unknown")).color(skin.palette.warn));
+            paragraph(ui, RichText::new(say(skin, "ib_leds.unknown")).color(skin.palette.warn));
             return;
         };
         let (says, remedy) = words::lamps(own);
@@ -60,7 +61,7 @@ fn lamp_ui(ui: &mut Ui, skin: &Skin, word: &str, lamp: &mut Lamp, blinks: bool) 
         Lamp::On => ("ib_leds.on", palette.good),
         Lamp::Blinking => ("ib_leds.blinking", palette.warn),
     };
-    let state = skin.say(id);
+    let state = say(skin, id);
     let icon = RichText::new(if *lamp == Lamp::Off { icons::STOP } else { icons::LIGHTNING }).color(ink);
     let button = egui::Button::new((icon, RichText::new(format!("{word}  {state}")))).min_size([LAMP, 28.0].into());
     if name(ui.add(button), true, &format!("{word}: {state}")).clicked() {
@@ -73,8 +74,8 @@ fn lamp_ui(ui: &mut Ui, skin: &Skin, word: &str, lamp: &mut Lamp, blinks: bool) 
 }
 
 fn codes(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, "ib_id.title", |ui| {
-        paragraph(ui, skin.label(skin.say("ib_id.words")));
+    card(ui, skin, TEXTS.text("ib_id.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "ib_id.words")));
         for class in Class::ALL {
             let codes: Vec<String> = Interface::ALL
                 .into_iter()
@@ -84,7 +85,7 @@ fn codes(ui: &mut Ui, skin: &Skin) {
                 })
                 .collect();
             let (bytes_in, bytes_out) = class.bytes();
-            let bytes = Text::new("ib_id.bytes").with("in", bytes_in).with("out", bytes_out);
+            let bytes = TEXTS.text("ib_id.bytes").with("in", bytes_in).with("out", bytes_out);
             row(ui, skin, &format!("{class:?}"), codes.join(" · "));
             paragraph(ui, skin.caption(skin.words(&bytes)));
         }

@@ -5,7 +5,8 @@ use egui::{RichText, Ui};
 use crate::app::Rgb;
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::StartupMode;
-use crate::devices::interbus::state::Encoder;
+use crate::devices::interbus::state::{Encoder, TEXTS};
+use crate::devices::interbus::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{dot, row};
 use crate::ui::panels::live::{LOW, mark};
@@ -45,14 +46,14 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         if let Some(place) = place {
             row(ui, skin, &skin.say("live.turns"), skin.mono(place.turns.to_string()));
             row(ui, skin, &skin.say("live.step"), skin.mono(place.steps.to_string()));
-            row(ui, skin, &skin.say("ib_live.angle"), skin.mono(format!("{} °", skin.number(place.degrees, 3))));
+            row(ui, skin, &say(skin, "ib_live.angle"), skin.mono(format!("{} °", skin.number(place.degrees, 3))));
         }
         row(ui, skin, &skin.say("live.raw"), skin.mono(word));
     }
     if let Some(StartupMode::Cams(program)) = reading.mode
         && let Some(output) = reading.cams()
     {
-        let text = crate::app::Text::new("ib_startup.program").with("program", program.get());
+        let text = TEXTS.text("ib_startup.program").with("program", program.get());
         ui.label(skin.caption(skin.words(&text)));
         let beside = if ui.available_width() < LAMPS { 4 } else { 8 };
         ui.scope(|ui| {

@@ -15,7 +15,7 @@ mod widgets;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio};
-use crate::devices::interbus::state::Encoder;
+use crate::devices::interbus::state::{Encoder, TEXTS};
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, foot, icons, page};
 
@@ -150,4 +150,9 @@ impl TypedDeviceView for InterbusView {
     fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         live::value_ui(ui, skin, encoder, ink);
     }
+}
+
+/// A text of this folder's catalogue, or a common one, in the window's language.
+pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
+    skin.words(&TEXTS.text(id))
 }

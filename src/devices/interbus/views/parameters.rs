@@ -2,15 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use crate::devices::interbus::state::TEXTS;
+use crate::devices::interbus::views::say;
+
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
 use crate::devices::interbus::jobs::{Change, WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::Parameter;
-use crate::devices::interbus::state::explain;
 use crate::devices::interbus::state::staged::Edit;
-use crate::devices::interbus::state::{Action as Interbus, Encoder, cams, forms, said, words};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, cams, explain, forms, said, words};
 use crate::ui::controls::{
     card, choice, empty, enabled_button, entry, paragraph, problem, row, settled_entry, two_columns,
 };
@@ -54,9 +56,9 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 }
 
 fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, "ib_set.title", |ui| {
+    card(ui, skin, TEXTS.text("ib_set.title"), |ui| {
         let (Some(device), Some(wanted)) = (encoder.staged.device(), encoder.staged.wanted()) else {
-            empty(ui, skin, &skin.say("ib_set.nothing"), None);
+            empty(ui, skin, &say(skin, "ib_set.nothing"), None);
             return;
         };
         let id = encoder.session.id;
@@ -83,7 +85,7 @@ fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                     });
                 }
                 if before != now {
-                    let was = Text::new("ib_set.was").with_text("value", words::setting(parameter, before));
+                    let was = TEXTS.text("ib_set.was").with_text("value", words::setting(parameter, before));
                     ui.add(egui::Label::new(RichText::new(skin.words(&was)).color(skin.palette.staged)).truncate());
                 } else if let Ok(gear) = new.gear()
                     && parameter != Parameter::Direction
@@ -101,12 +103,13 @@ fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
         match new.gear() {
             Ok(gear) => {
                 let per_turn = f64::from(gear.steps()) / f64::from(gear.turns());
-                let text = Text::new("ib_set.gear")
+                let text = TEXTS
+                    .text("ib_set.gear")
                     .with_number("steps", per_turn, if gear.steps() % gear.turns() == 0 { 0 } else { 4 })
                     .with_number("degrees", 360.0 / per_turn, 5);
                 paragraph(ui, skin.label(skin.words(&text)));
                 if gear.steps() % gear.turns() != 0 {
-                    paragraph(ui, skin.caption(skin.say("ib_set.uneven")));
+                    paragraph(ui, skin.caption(say(skin, "ib_set.uneven")));
                 }
             }
             Err(error) => {
@@ -114,23 +117,23 @@ fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
             }
         }
         if encoder.identity().is_some_and(|own| own.flags.steps_minus_one()) {
-            paragraph(ui, skin.caption(skin.say("ib_set.steps_minus_one")));
+            paragraph(ui, skin.caption(say(skin, "ib_set.steps_minus_one")));
         }
-        paragraph(ui, skin.caption(skin.say("ib_set.mounting")));
+        paragraph(ui, skin.caption(say(skin, "ib_set.mounting")));
     });
 }
 
 fn preset(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, "ib_preset.title", |ui| {
-        paragraph(ui, skin.label(skin.say("ib_preset.words")));
+    card(ui, skin, TEXTS.text("ib_preset.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "ib_preset.words")));
         let id = encoder.session.id;
         let Some(parameters) = encoder.staged.device().map(|image| image.parameters) else { return };
         let ready = encoder.session.is_ready() && encoder.is_stopped();
-        let word = skin.say("ib_preset.value");
+        let word = say(skin, "ib_preset.value");
         entry(ui, skin, &word, |ui| {
             let hint = parameters.preset.to_string();
             crate::ui::controls::text_entry(ui, &mut view.preset, NUMBER, &word, &hint);
-            if enabled_button(ui, ready, icons::TARGET, &skin.say("ib_preset.set")).clicked() {
+            if enabled_button(ui, ready, icons::TARGET, &say(skin, "ib_preset.set")).clicked() {
                 match forms::preset(&view.preset, &parameters) {
                     Ok(value) => {
                         view.preset_problem = None;
@@ -142,21 +145,21 @@ fn preset(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         });
         problem(ui, skin, view.preset_problem.as_ref());
         if let Some(position) = encoder.position() {
-            row(ui, skin, &skin.say("ib_preset.now"), skin.mono(position.to_string()));
+            row(ui, skin, &say(skin, "ib_preset.now"), skin.mono(position.to_string()));
         }
         ui.add_space(skin.space.inside);
-        if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ib_preset.default")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "ib_preset.default")).clicked() {
             actions.push(Action::device(id, Interbus::Plan(Box::new(Change::Default))));
         }
-        paragraph(ui, skin.caption(skin.say("ib_preset.default_words")));
+        paragraph(ui, skin.caption(say(skin, "ib_preset.default_words")));
     });
 }
 
 /// How often the memory has stored, as far as this computer has seen it.
 fn wear(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, "ib_wear.title", |ui| {
+    card(ui, skin, TEXTS.text("ib_wear.title"), |ui| {
         let Some(stores) = encoder.stores() else {
-            paragraph(ui, skin.label(skin.say("ib_wear.unknown")));
+            paragraph(ui, skin.label(say(skin, "ib_wear.unknown")));
             return;
         };
         let palette = skin.palette;
@@ -165,21 +168,21 @@ fn wear(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
             _ if stores >= WEAR_WARNING => palette.warn,
             _ => palette.accent,
         };
-        let text = Text::new("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
+        let text = TEXTS.text("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
         ui.label(skin.words(&text));
         let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
         let text =
-            Text::new("ib_wear.words").with("warning", WEAR_WARNING).with("ask", WEAR_ASK).with("limit", WEAR_LIMIT);
+            TEXTS.text("ib_wear.words").with("warning", WEAR_WARNING).with("ask", WEAR_ASK).with("limit", WEAR_LIMIT);
         paragraph(ui, skin.caption(skin.words(&text)));
     });
 }
 
 /// The words of the last handshakes.
 fn handshake(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, "ib_handshake.title", |ui| {
+    card(ui, skin, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {
-            paragraph(ui, skin.label(skin.say("ib_handshake.nothing")));
+            paragraph(ui, skin.label(say(skin, "ib_handshake.nothing")));
             return;
         }
         let list = egui::ScrollArea::vertical().id_salt("handshake").max_height(WORDS).stick_to_bottom(true);

@@ -4,8 +4,8 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::{READ_OUTS, ReadOut};
-use crate::devices::interbus::state::explain;
-use crate::devices::interbus::state::{Action as Interbus, Encoder, words};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, explain, words};
+use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, icon_button, paragraph};
 use crate::ui::{Skin, icons};
 
@@ -20,8 +20,8 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mu
     }
     let ready = encoder.session.is_ready() && encoder.is_stopped();
     let id = encoder.session.id;
-    card(ui, skin, "ib_values.title", |ui| {
-        paragraph(ui, skin.label(skin.say("ib_values.words")));
+    card(ui, skin, TEXTS.text("ib_values.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "ib_values.words")));
         let wide = ui.available_width() > 640.0;
         let columns = if wide { 2 } else { 1 };
         egui::Grid::new("read_outs").num_columns(columns * 3).spacing([12.0, 4.0]).show(ui, |ui| {
@@ -43,8 +43,8 @@ pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mu
             }
         });
         ui.add_space(skin.space.between);
-        ui.label(skin.heading(skin.say("ib_values.chip")));
-        paragraph(ui, skin.caption(skin.say("ib_values.chip_words")));
+        ui.label(skin.heading(say(skin, "ib_values.chip")));
+        paragraph(ui, skin.caption(say(skin, "ib_values.chip_words")));
         ui.horizontal_wrapped(|ui| {
             for what in (0..16).filter_map(ReadOut::chip_register) {
                 let name = skin.words(&explain::read_out(what));

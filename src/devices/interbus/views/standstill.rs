@@ -1,10 +1,10 @@
 //! What a running machine would notice is done only once somebody has said that it stands.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
-use crate::app::Action;
+use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::state::{Action as Interbus, Encoder};
+use crate::devices::interbus::views::say;
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::{Skin, icons};
 
@@ -20,18 +20,18 @@ pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut 
         ui.horizontal_wrapped(|ui| {
             let ink = if stopped { skin.palette.good } else { skin.palette.warn };
             ui.label(RichText::new(if stopped { icons::CHECK_CIRCLE } else { icons::WARNING }).color(ink));
-            if ui.checkbox(&mut stopped, skin.say("ib_stop.stands")).changed() {
+            if ui.checkbox(&mut stopped, say(skin, "ib_stop.stands")).changed() {
                 actions.push(Action::device(id, Interbus::Stopped(stopped)));
             }
             if encoder.survey.is_none() {
                 let ready = encoder.is_stopped() && encoder.session.is_ready();
-                let word = skin.say("ib_stop.read");
+                let word = say(skin, "ib_stop.read");
                 if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &word).clicked() {
                     actions.push(Action::Command(id, DeviceCommand::Read));
                 }
             }
         });
-        paragraph(ui, skin.caption(skin.say("ib_stop.words")));
+        paragraph(ui, skin.caption(say(skin, "ib_stop.words")));
     });
     ui.add_space(skin.space.groups);
 }

@@ -8,15 +8,14 @@ use super::design::Edit;
 use super::encoder::Encoder;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
-use crate::app::ActContext;
-use crate::app::DeviceCommand;
 use crate::app::action::{Action as StudioAction, Done as StudioDone, FileQuestion};
 use crate::app::documents::{document_of, only_looked_at};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, OnLine, Source};
-use crate::app::{Severity, Text, explain};
+use crate::app::{ActContext, DeviceCommand, Severity, Text, explain};
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{find, frame_bits};
+use crate::devices::ssi::state::TEXTS;
 use crate::profile::{Body, Document};
 use crate::store::write_atomically;
 
@@ -83,7 +82,7 @@ impl Encoder {
                 let clocks = self.clocks();
                 let words = self.record.words(clocks);
                 if words.is_empty() {
-                    return self.session.refuse(Text::new("ssi_find.nothing_read"), services);
+                    return self.session.refuse(TEXTS.text("ssi_find.nothing_read"), services);
                 }
                 let lines: Vec<String> = words.iter().map(|word| frame_bits(*word, clocks)).collect();
                 self.write_text(path, lines.join("\n") + "\n", services);
@@ -107,7 +106,7 @@ impl Encoder {
                 }
             }
             DeviceCommand::Review | DeviceCommand::Restore(_) => {
-                services.tell(Severity::Note, vec![Text::new("ssi.never_written")], Some(&self.session.name()));
+                services.tell(Severity::Note, vec![TEXTS.text("ssi.never_written")], Some(&self.session.name()));
             }
             DeviceCommand::ReadPosition => self.submit(SsiJob::Read, services),
             DeviceCommand::Poll(interval) => {
@@ -176,7 +175,7 @@ impl Encoder {
         let clocks = self.clocks();
         let frames = self.record.words(clocks);
         if frames.is_empty() {
-            self.hunt = Hunt::Failed(Text::new("ssi_find.nothing_read"));
+            self.hunt = Hunt::Failed(TEXTS.text("ssi_find.nothing_read"));
             return;
         }
         self.find(services, move || Ok(Frames { origin: Origin::Live, clocks, frames }));

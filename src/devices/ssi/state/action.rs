@@ -1,12 +1,12 @@
 //! What can be asked of an SSI encoder that is shown, or of its layout.
 
-use crate::app::DeviceAction;
 use std::path::PathBuf;
 
 use super::design::Edit;
 use super::export::Format;
 use super::form::{Field, Input};
 use super::strip::Handle;
+use crate::app::DeviceAction;
 
 /// Something in the SSI tab.
 pub enum Action {

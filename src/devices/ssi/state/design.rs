@@ -13,6 +13,7 @@ use crate::devices::ssi::protocol::{
     Advice, Code, Descriptor, Direction, ErrorPlace, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,
 };
 use crate::devices::ssi::sim::DELIVERED;
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::link::{LinkUrl, Scheme};
 
@@ -240,7 +241,7 @@ impl Designer {
         match edit {
             Edit::Family(key) => {
                 let Some(family) = self.families.named(&key) else {
-                    return Err(Text::new("ssi.no_family").with("key", key));
+                    return Err(TEXTS.text("ssi.no_family").with("key", key));
                 };
                 // A preset of the one before stands for another place.
                 profile.preset = 0;
@@ -248,7 +249,7 @@ impl Designer {
             }
             Edit::Free => profile.family = None,
             Edit::Settings(settings) => {
-                let Some(family) = self.family() else { return Err(Text::new("ssi.no_family").with("key", "–")) };
+                let Some(family) = self.family() else { return Err(TEXTS.text("ssi.no_family").with("key", "–")) };
                 return resolved(profile, family, *settings);
             }
             Edit::Frame(descriptor) => profile.descriptor = *descriptor,
@@ -270,7 +271,7 @@ impl Designer {
         // A preset beyond the positions that there are now stands for none of them.
         let last = profile.descriptor.range.last().unwrap_or(0);
         if profile.preset > last {
-            return Err(Text::new("ssi.preset_range").with("preset", profile.preset).with("most", last));
+            return Err(TEXTS.text("ssi.preset_range").with("preset", profile.preset).with("most", last));
         }
         Ok(profile)
     }

@@ -2,10 +2,10 @@
 
 use super::design::Edit;
 use super::encoder::Encoder;
-use crate::app::Text;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Session, Source};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::profile::SsiProfile;
+use crate::devices::ssi::state::TEXTS;
 use crate::profile::{Body, Change, Document, Profile};
 
 /// What is changed, an entry each; none where the layout is as it was saved. Earlier versions kept the whole of it, as the
@@ -56,7 +56,7 @@ impl Drafted for Encoder {
             Some(profile) => self.edit(Edit::Whole(Box::new(profile))),
             None if edits.is_empty() => {}
             // What the file says by now and what was changed make no frame together.
-            None => self.designer.refuse(Text::new("ssi.draft_unfit")),
+            None => self.designer.refuse(TEXTS.text("ssi.draft_unfit")),
         }
     }
 

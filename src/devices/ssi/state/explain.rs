@@ -11,10 +11,11 @@ use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
     Advice, Code, Coded, Doubt, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning,
 };
+use crate::devices::ssi::state::TEXTS;
 
 pub use check::check;
 pub use family::{note, store};
-pub(crate) use refused::{PHRASES, cannot_work};
+pub(crate) use refused::cannot_work;
 pub use refused::{format, frame_text, layout, settings};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
@@ -43,26 +44,26 @@ pub fn finding(finding: &Finding) -> Text {
                 (Meaning::Invalid, true) => "ssi.error_since",
                 (Meaning::Warning, _) => "ssi.warning",
             };
-            Text::new(id).with("name", name)
+            TEXTS.text(id).with("name", name)
         }
-        Finding::Pattern { name, meaning: Meaning::Invalid } => Text::new("ssi.pattern").with("name", name),
-        Finding::Pattern { name, meaning: Meaning::Warning } => Text::new("ssi.pattern_perhaps").with("name", name),
-        Finding::StuckHigh { sure: true } => Text::new("ssi.stuck_high"),
-        Finding::StuckHigh { sure: false } => Text::new("ssi.stuck_high_perhaps"),
-        Finding::StuckLow { sure: true } => Text::new("ssi.stuck_low"),
-        Finding::StuckLow { sure: false } => Text::new("ssi.stuck_low_perhaps"),
-        Finding::Code => Text::new("ssi.code"),
-        Finding::Padding => Text::new("ssi.padding"),
-        Finding::Parity => Text::new("ssi.parity"),
-        Finding::Repeat => Text::new("ssi.repeat"),
+        Finding::Pattern { name, meaning: Meaning::Invalid } => TEXTS.text("ssi.pattern").with("name", name),
+        Finding::Pattern { name, meaning: Meaning::Warning } => TEXTS.text("ssi.pattern_perhaps").with("name", name),
+        Finding::StuckHigh { sure: true } => TEXTS.text("ssi.stuck_high"),
+        Finding::StuckHigh { sure: false } => TEXTS.text("ssi.stuck_high_perhaps"),
+        Finding::StuckLow { sure: true } => TEXTS.text("ssi.stuck_low"),
+        Finding::StuckLow { sure: false } => TEXTS.text("ssi.stuck_low_perhaps"),
+        Finding::Code => TEXTS.text("ssi.code"),
+        Finding::Padding => TEXTS.text("ssi.padding"),
+        Finding::Parity => TEXTS.text("ssi.parity"),
+        Finding::Repeat => TEXTS.text("ssi.repeat"),
     }
 }
 
 /// Something that is accepted although the manual does not speak of it.
 pub fn advice(advice: &Advice) -> Text {
     match advice {
-        Advice::Code(code) => Text::new("ssi.other_code").with("code", code),
-        Advice::Clocks { bits, clocks } => Text::new("ssi.more_clocks").with("bits", bits).with("clocks", clocks),
+        Advice::Code(code) => TEXTS.text("ssi.other_code").with("code", code),
+        Advice::Clocks { bits, clocks } => TEXTS.text("ssi.more_clocks").with("bits", bits).with("clocks", clocks),
     }
 }
 
@@ -72,17 +73,17 @@ pub fn timing(warning: &Warning) -> Text {
     let kilohertz = |hz: f64| hz / 1000.0;
     match warning {
         Warning::EncoderClock { most_hz } => {
-            Text::new("ssi.clock_encoder").with_number("khz", kilohertz((*most_hz).into()), 0)
+            TEXTS.text("ssi.clock_encoder").with_number("khz", kilohertz((*most_hz).into()), 0)
         }
         Warning::CableClock { most_hz } => {
-            Text::new("ssi.clock_cable").with_number("khz", kilohertz((*most_hz).into()), 0)
+            TEXTS.text("ssi.clock_cable").with_number("khz", kilohertz((*most_hz).into()), 0)
         }
-        Warning::CableLong => Text::new("ssi.cable_long"),
-        Warning::ClockSlow { least_hz } => Text::new("ssi.clock_slow").with_number("khz", kilohertz(*least_hz), 1),
-        Warning::PauseShort { least } => Text::new("ssi.pause_short").with_number("micros", micros(least), 0),
-        Warning::PauseLong { most } => Text::new("ssi.pause_long").with_number("millis", micros(most) / 1000.0, 0),
-        Warning::Repeats { update } => Text::new("ssi.repeats").with_number("micros", micros(update), 0),
-        Warning::NoSynchronous => Text::new("ssi.no_synchronous"),
+        Warning::CableLong => TEXTS.text("ssi.cable_long"),
+        Warning::ClockSlow { least_hz } => TEXTS.text("ssi.clock_slow").with_number("khz", kilohertz(*least_hz), 1),
+        Warning::PauseShort { least } => TEXTS.text("ssi.pause_short").with_number("micros", micros(least), 0),
+        Warning::PauseLong { most } => TEXTS.text("ssi.pause_long").with_number("millis", micros(most) / 1000.0, 0),
+        Warning::Repeats { update } => TEXTS.text("ssi.repeats").with_number("micros", micros(update), 0),
+        Warning::NoSynchronous => TEXTS.text("ssi.no_synchronous"),
     }
 }
 
@@ -90,17 +91,18 @@ pub fn timing(warning: &Warning) -> Text {
 pub fn frame(layout: &Layout) -> Text {
     let descriptor = layout.descriptor();
     let range = match descriptor.range {
-        Range::Bits { multiturn: 0, singleturn } => Text::new("ssi_range.single").with("singleturn", singleturn),
+        Range::Bits { multiturn: 0, singleturn } => TEXTS.text("ssi_range.single").with("singleturn", singleturn),
         Range::Bits { multiturn, singleturn } => {
-            Text::new("ssi_range.multi").with("multiturn", multiturn).with("singleturn", singleturn)
+            TEXTS.text("ssi_range.multi").with("multiturn", multiturn).with("singleturn", singleturn)
         }
-        Range::Steps { per_turn, turns } => Text::new("ssi_range.steps").with("steps", per_turn).with("turns", turns),
-        Range::RoundAxis { steps, revolutions } => Text::new("ssi_range.round")
+        Range::Steps { per_turn, turns } => TEXTS.text("ssi_range.steps").with("steps", per_turn).with("turns", turns),
+        Range::RoundAxis { steps, revolutions } => TEXTS
+            .text("ssi_range.round")
             .with("steps", steps)
             .with("above", revolutions.numerator)
             .with("below", revolutions.denominator),
         Range::Length { bits, step_nanometres } => {
-            Text::new("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
+            TEXTS.text("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
         }
     };
     // A name that ends with its clock says it.
@@ -110,7 +112,8 @@ pub fn frame(layout: &Layout) -> Text {
     };
     let errors = descriptor.errors.iter().map(|bit| named(&bit.name, bit.clock)).collect::<Vec<_>>();
     let errors = if errors.is_empty() { "–".to_owned() } else { errors.join(", ") };
-    let line = Text::new("ssi.frame_line")
+    let line = TEXTS
+        .text("ssi.frame_line")
         .with("clocks", layout.clocks())
         .with_text("range", range)
         .with_text("code", code(descriptor.code))
@@ -118,25 +121,25 @@ pub fn frame(layout: &Layout) -> Text {
         .with("errors", errors);
     unusual(layout)
         .into_iter()
-        .fold(line, |line, more| Text::new("ssi.frame_and").with_text("line", line).with_text("more", more))
+        .fold(line, |line, more| TEXTS.text("ssi.frame_and").with_text("line", line).with_text("more", more))
 }
 
 /// What few frames have.
 fn unusual(layout: &Layout) -> Vec<Text> {
     let descriptor = layout.descriptor();
-    let between = (descriptor.between > 0).then(|| Text::new("ssi.frame_between").with("zeros", descriptor.between));
-    let over = (descriptor.coded != Coded::Position).then(|| Text::new("ssi.frame_over"));
+    let between = (descriptor.between > 0).then(|| TEXTS.text("ssi.frame_between").with("zeros", descriptor.between));
+    let over = (descriptor.coded != Coded::Position).then(|| TEXTS.text("ssi.frame_over"));
     let parity = descriptor.parity.map(|parity| {
-        Text::new(if parity.even { "ssi.frame_even" } else { "ssi.frame_odd" }).with("clock", parity.clock)
+        TEXTS.text(if parity.even { "ssi.frame_even" } else { "ssi.frame_odd" }).with("clock", parity.clock)
     });
-    let repeat = descriptor.repeat.map(|repeat| Text::new("ssi.frame_twice").with("bits", repeat.word));
-    let inverted = descriptor.inverted.then(|| Text::new("ssi.frame_inverted"));
+    let repeat = descriptor.repeat.map(|repeat| TEXTS.text("ssi.frame_twice").with("bits", repeat.word));
+    let inverted = descriptor.inverted.then(|| TEXTS.text("ssi.frame_inverted"));
     [between, over, parity, repeat, inverted].into_iter().flatten().collect()
 }
 
 /// A code by its name.
 pub fn code(code: Code) -> Text {
-    Text::new(match code {
+    TEXTS.text(match code {
         Code::Binary => "ssi_form.binary",
         Code::Gray => "ssi_form.gray",
         Code::GrayExcess => "ssi_form.gray_excess",
@@ -147,22 +150,22 @@ pub fn code(code: Code) -> Text {
 /// What would tell layouts apart.
 pub fn open(open: Open) -> Text {
     match open {
-        Open::TurnOnce => Text::new("ssi_find.turn_once"),
-        Open::TurnFarther { from, to } if from == to => Text::new("ssi_find.turn_farther_one").with("clock", from),
-        Open::TurnFarther { from, to } => Text::new("ssi_find.turn_farther").with("from", from).with("to", to),
-        Open::PassAnEnd => Text::new("ssi_find.pass_the_end"),
-        Open::Direction => Text::new("ssi_find.direction"),
-        Open::OtherSpeed => Text::new("ssi_find.other_speed"),
-        Open::PassTheEnd { least, most } => Text::new("ssi_find.steps").with("least", least).with("most", most),
-        Open::Unexplained { clock } => Text::new("ssi_find.unexplained").with("clock", clock),
-        Open::SeeAnError => Text::new("ssi_find.see_an_error"),
-        Open::TypeLabel => Text::new("ssi_find.type_label"),
+        Open::TurnOnce => TEXTS.text("ssi_find.turn_once"),
+        Open::TurnFarther { from, to } if from == to => TEXTS.text("ssi_find.turn_farther_one").with("clock", from),
+        Open::TurnFarther { from, to } => TEXTS.text("ssi_find.turn_farther").with("from", from).with("to", to),
+        Open::PassAnEnd => TEXTS.text("ssi_find.pass_the_end"),
+        Open::Direction => TEXTS.text("ssi_find.direction"),
+        Open::OtherSpeed => TEXTS.text("ssi_find.other_speed"),
+        Open::PassTheEnd { least, most } => TEXTS.text("ssi_find.steps").with("least", least).with("most", most),
+        Open::Unexplained { clock } => TEXTS.text("ssi_find.unexplained").with("clock", clock),
+        Open::SeeAnError => TEXTS.text("ssi_find.see_an_error"),
+        Open::TypeLabel => TEXTS.text("ssi_find.type_label"),
     }
 }
 
 /// Why the first layout that was found is not to be relied on, or that it is.
 pub fn doubt(doubt: Option<Doubt>) -> Text {
-    Text::new(match doubt {
+    TEXTS.text(match doubt {
         None => "ssi_find.sure",
         Some(Doubt::Standing) => "ssi_find.standing",
         Some(Doubt::Stuck { high: true }) => "ssi.stuck_high",
@@ -175,7 +178,8 @@ pub fn doubt(doubt: Option<Doubt>) -> Text {
 
 /// What speaks for a layout.
 pub fn evidence(evidence: &Evidence) -> Text {
-    Text::new("ssi_find.evidence")
+    TEXTS
+        .text("ssi_find.evidence")
         .with("steps", evidence.steps_a_frame)
         .with("jumps", evidence.jumps)
         .with("misfits", evidence.misfits)
@@ -186,7 +190,7 @@ pub fn evidence(evidence: &Evidence) -> Text {
 pub fn noted(noted: &Noted) -> Text {
     let seconds = |time: crate::analysis::Time| time.nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
-    Text::new(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(
+    TEXTS.text(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(
         "last",
         seconds(noted.last),
         3,

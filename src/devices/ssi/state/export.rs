@@ -5,6 +5,7 @@ use crate::app::Text;
 use crate::devices::ssi::protocol::{
     bit_table, c99, frame_svg, settings_sheet, structured_text, timing_svg, to_linuxcnc,
 };
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
 /// What a layout can be written as beside a profile.
@@ -97,7 +98,7 @@ impl Designer {
             Format::Table => bit_table(layout),
             Format::Frame => frame_svg(layout, None, &title),
             Format::Timing => {
-                let times = self.times().ok_or_else(|| Text::new("ssi_timing.no_family"))?;
+                let times = self.times().ok_or_else(|| TEXTS.text("ssi_timing.no_family"))?;
                 timing_svg(layout, times, &self.reads(), &title)
             }
         })

@@ -7,6 +7,7 @@ mod free;
 use super::design::{Designer, Edit};
 use crate::app::{Text, explain};
 use crate::devices::ssi::protocol::{Code, Coded, Descriptor, Direction, Fraction, Range};
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
 /// A row of the form.
@@ -160,21 +161,21 @@ impl Row {
     fn number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
         let unit = match unit {
             "" => None,
-            "bit" => Some(Text::new("ssi_form.bit")),
+            "bit" => Some(TEXTS.text("ssi_form.bit")),
             symbol => Some(explain::plain(symbol)),
         };
-        Row { field, name: Text::new(name), entry: Entry::Number { value: value.into(), unit }, hint: None }
+        Row { field, name: TEXTS.text(name), entry: Entry::Number { value: value.into(), unit }, hint: None }
     }
 
     fn switch(field: Field, name: &'static str, is_on: bool) -> Self {
-        Row { field, name: Text::new(name), entry: Entry::Switch(is_on), hint: None }
+        Row { field, name: TEXTS.text(name), entry: Entry::Switch(is_on), hint: None }
     }
 
     /// A choice; the options stand in `all` with their words.
     fn choice<T: PartialEq>(field: Field, name: &'static str, all: &[(T, Text)], own: &T) -> Self {
         let chosen = all.iter().position(|(one, _)| one == own).unwrap_or(usize::MAX);
         let options = all.iter().map(|(_, words)| words.clone()).collect();
-        Row { field, name: Text::new(name), entry: Entry::Choice { options, chosen }, hint: None }
+        Row { field, name: TEXTS.text(name), entry: Entry::Choice { options, chosen }, hint: None }
     }
 
     fn hinted(self, hint: &'static str) -> Self {
@@ -216,7 +217,7 @@ impl Designer {
     /// # Errors
     /// It cannot be: why.
     pub(super) fn entered(&self, field: Field, input: &Input) -> Result<Edit, Text> {
-        let wrong = || Text::new("ssi_form.wrong");
+        let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {
             (Field::Direction, Input::Choice(0)) => return Ok(Edit::Direction(Direction::Clockwise)),
             (Field::Direction, Input::Choice(_)) => return Ok(Edit::Direction(Direction::CounterClockwise)),
@@ -257,7 +258,7 @@ fn counting(designer: &Designer) -> Group {
     let profile = &designer.design().profile;
     let is_length = matches!(profile.descriptor.range, Range::Length { .. });
     let words = |direction| {
-        Text::new(match (direction, is_length) {
+        TEXTS.text(match (direction, is_length) {
             (Direction::Clockwise, false) => "ssi_form.cw",
             (Direction::CounterClockwise, false) => "ssi_form.ccw",
             (Direction::Clockwise, true) => "ssi_form.forwards",
@@ -286,7 +287,7 @@ fn code_row(own: Code) -> Row {
 
 fn over_row(own: Coded) -> Row {
     let words = |coded| {
-        Text::new(match coded {
+        TEXTS.text(match coded {
             Coded::Position => "ssi_form.over_position",
             Coded::Area => "ssi_form.over_area",
             Coded::AreaAndErrors => "ssi_form.over_errors",
@@ -316,7 +317,7 @@ impl RangeKind {
     }
 
     fn words(self) -> Text {
-        Text::new(match self {
+        TEXTS.text(match self {
             RangeKind::Bits => "ssi_form.range_bits",
             RangeKind::Steps => "ssi_form.range_steps",
             RangeKind::RoundAxis => "ssi_form.range_round",
@@ -376,7 +377,7 @@ pub fn whole(text: &str) -> Result<u64, Text> {
         None => plain.parse(),
     };
     let signed = plain.contains(['+', '-']);
-    number.ok().filter(|_| !signed).ok_or_else(|| Text::new("ssi_form.whole").with("text", text.trim()))
+    number.ok().filter(|_| !signed).ok_or_else(|| TEXTS.text("ssi_form.whole").with("text", text.trim()))
 }
 
 /// A number that a byte holds.

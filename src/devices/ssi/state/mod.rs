@@ -16,10 +16,13 @@ mod news;
 mod record;
 mod search;
 pub mod strip;
+mod texts;
 pub mod timing;
 mod trace;
 mod trial;
 mod words;
+
+pub use texts::TEXTS;
 
 pub use action::{Action, Try};
 pub use connect_form::{SsiForm, SsiWay};

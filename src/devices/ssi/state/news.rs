@@ -13,13 +13,12 @@ use crate::buses::bridge::procedures::AdapterError;
 use crate::devices::ssi::jobs::{JobError, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{Identity, Words};
 use crate::devices::ssi::protocol::KIND;
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as explained;
-use crate::link::LinkUrl;
-use crate::link::TraceEntry;
+use crate::link::{LinkUrl, TraceEntry};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::OpenError;
-use crate::worker::{JobId, Session};
+use crate::worker::{JobId, OpenError, Session};
 
 impl Kind for Ssi {
     const KIND: &'static str = KIND;
@@ -43,7 +42,7 @@ impl Kind for Ssi {
     }
 
     fn doing(_: &Self::Doing) -> Text {
-        Text::new("ssi_job.words")
+        TEXTS.text("ssi_job.words")
     }
 
     fn why(error: &JobError) -> Vec<Text> {

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::form::whole;
-use crate::app::Text;
-use crate::app::explain;
+use crate::app::{Text, explain};
 use crate::devices::ssi::protocol::{Search, parse_frame};
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::store::read_file;
 
@@ -60,7 +60,7 @@ pub enum Hunt {
 pub fn read_clocks(text: &str) -> Result<u8, Text> {
     let number = whole(text)?;
     let clocks = u8::try_from(number).ok().filter(|clocks| (1..=64).contains(clocks));
-    clocks.ok_or_else(|| Text::new("ssi_find.clocks_range").with("clocks", number))
+    clocks.ok_or_else(|| TEXTS.text("ssi_find.clocks_range").with("clocks", number))
 }
 
 /// Reads frames from a file, one a line: bits in the order of the clocks or 0x and hex digits, in the first column that
@@ -100,13 +100,13 @@ fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
             Ok(frame) => frames.push(frame),
             Err(error) => {
                 let why = words::frame_text(&error);
-                return Err(Text::new("ssi_find.line").with("line", number).with_text("why", why));
+                return Err(TEXTS.text("ssi_find.line").with("line", number).with_text("why", why));
             }
         }
     }
     match own.map(|(_, clocks)| clocks) {
         Some(clocks) if !frames.is_empty() && (1..=64).contains(&clocks) => Ok((clocks, frames)),
-        _ => Err(Text::new("ssi_find.no_frames")),
+        _ => Err(TEXTS.text("ssi_find.no_frames")),
     }
 }
 

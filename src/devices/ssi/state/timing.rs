@@ -7,6 +7,7 @@ mod tests;
 use super::strip::{Field, Strip, cell};
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Layout, Reads, Taken, Times, Timing};
+use crate::devices::ssi::state::TEXTS;
 
 /// A burst and what comes behind it, until the next one has begun.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,7 +200,7 @@ impl Diagram {
 
     /// What is at a moment: the time, and the clock with what it carries, or what the lines wait for.
     pub fn told(&self, at: f64) -> Vec<Text> {
-        let mut told = vec![Text::new("ssi.timing_at").with_text("time", time(at))];
+        let mut told = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
             told.push(cell(&self.strip, bit.clock));
         } else {
@@ -214,15 +215,15 @@ impl Diagram {
     pub fn words(&self, span: &Span) -> Text {
         let long = time(span.to - span.from);
         let text = match span.what {
-            Lasting::Period => Text::new("ssi.timing_period"),
-            Lasting::Burst => Text::new("ssi.timing_burst").with("clocks", self.clocks()),
-            Lasting::Pause => Text::new("ssi.timing_pause"),
+            Lasting::Period => TEXTS.text("ssi.timing_period"),
+            Lasting::Burst => TEXTS.text("ssi.timing_burst").with("clocks", self.clocks()),
+            Lasting::Pause => TEXTS.text("ssi.timing_pause"),
             Lasting::Monoflop if span.least < span.to => {
-                Text::new("ssi.timing_monoflop_between").with_text("least", time(span.least - span.from))
+                TEXTS.text("ssi.timing_monoflop_between").with_text("least", time(span.least - span.from))
             }
-            Lasting::Monoflop => Text::new("ssi.timing_monoflop"),
-            Lasting::LeastPause => Text::new("ssi.timing_least_pause"),
-            Lasting::Making => Text::new("ssi.timing_making"),
+            Lasting::Monoflop => TEXTS.text("ssi.timing_monoflop"),
+            Lasting::LeastPause => TEXTS.text("ssi.timing_least_pause"),
+            Lasting::Making => TEXTS.text("ssi.timing_making"),
         };
         text.with_text("time", long)
     }
@@ -235,7 +236,7 @@ impl Diagram {
 impl Moment {
     /// In words.
     pub fn words(self) -> Text {
-        Text::new(match self {
+        TEXTS.text(match self {
             Moment::Latched => "ssi.timing_latched",
             Moment::Taken => "ssi.timing_taken",
             Moment::Started => "ssi.timing_started",
@@ -247,7 +248,7 @@ impl Moment {
 
 /// What is left out where the axis is broken, in words.
 pub fn left_out(seconds: f64) -> Text {
-    Text::new("ssi.timing_break").with_text("time", time(seconds))
+    TEXTS.text("ssi.timing_break").with_text("time", time(seconds))
 }
 
 /// A time with four figures at most, in the unit that suits it.
@@ -262,7 +263,7 @@ pub fn time(seconds: f64) -> Text {
     let most = 3_usize.saturating_sub(whole);
     let figures = format!("{value:.most$}");
     let decimals = figures.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len());
-    Text::new(id).with_number("value", value, decimals)
+    TEXTS.text(id).with_number("value", value, decimals)
 }
 
 /// The axis of time: the burst whole, and behind it all that is near to something that happens.

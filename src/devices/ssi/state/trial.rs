@@ -2,6 +2,7 @@
 
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Cell, Finding, Flags, Layout, Place, Reading, parse_frame};
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
 /// The frame that a layout is tried with.
@@ -64,7 +65,7 @@ impl Trial {
             Some(frame) => self.set(frame),
             None => {
                 let most = layout.coding().last();
-                self.problem = Some(Text::new("ssi_trial.range").with("position", position).with("most", most));
+                self.problem = Some(TEXTS.text("ssi_trial.range").with("position", position).with("most", most));
             }
         }
     }
@@ -73,7 +74,7 @@ impl Trial {
     pub(super) fn set_place(&mut self, layout: &Layout, turns: u64, steps: u64) {
         match layout.descriptor().range.position(turns, steps) {
             Some(position) => self.set_position(layout, position),
-            None => self.problem = Some(Text::new("ssi_trial.place").with("turns", turns).with("steps", steps)),
+            None => self.problem = Some(TEXTS.text("ssi_trial.place").with("turns", turns).with("steps", steps)),
         }
     }
 

@@ -2,13 +2,14 @@
 
 use crate::app::Text;
 use crate::devices::ssi::jobs::SsiJob;
+use crate::devices::ssi::state::TEXTS;
 
 /// What a job is.
 pub(super) fn job(job: &SsiJob) -> Text {
     match job {
-        SsiJob::Hello => Text::new("ssi_job.hello"),
-        SsiJob::Set(asking) => Text::new("ssi_job.set").with("clocks", asking.clocks),
+        SsiJob::Hello => TEXTS.text("ssi_job.hello"),
+        SsiJob::Set(asking) => TEXTS.text("ssi_job.set").with("clocks", asking.clocks),
         SsiJob::Check(_) => Text::new("job.check"),
-        SsiJob::Read => Text::new("ssi_job.read"),
+        SsiJob::Read => TEXTS.text("ssi_job.read"),
     }
 }

@@ -5,6 +5,7 @@ use egui::Ui;
 use crate::app::Action;
 use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::devices::ssi::state::{SsiForm, SsiWay};
+use crate::devices::ssi::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{entry, paragraph, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
@@ -40,7 +41,7 @@ impl TypedConnectForm for SsiConnectForm {
         ];
         segments(ui, skin, &mut form.way, ways);
         if form.way == SsiWay::Adapter {
-            paragraph(ui, skin.caption(skin.say("connect.ssi_words")));
+            paragraph(ui, skin.caption(say(skin, "connect.ssi_words")));
         }
         ui.add_space(skin.space.between);
         match form.way {
@@ -56,12 +57,12 @@ impl TypedConnectForm for SsiConnectForm {
             SsiWay::Replay => recording(ui, skin, &mut form.file, actions),
         }
         if form.way != SsiWay::Replay && unfolded(ui, skin, more) {
-            let word = skin.say("connect.voltage");
+            let word = say(skin, "connect.voltage");
             entry(ui, skin, &word, |ui| {
-                text_entry(ui, &mut form.voltage, 96.0, &word, &skin.say("connect.voltage_none"));
+                text_entry(ui, &mut form.voltage, 96.0, &word, &say(skin, "connect.voltage_none"));
                 ui.label(skin.label("V"));
             });
-            paragraph(ui, skin.caption(skin.say("connect.voltage_words")));
+            paragraph(ui, skin.caption(say(skin, "connect.voltage_words")));
             leave_supply(ui, skin, &mut form.leave_supply);
             margin(ui, skin, &mut form.margin);
         }
@@ -69,7 +70,7 @@ impl TypedConnectForm for SsiConnectForm {
 }
 
 fn simulated(ui: &mut Ui, skin: &Skin, form: &mut SsiForm) {
-    let word = skin.say("connect.ssi_layout");
+    let word = say(skin, "connect.ssi_layout");
     entry(ui, skin, &word, |ui| text_entry(ui, &mut form.layout, 260.0, &word, "atm60,code=gray"));
     entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
     entry(ui, skin, &skin.say("connect.fault"), |ui| {

@@ -1,13 +1,13 @@
 //! The encoder behind its adapter, what its error bits have said, and how it is wired.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::wiring;
-use crate::app::{Action, Text};
+use crate::app::{Action, DeviceCommand};
 use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Action as Ssi, Encoder};
+use crate::devices::ssi::state::{Action as Ssi, Encoder, TEXTS};
+use crate::devices::ssi::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Skin, icons, motor};
@@ -45,9 +45,9 @@ fn adapter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
             actions.push(Action::Command(id, DeviceCommand::Read));
         }
     };
-    card_with(ui, skin, "ssi_adapter.title", read, |ui| {
+    card_with(ui, skin, TEXTS.text("ssi_adapter.title"), read, |ui| {
         let Some(identity) = &encoder.identity else {
-            empty(ui, skin, &skin.say("ssi_adapter.nothing"), None);
+            empty(ui, skin, &say(skin, "ssi_adapter.nothing"), None);
             return;
         };
         let hello = &identity.hello;
@@ -56,23 +56,25 @@ fn adapter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action
         row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(&hello.firmware));
         row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(&hello.serial));
         let asking = &identity.asking;
-        let text = Text::new("ssi_adapter.asks")
+        let text = TEXTS
+            .text("ssi_adapter.asks")
             .with("clocks", asking.clocks)
             .with_number("khz", f64::from(identity.clock_hz) / 1000.0, 0)
             .with("pause", asking.pause_us);
-        row(ui, skin, &skin.say("ssi_adapter.reads"), skin.words(&text));
+        row(ui, skin, &say(skin, "ssi_adapter.reads"), skin.words(&text));
         if identity.clock_hz != asking.clock_hz {
-            let text = Text::new("ssi_adapter.other_clock").with_number("khz", f64::from(asking.clock_hz) / 1000.0, 0);
+            let text = TEXTS.text("ssi_adapter.other_clock").with_number("khz", f64::from(asking.clock_hz) / 1000.0, 0);
             paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
         }
         let supply = identity.supply.map(|supply| match supply.measured {
-            Some((millivolt, milliampere)) => Text::new("ssi_adapter.supplies")
+            Some((millivolt, milliampere)) => TEXTS
+                .text("ssi_adapter.supplies")
                 .with_number("volts", f64::from(millivolt) / 1000.0, 2)
                 .with("milliampere", milliampere),
-            None => Text::new("ssi_adapter.supply_off"),
+            None => TEXTS.text("ssi_adapter.supply_off"),
         });
-        let supply = supply.unwrap_or_else(|| Text::new("ssi_adapter.no_supply"));
-        row(ui, skin, &skin.say("ssi_adapter.supply"), skin.words(&supply));
+        let supply = supply.unwrap_or_else(|| TEXTS.text("ssi_adapter.no_supply"));
+        row(ui, skin, &say(skin, "ssi_adapter.supply"), skin.words(&supply));
     });
 }
 
@@ -81,16 +83,16 @@ fn errors(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>
     let noted = encoder.record.tally().noted();
     let id = encoder.session.id;
     let forget = |ui: &mut Ui| {
-        if enabled_button(ui, !noted.is_empty(), icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_tally.forget"))
+        if enabled_button(ui, !noted.is_empty(), icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "ssi_tally.forget"))
             .clicked()
         {
             actions.push(Action::device(id, Ssi::ForgetErrors));
         }
     };
-    card_with(ui, skin, "ssi_tally.title", forget, |ui| {
+    card_with(ui, skin, TEXTS.text("ssi_tally.title"), forget, |ui| {
         if noted.is_empty() {
             let id = if encoder.last().is_some() { "ssi_tally.none" } else { "ssi_tally.nothing_read" };
-            paragraph(ui, skin.label(skin.say(id)));
+            paragraph(ui, skin.label(say(skin, id)));
         }
         for own in noted {
             let (icon, colour) = match own.finding.meaning() {
@@ -116,6 +118,6 @@ fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>)
         }
     };
     card_with(ui, skin, "check_card.title", run, |ui| {
-        lines_ui(ui, skin, encoder.check.as_deref(), "ssi_check.nothing");
+        lines_ui(ui, skin, encoder.check.as_deref(), TEXTS.text("ssi_check.nothing"));
     });
 }

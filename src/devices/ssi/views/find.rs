@@ -6,7 +6,8 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Class, Descriptor, Doubt, Proposal, Search};
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Action as Ssi, Encoder, Hunt, Origin, read_clocks};
+use crate::devices::ssi::state::{Action as Ssi, Encoder, Hunt, Origin, TEXTS, read_clocks};
+use crate::devices::ssi::views::say;
 use crate::ui::controls::{
     card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,
 };
@@ -33,7 +34,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         Hunt::Running(_) => {
             ui.horizontal(|ui| {
                 spinner(ui, skin);
-                ui.label(skin.say("ssi_find.running"));
+                ui.label(say(skin, "ssi_find.running"));
             });
         }
         Hunt::Failed(why) => {
@@ -50,17 +51,17 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let mut ask = |action| actions.push(Action::device(id, action));
-    card(ui, skin, "ssi_find.title", |ui| {
-        paragraph(ui, skin.label(skin.say("ssi_find.words")));
+    card(ui, skin, TEXTS.text("ssi_find.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "ssi_find.words")));
         ui.add_space(skin.space.inside);
-        let word = skin.say("ssi_find.clocks");
+        let word = say(skin, "ssi_find.clocks");
         entry(ui, skin, &word, |ui| {
             settled_entry(ui, &mut view.clocks, &encoder.clocks().to_string(), 56.0, &word, |text| {
                 ask(Ssi::SetClocks(Some(read_clocks(text)?)));
                 Ok(())
             });
             if encoder.has_own_clocks()
-                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_find.own_clocks")).clicked()
+                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "ssi_find.own_clocks")).clicked()
             {
                 view.clocks = None;
                 ask(Ssi::SetClocks(None));
@@ -68,21 +69,21 @@ fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         });
         problem(ui, skin, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
         let words = encoder.record.count(encoder.clocks());
-        row(ui, skin, &skin.say("ssi_find.read"), skin.mono(words.to_string()));
+        row(ui, skin, &say(skin, "ssi_find.read"), skin.mono(words.to_string()));
         if !encoder.is_profile() && words == 0 {
-            paragraph(ui, skin.caption(skin.say("ssi_find.poll")));
+            paragraph(ui, skin.caption(say(skin, "ssi_find.poll")));
         }
         ui.add_space(skin.space.inside);
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, true, icons::FOLDER_OPEN, &skin.say("ssi_find.file")).clicked() {
+            if enabled_button(ui, true, icons::FOLDER_OPEN, &say(skin, "ssi_find.file")).clicked() {
                 ask(Ssi::AskFrames);
             }
-            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &skin.say("ssi_find.save")).clicked() {
+            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &say(skin, "ssi_find.save")).clicked() {
                 ask(Ssi::AskSaveFrames);
             }
             let running = matches!(encoder.hunt, Hunt::Running(_));
-            let find = primary(ui, skin, words > 0 && !running, icons::MAGNIFYING_GLASS, &skin.say("ssi_find.find"));
-            if find.on_disabled_hover_text(skin.say("ssi_find.poll")).clicked() {
+            let find = primary(ui, skin, words > 0 && !running, icons::MAGNIFYING_GLASS, &say(skin, "ssi_find.find"));
+            if find.on_disabled_hover_text(say(skin, "ssi_find.poll")).clicked() {
                 ask(Ssi::Find);
             }
         });
@@ -98,10 +99,11 @@ fn found(
     actions: &mut Vec<Action>,
 ) {
     let source = match origin {
-        Origin::Live => Text::new("ssi_find.of_live"),
-        Origin::File(name) => Text::new("ssi_find.of_file").with("name", name),
+        Origin::Live => TEXTS.text("ssi_find.of_live"),
+        Origin::File(name) => TEXTS.text("ssi_find.of_file").with("name", name),
     };
-    let text = Text::new("ssi_find.frames")
+    let text = TEXTS
+        .text("ssi_find.frames")
         .with("frames", search.frames)
         .with("clocks", clocks)
         .with("different", search.different)
@@ -134,16 +136,16 @@ fn class_ui(
 ) {
     let id = encoder.session.id;
     let evidence = &class.evidence;
-    let rank = Text::new("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_a_frame, 2);
+    let rank = TEXTS.text("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_a_frame, 2);
     let aside = |ui: &mut Ui| {
         ui.label(skin.caption(skin.words(&rank)));
     };
-    card_with(ui, skin, if number == 0 { "ssi_find.best" } else { "ssi_find.other" }, aside, |ui| {
+    card_with(ui, skin, TEXTS.text(if number == 0 { "ssi_find.best" } else { "ssi_find.other" }), aside, |ui| {
         let all = view.unfolded == Some(number);
         let shown = if all { class.members.len() } else { MEMBERS };
         for (place, proposal) in class.members.iter().take(shown).enumerate() {
             ui.horizontal(|ui| {
-                let word = skin.say("ssi_find.take");
+                let word = say(skin, "ssi_find.take");
                 let take = enabled_button(ui, true, icons::CHECK, &word);
                 if take.clicked() {
                     actions.push(Action::device(id, Ssi::Take(number, place)));
@@ -157,7 +159,7 @@ fn class_ui(
         }
         let more = class.members.len().saturating_sub(shown);
         if more > 0 {
-            let text = Text::new("ssi_find.more").with("count", more);
+            let text = TEXTS.text("ssi_find.more").with("count", more);
             if ui.link(skin.words(&text)).clicked() {
                 view.unfolded = Some(number);
             }
@@ -175,7 +177,7 @@ fn class_ui(
 /// The family, and how it is set.
 fn title(ui: &mut Ui, skin: &Skin, encoder: &Encoder, proposal: &Proposal) {
     let Some((key, settings)) = &proposal.family else {
-        ui.label(skin.say("ssi_find.any"));
+        ui.label(say(skin, "ssi_find.any"));
         return;
     };
     let family = encoder.designer.families().named(key);

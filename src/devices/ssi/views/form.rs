@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::devices::ssi::views::say;
+
 use egui::{Key, Ui};
 
 use crate::app::{Action, Text};
@@ -89,7 +91,7 @@ pub(super) fn rows_ui(
             }
         };
         if let Some(hint) = row.hint {
-            response.on_hover_text(skin.say(hint));
+            response.on_hover_text(say(skin, hint));
         }
         let refused = view.drafts.get(&row.field).and_then(|draft| draft.as_ref()?.1.as_ref());
         problem(ui, skin, refused);

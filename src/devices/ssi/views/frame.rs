@@ -9,7 +9,8 @@ use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 use crate::devices::ssi::protocol::Family;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::strip::{self, Strip};
-use crate::devices::ssi::state::{Action as Ssi, Edit, Encoder, Group, Try};
+use crate::devices::ssi::state::{Action as Ssi, Edit, Encoder, Group, TEXTS, Try};
+use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
     button, card_with, choice, enabled_button, icon_button, name, paragraph, primary, problem, settled_entry,
@@ -80,15 +81,15 @@ fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         }
     };
     let mut asked = Vec::new();
-    card_with(ui, skin, "ssi_layout.title", aside, |ui| {
+    card_with(ui, skin, TEXTS.text("ssi_layout.title"), aside, |ui| {
         family(ui, skin, encoder, view, &mut asked);
         ui.add_space(skin.space.between);
         strip_ui(ui, skin, encoder, view, &mut asked);
         if encoder.link_to_send().is_some() {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(icons::INFO).color(skin.palette.accent));
-                ui.label(skin.say("ssi_layout.sends_other"));
-                if button(ui, icons::PLAY, &skin.say("ssi_layout.send")).clicked() {
+                ui.label(say(skin, "ssi_layout.sends_other"));
+                if button(ui, icons::PLAY, &say(skin, "ssi_layout.send")).clicked() {
                     asked.push(Action::device(id, Ssi::SendLayout));
                 }
             });
@@ -101,7 +102,7 @@ fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
             });
         }
         if designer.layout().loses_lowest_bit() {
-            paragraph(ui, RichText::new(skin.say("ssi_layout.loses")).color(skin.palette.warn));
+            paragraph(ui, RichText::new(say(skin, "ssi_layout.loses")).color(skin.palette.warn));
         }
     });
     actions.append(&mut asked);
@@ -115,25 +116,25 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
     let own = designer.family().and_then(|own| families.iter().position(|family| family.key == own.key));
     let mut chosen = own;
     ui.horizontal_wrapped(|ui| {
-        let word = skin.say("ssi_layout.family");
+        let word = say(skin, "ssi_layout.family");
         ui.label(skin.label(&word));
         let all = families.iter().enumerate().map(|(at, family)| (Some(at), family.name.clone()));
-        let free = std::iter::once((None, skin.say("ssi_layout.free")));
+        let free = std::iter::once((None, say(skin, "ssi_layout.free")));
         if choice(ui, &word, &mut chosen, free.chain(all)) {
             let key = chosen.and_then(|at| families.get(at)).map(|family| family.key.clone());
             actions.push(edit(key.map_or(Edit::Free, Edit::Family)));
         }
-        let word = skin.say("ssi_layout.name");
+        let word = say(skin, "ssi_layout.name");
         let profile = &designer.design().profile;
         ui.label(skin.label(&word));
         settled_entry(ui, &mut view.named, &profile.name, 160.0, &word, |text| {
             actions.push(edit(Edit::Name(text.trim().to_owned())));
             Ok(())
         });
-        ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, skin.say("ssi_layout.import")), |ui| {
+        ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, say(skin, "ssi_layout.import")), |ui| {
             ui.set_width(320.0);
-            paragraph(ui, skin.caption(skin.say("ssi_layout.import_words")));
-            if button(ui, icons::PLUS, &skin.say("ssi.new_layout")).clicked() {
+            paragraph(ui, skin.caption(say(skin, "ssi_layout.import_words")));
+            if button(ui, icons::PLUS, &say(skin, "ssi.new_layout")).clicked() {
                 actions.push(Action::NewLayout);
                 ui.close();
             }
@@ -142,10 +143,10 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
                 ui.close();
             }
             ui.separator();
-            let word = skin.say("ssi_layout.linuxcnc");
+            let word = say(skin, "ssi_layout.linuxcnc");
             ui.label(skin.label(&word));
             crate::ui::controls::mono_entry(ui, skin, &mut view.format, 300.0, &word, "error%1bposition%24ge");
-            if enabled_button(ui, !view.format.trim().is_empty(), icons::CHECK, &skin.say("ssi_layout.take")).clicked()
+            if enabled_button(ui, !view.format.trim().is_empty(), icons::CHECK, &say(skin, "ssi_layout.take")).clicked()
             {
                 actions.push(edit(Edit::LinuxCnc(view.format.trim().to_owned())));
                 ui.close();
@@ -155,10 +156,10 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
     match designer.family() {
         Some(family) if designer.design().settings.is_none() => {
             ui.horizontal_wrapped(|ui| {
-                let text = Text::new("ssi_layout.by_hand").with("family", &family.name);
+                let text = TEXTS.text("ssi_layout.by_hand").with("family", &family.name);
                 ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
                 ui.label(skin.words(&text));
-                if button(ui, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("ssi_layout.delivered")).clicked() {
+                if button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "ssi_layout.delivered")).clicked() {
                     actions.push(edit(Edit::Family(family.key.clone())));
                 }
             });
@@ -166,7 +167,7 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         Some(family) => {
             paragraph(ui, skin.caption(skin.words(&words::note(&family.source))));
         }
-        None => paragraph(ui, skin.caption(skin.say("ssi_layout.free_words"))),
+        None => paragraph(ui, skin.caption(say(skin, "ssi_layout.free_words"))),
     }
 }
 
@@ -174,7 +175,7 @@ fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
     let layout = encoder.designer.layout();
     let id = encoder.session.id;
     let strip = Strip::of(layout);
-    let label = skin.say("ssi_layout.title");
+    let label = say(skin, "ssi_layout.title");
     let selected = view.selected.filter(|clock| *clock <= layout.clocks());
     let model = BitStrip {
         label: &label,
@@ -197,7 +198,7 @@ fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
     }
     let words = match selected {
         Some(clock) => skin.words(&strip::cell(&strip, clock)),
-        None => skin.say("ssi_layout.hint"),
+        None => say(skin, "ssi_layout.hint"),
     };
     paragraph(ui, skin.caption(words));
 }
@@ -208,20 +209,20 @@ fn group_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, group: &Group, view: &m
     let mut asked = None;
     let aside = |ui: &mut Ui| {
         if let Some(index) = error
-            && icon_button(ui, true, icons::TRASH, &skin.say("ssi_form.remove_error")).clicked()
+            && icon_button(ui, true, icons::TRASH, &say(skin, "ssi_form.remove_error")).clicked()
         {
             asked = Some(Ssi::RemoveErrorBit(index));
         }
     };
     ui.push_id(error, |ui| {
-        card_with(ui, skin, group.title, aside, |ui| {
+        card_with(ui, skin, TEXTS.text(group.title), aside, |ui| {
             rows_ui(ui, skin, encoder, &group.rows, &mut view.form, actions);
             if group.takes_error_bits()
                 && enabled_button(
                     ui,
                     encoder.designer.with_error_bit().is_some(),
                     icons::PLUS,
-                    &skin.say("ssi_form.add_error"),
+                    &say(skin, "ssi_form.add_error"),
                 )
                 .clicked()
             {
@@ -245,7 +246,7 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, encoder: 
             }
             take_for(ui, skin, studio, device, actions);
             if is_dirty {
-                let words = RichText::new(skin.say("ssi_layout.unsaved")).color(skin.palette.staged);
+                let words = RichText::new(say(skin, "ssi_layout.unsaved")).color(skin.palette.staged);
                 ui.add(egui::Label::new(words).truncate());
             }
         });
@@ -259,7 +260,7 @@ fn take_for(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actio
     if targets.is_empty() {
         return;
     }
-    let word = skin.say("ssi_layout.take_for");
+    let word = say(skin, "ssi_layout.take_for");
     let menu = ui.menu_button(format!("{}  {word}", icons::PLUGS_CONNECTED), |ui| {
         for target in targets {
             if ui.button(format!("{} · {}", target.name(), target.place())).clicked() {
@@ -268,5 +269,5 @@ fn take_for(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actio
             }
         }
     });
-    name(menu.response, true, &word).on_hover_text(skin.say("ssi_layout.take_for_hint"));
+    name(menu.response, true, &word).on_hover_text(say(skin, "ssi_layout.take_for_hint"));
 }

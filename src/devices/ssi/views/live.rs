@@ -2,9 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::{Rgb, Text};
+use crate::app::Rgb;
 use crate::devices::ssi::protocol::{Meaning, Place};
-use crate::devices::ssi::state::Encoder;
+use crate::devices::ssi::state::{Encoder, TEXTS};
+use crate::devices::ssi::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::row;
 use crate::ui::panels::live::{LOW, mark as mark_ui};
@@ -36,7 +37,7 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let Some(seen) = last else { return };
     let raw = format!("0x{:0width$X}", seen.word, width = usize::from(seen.clocks).div_ceil(4));
     if decoded.is_none() {
-        let text = Text::new("live.other_clocks").with("clocks", seen.clocks);
+        let text = TEXTS.text("live.other_clocks").with("clocks", seen.clocks);
         ui.label(RichText::new(skin.words(&text)).size(skin.sizes.caption).color(palette.warn));
     }
     if ui.available_height() < LOW {
@@ -50,13 +51,13 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         if let Some((position, Place::Shaft { turns, steps, .. })) = place {
             row(ui, skin, &skin.say("live.turns"), skin.mono(turns.to_string()));
             row(ui, skin, &skin.say("live.step"), skin.mono(steps.to_string()));
-            row(ui, skin, &skin.say("ssi_trial.position"), skin.mono(position.to_string()));
+            row(ui, skin, &say(skin, "ssi_trial.position"), skin.mono(position.to_string()));
         }
         row(ui, skin, &skin.say("live.raw"), skin.mono(raw));
     }
     if let Some(stream) = encoder.streamed() {
         let clock_hz = encoder.identity.as_ref().map_or(0, |identity| identity.clock_hz);
-        let text = Text::new(if stream.is_limited() { "live.streamed_all" } else { "live.streamed" });
+        let text = TEXTS.text(if stream.is_limited() { "live.streamed_all" } else { "live.streamed" });
         let text = text.with_number("count", stream.hz(), 0).with_number("clock", f64::from(clock_hz) / 1e6, 1);
         ui.add(egui::Label::new(skin.caption(skin.words(&text))).wrap()).on_hover_text(skin.say("live.streamed_hint"));
     }

@@ -15,7 +15,7 @@ mod wiring;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio};
-use crate::devices::ssi::state::Encoder;
+use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::ui::controls::button;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, icons, page};
@@ -117,7 +117,7 @@ impl TypedDeviceView for SsiView {
 
     fn empty_ui(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
         // A layout needs no device.
-        if button(ui, icons::PLUS, &skin.say("ssi.new_layout")).clicked() {
+        if button(ui, icons::PLUS, &say(skin, "ssi.new_layout")).clicked() {
             actions.push(Action::NewLayout);
         }
     }
@@ -125,4 +125,9 @@ impl TypedDeviceView for SsiView {
     fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         live::value_ui(ui, skin, encoder, ink);
     }
+}
+
+/// A text of this folder's catalogue, or a common one, in the window's language.
+pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
+    skin.words(&TEXTS.text(id))
 }

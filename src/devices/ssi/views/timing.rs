@@ -6,9 +6,10 @@ use egui::{RichText, Ui};
 use super::form::{View, rows_ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::Timing;
-use crate::devices::ssi::state::Encoder;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::timing::Diagram;
+use crate::devices::ssi::state::{Encoder, TEXTS};
+use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
 use crate::ui::controls::{card, paragraph, row, two_columns};
 use crate::ui::{Skin, icons};
@@ -17,16 +18,18 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     let designer = &encoder.designer;
     let rows = designer.reading_form();
     let Some(times) = designer.times() else {
-        card(ui, skin, "ssi_timing.reading", |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
+        card(ui, skin, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
         ui.add_space(skin.space.groups);
-        card(ui, skin, "ssi_timing.title", |ui| paragraph(ui, skin.label(skin.say("ssi_timing.no_family"))));
+        card(ui, skin, TEXTS.text("ssi_timing.title"), |ui| {
+            paragraph(ui, skin.label(say(skin, "ssi_timing.no_family")))
+        });
         return;
     };
     let reads = designer.reads();
     let timing = times.reckon(&reads);
-    card(ui, skin, "ssi_timing.title", |ui| {
+    card(ui, skin, TEXTS.text("ssi_timing.title"), |ui| {
         let diagram = Diagram::of(designer.layout(), times, &reads);
-        let label = skin.say("ssi_timing.title");
+        let label = say(skin, "ssi_timing.title");
         let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
         timing_diagram(ui, skin, &model);
     });
@@ -36,15 +39,15 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
         skin,
         (view, actions),
         |ui, (view, actions)| {
-            card(ui, skin, "ssi_timing.reading", |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
+            card(ui, skin, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
         },
-        |ui, _| card(ui, skin, "ssi_timing.result", |ui| result(ui, skin, &timing)),
+        |ui, _| card(ui, skin, TEXTS.text("ssi_timing.result"), |ui| result(ui, skin, &timing)),
     );
 }
 
 fn result(ui: &mut Ui, skin: &Skin, timing: &Timing) {
     let micros = |time: std::time::Duration| skin.number(time.as_secs_f64() * 1e6, 2);
-    let mut told = |id: &'static str, words: String| row(ui, skin, &skin.say(id), skin.mono(words));
+    let mut told = |id: &'static str, words: String| row(ui, skin, &say(skin, id), skin.mono(words));
     told("ssi_timing.period", format!("{} µs", micros(timing.period)));
     told("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
     told(
@@ -57,7 +60,7 @@ fn result(ui: &mut Ui, skin: &Skin, timing: &Timing) {
     told("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
     told("ssi_timing.most_reads", format!("{} Hz", skin.number(timing.most_reads_hz, 0)));
     let age = timing.age.map_or_else(
-        || skin.say("ssi_timing.age_unknown"),
+        || say(skin, "ssi_timing.age_unknown"),
         |(least, most)| {
             if least == most {
                 format!("{} µs", micros(most))
@@ -69,11 +72,11 @@ fn result(ui: &mut Ui, skin: &Skin, timing: &Timing) {
     told("ssi_timing.age", age);
     let cable = timing
         .cable_hz
-        .map_or_else(|| skin.say("ssi_timing.cable_unknown"), |hz| format!("{} Hz", skin.number(f64::from(hz), 0)));
+        .map_or_else(|| say(skin, "ssi_timing.cable_unknown"), |hz| format!("{} Hz", skin.number(f64::from(hz), 0)));
     told("ssi_timing.most_clock", cable);
     ui.add_space(skin.space.inside);
     if timing.warnings.is_empty() {
-        said(ui, skin, (icons::CHECK_CIRCLE, skin.palette.good), &Text::new("ssi_timing.fits"));
+        said(ui, skin, (icons::CHECK_CIRCLE, skin.palette.good), &TEXTS.text("ssi_timing.fits"));
     }
     for warning in &timing.warnings {
         said(ui, skin, (icons::WARNING, skin.palette.warn), &words::timing(warning));

@@ -6,7 +6,8 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Meaning, Place, frame_bits};
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Action as Ssi, Decoded, Encoder, Try, whole};
+use crate::devices::ssi::state::{Action as Ssi, Decoded, Encoder, TEXTS, Try, whole};
+use crate::devices::ssi::views::say;
 use crate::ui::controls::{card_with, entry, icon_button, mono_entry, name, paragraph, problem, row, settled_entry};
 use crate::ui::{Skin, icons};
 
@@ -39,15 +40,15 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
     let mut wish = None;
     let live = |ui: &mut Ui| {
         if encoder.last().is_some_and(|seen| seen.decoded.is_some()) {
-            let word = skin.say("ssi_trial.live");
+            let word = say(skin, "ssi_trial.live");
             let response =
-                ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(skin.say("ssi_trial.live_hint"));
+                ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(say(skin, "ssi_trial.live_hint"));
             if name(response, true, &word).clicked() && !is_live {
                 wish = Some(Try::Live);
             }
         }
     };
-    card_with(ui, skin, "ssi_trial.title", live, |ui| {
+    card_with(ui, skin, TEXTS.text("ssi_trial.title"), live, |ui| {
         numbers(ui, skin, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
         bits(ui, skin, encoder, &shown, view, actions);
         problem(ui, skin, encoder.trial.problem());
@@ -59,9 +60,9 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
 
 fn numbers(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut View, put: &mut dyn FnMut(Try)) {
     let position = shown.place.map_or_else(|| "–".to_owned(), |(position, _)| position.to_string());
-    let most = Text::new("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
+    let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
     paragraph(ui, skin.caption(skin.words(&most)));
-    let word = skin.say("ssi_trial.position");
+    let word = say(skin, "ssi_trial.position");
     entry(ui, skin, &word, |ui| {
         settled_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
             put(Try::Position(whole(text)?));
@@ -86,10 +87,10 @@ fn numbers(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &
                 });
             });
             refused(ui, skin, view.steps.as_ref());
-            row(ui, skin, &skin.say("ssi_trial.angle"), skin.mono(format!("{} °", skin.number(degrees, 4))));
+            row(ui, skin, &say(skin, "ssi_trial.angle"), skin.mono(format!("{} °", skin.number(degrees, 4))));
         }
         Some((_, Place::Length { millimetres })) => {
-            row(ui, skin, &skin.say("ssi_trial.length"), skin.mono(format!("{} mm", skin.number(millimetres, 4))));
+            row(ui, skin, &say(skin, "ssi_trial.length"), skin.mono(format!("{} mm", skin.number(millimetres, 4))));
         }
         None => {}
     }
@@ -103,11 +104,11 @@ fn refused(ui: &mut Ui, skin: &Skin, draft: Option<&(String, Option<Text>)>) {
 fn bits(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut View, actions: &mut Vec<Action>) {
     let clocks = encoder.designer.layout().clocks();
     let own = frame_bits(shown.frame, clocks);
-    let word = skin.say("ssi_trial.bits_label");
+    let word = say(skin, "ssi_trial.bits_label");
     ui.horizontal(|ui| {
         ui.label(skin.label(&word));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, true, icons::COPY, &skin.say("ssi_trial.copy")).clicked() {
+            if icon_button(ui, true, icons::COPY, &say(skin, "ssi_trial.copy")).clicked() {
                 ui.copy_text(own.clone());
             }
             let hex = format!("0x{:0width$X}", shown.frame, width = usize::from(clocks).div_ceil(4));

@@ -2,9 +2,10 @@
 
 use egui::Ui;
 
-use crate::app::Text;
 use crate::devices::ssi::protocol::{Family, Signal};
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
+use crate::devices::ssi::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, paragraph, row};
 use crate::ui::wires::wires_ui;
@@ -26,15 +27,15 @@ const NOTES: [&str; 3] = ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.ada
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
     card(ui, skin, "wiring.title", |ui| {
-        wires_ui(ui, skin, WIRE, &WIRES);
+        wires_ui(ui, skin, &TEXTS, WIRE, &WIRES);
         ui.add_space(skin.space.inside);
         for note in NOTES {
-            paragraph(ui, skin.caption(skin.say(note)));
+            paragraph(ui, skin.caption(say(skin, note)));
         }
         let Some(family) = family else { return };
         if !family.signals.is_empty() {
             ui.add_space(skin.space.between);
-            ui.label(skin.heading(skin.say("ssi_wiring.signals")));
+            ui.label(skin.heading(say(skin, "ssi_wiring.signals")));
             for signal in &family.signals {
                 row(ui, skin, &signal.name, limits(skin, signal));
             }
@@ -60,9 +61,9 @@ fn limits(skin: &Skin, signal: &Signal) -> String {
         }
     };
     let parts = [
-        signal.amplitude_volts.map(|own| skin.words(&Text::new("ssi_wiring.volts_pp").with("volts", volts(own)))),
-        signal.offset_volts.map(|own| format!("{} {} V", skin.say("ssi_wiring.offset"), volts(own))),
-        signal.supply_volts.map(|own| format!("{} {} V", skin.say("ssi_wiring.at"), volts(own))),
+        signal.amplitude_volts.map(|own| skin.words(&TEXTS.text("ssi_wiring.volts_pp").with("volts", volts(own)))),
+        signal.offset_volts.map(|own| format!("{} {} V", say(skin, "ssi_wiring.offset"), volts(own))),
+        signal.supply_volts.map(|own| format!("{} {} V", say(skin, "ssi_wiring.at"), volts(own))),
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     if parts.is_empty() { "–".to_owned() } else { parts.join(" · ") }
@@ -71,6 +72,7 @@ fn limits(skin: &Skin, signal: &Signal) -> String {
 #[cfg(test)]
 mod tests {
     use super::{NOTES, WIRES};
+    use crate::devices::ssi::state::TEXTS;
     use crate::ui::wires::{check_notes, check_wires};
 
     /// Issue 22.23: SICK SSI description 2.1 (four lines, RS-422 or RS-485, pairs twisted and shielded), figure 2 and
@@ -78,6 +80,7 @@ mod tests {
     #[test]
     fn the_card_says_what_the_manual_says() {
         check_wires(
+            &TEXTS,
             &WIRES,
             &[
                 ("CLOCK+", &["from the host", "RS-422", "at rest high"]),
@@ -89,7 +92,7 @@ mod tests {
             ],
         );
         let lengths = ["50 m at most 400 kHz", "100 m 300 kHz", "200 m 200 kHz", "400 m 100 kHz"];
-        check_notes(&NOTES, &["twist", "shield"]);
-        check_notes(&NOTES, &lengths);
+        check_notes(&TEXTS, &NOTES, &["twist", "shield"]);
+        check_notes(&TEXTS, &NOTES, &lengths);
     }
 }

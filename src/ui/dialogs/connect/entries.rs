@@ -2,9 +2,8 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::Action;
 use crate::app::connect::{Action as Connect, Connect as Dialog};
-use crate::app::explain;
+use crate::app::{Action, explain};
 use crate::device::Echo;
 use crate::ui::controls::{LABELS, choice, entry, icon_button, name, paragraph, text_entry};
 use crate::ui::{Skin, icons};

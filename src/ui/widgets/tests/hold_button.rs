@@ -4,10 +4,11 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
+use HoldEvent::{Hold, Press, Release, Stop};
+
 use super::{focus, skin, window};
 use crate::app::HoldEvent;
 use crate::ui::widgets::{HoldButton, HoldSurroundings, hold_button, surround_hold_buttons};
-use HoldEvent::{Hold, Press, Release, Stop};
 
 #[derive(Default)]
 struct Jog {

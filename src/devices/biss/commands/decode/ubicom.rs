@@ -1,8 +1,7 @@
 //! Frames of UBICOM, one behind the other. Register numbers are taken low byte first.
 
 use super::form;
-use crate::bits::ByteOrder;
-use crate::bits::{hex, hex_compact};
+use crate::bits::{ByteOrder, hex, hex_compact};
 use crate::buses::ubicom::protocol::{Frame, NODE, PositionWord, Reply, Request, Written};
 use crate::cli::decode::Explained;
 use crate::devices::biss::commands::words;

@@ -5,8 +5,7 @@
 use std::time::Duration;
 
 use super::{Attempt, Master, Taken, Trouble};
-use crate::bits::ByteOrder;
-use crate::bits::MaskedBytes;
+use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };

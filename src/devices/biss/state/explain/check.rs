@@ -1,13 +1,13 @@
 //! The device check in words.
 
 use super::guide::mode;
-use super::mismatch;
-use super::name;
+use super::{mismatch, name};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
 use crate::devices::biss::procedures::check::{Finding, Line, Step};
 use crate::devices::biss::protocol::Name;
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::sheet;
 
 /// The lines of a check.
@@ -16,7 +16,7 @@ pub fn check(lines: &[Line]) -> Vec<CheckLine> {
 }
 
 fn step(step: Step) -> Text {
-    Text::new(match step {
+    TEXTS.text(match step {
         Step::Identity => "check.identity",
         Step::Status => "check.status",
         Step::Position => "check.position",
@@ -32,50 +32,53 @@ fn finding(finding: &Finding) -> Text {
     match finding {
         Finding::Name(name) => plain(name),
         Finding::SerialNumber(number) => Text::new("check.serial").with("number", number),
-        Finding::Firmware(firmware) => Text::new("check.firmware").with("firmware", firmware),
+        Finding::Firmware(firmware) => TEXTS.text("check.firmware").with("firmware", firmware),
         Finding::Mismatch(found) => mismatch(found),
         Finding::Error(bit, name) => bit_words("check.error", *bit, name.as_ref()),
         Finding::Warning(bit, name) => bit_words("check.warning", *bit, name.as_ref()),
-        Finding::NotTold => Text::new("check.not_told"),
-        Finding::Mode(found) => Text::new("check.mode").with_text("mode", mode(*found)),
-        Finding::Open => Text::new("check.open"),
+        Finding::NotTold => TEXTS.text("check.not_told"),
+        Finding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode(*found)),
+        Finding::Open => TEXTS.text("check.open"),
         Finding::Position(reading) if !reading.is_split_known => {
-            Text::new("check.place_raw").with("raw", reading.raw())
+            TEXTS.text("check.place_raw").with("raw", reading.raw())
         }
-        Finding::Position(reading) => Text::new("check.place")
+        Finding::Position(reading) => TEXTS
+            .text("check.place")
             .with("turns", reading.turns)
             .with("steps", reading.steps)
             .with_number("degrees", reading.degrees(), 3),
-        Finding::ErrorBit => Text::new("check.error_bit"),
-        Finding::WarningBit => Text::new("check.warning_bit"),
-        Finding::NoPosition => Text::new("check.no_position"),
-        Finding::SumsFit => Text::new("check.sums"),
-        Finding::Sheet(error) => Text::new("check.sheet").with_text("why", sheet(error)),
-        Finding::NoSheet => Text::new("check.no_sheet"),
-        Finding::OtherFrame { sheet, description } => Text::new("check.other_frame")
+        Finding::ErrorBit => TEXTS.text("check.error_bit"),
+        Finding::WarningBit => TEXTS.text("check.warning_bit"),
+        Finding::NoPosition => TEXTS.text("check.no_position"),
+        Finding::SumsFit => TEXTS.text("check.sums"),
+        Finding::Sheet(error) => TEXTS.text("check.sheet").with_text("why", sheet(error)),
+        Finding::NoSheet => TEXTS.text("check.no_sheet"),
+        Finding::OtherFrame { sheet, description } => TEXTS
+            .text("check.other_frame")
             .with("sheet", format!("{}+{}", sheet.0, sheet.1))
             .with("description", format!("{}+{}", description.0, description.1)),
         Finding::Temperature { celsius, low, high } => {
-            Text::new("check.temperature").with_number("celsius", *celsius, 0).with("low", low).with("high", high)
+            TEXTS.text("check.temperature").with_number("celsius", *celsius, 0).with("low", low).with("high", high)
         }
         Finding::Supply { millivolt, low, high } => {
-            Text::new("check.supply").with("millivolt", millivolt).with("low", low).with("high", high)
+            TEXTS.text("check.supply").with("millivolt", millivolt).with("low", low).with("high", high)
         }
         Finding::Current { milliampere, high } => {
-            Text::new("check.current").with("milliampere", milliampere).with("high", high)
+            TEXTS.text("check.current").with("milliampere", milliampere).with("high", high)
         }
-        Finding::Wiegand(result) => Text::new("check.pulses")
+        Finding::Wiegand(result) => TEXTS
+            .text("check.pulses")
             .with_number("cw", result.lowest_cw.volts(), 1)
             .with_number("ccw", result.lowest_ccw.volts(), 1),
-        Finding::NotTested => Text::new("check.not_tested"),
+        Finding::NotTested => TEXTS.text("check.not_tested"),
         Finding::Readings { asked, damaged } => {
-            Text::new("check.readings").with("asked", asked).with("damaged", damaged)
+            TEXTS.text("check.readings").with("asked", asked).with("damaged", damaged)
         }
-        Finding::Wear { seen, limit } => Text::new("check.cycles").with("seen", seen).with("limit", limit),
+        Finding::Wear { seen, limit } => TEXTS.text("check.cycles").with("seen", seen).with("limit", limit),
     }
 }
 
 fn bit_words(id: &'static str, bit: u8, own: Option<&Name>) -> Text {
-    let name = own.map_or_else(|| Text::new("biss_status.unknown_bit"), name);
-    Text::new(id).with("bit", bit).with_text("name", name)
+    let name = own.map_or_else(|| TEXTS.text("biss_status.unknown_bit"), name);
+    TEXTS.text(id).with("bit", bit).with_text("name", name)
 }

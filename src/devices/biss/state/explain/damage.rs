@@ -4,35 +4,36 @@ use crate::app::Text;
 use crate::buses::ubicom::protocol::ReplyError;
 use crate::devices::biss::procedures::Damage;
 use crate::devices::biss::protocol::FrameError;
+use crate::devices::biss::state::TEXTS;
 
 /// What was wrong with a reply.
 pub fn damage(damage: &Damage) -> Text {
     let byte = |byte: &u8| format!("0x{byte:02X}");
     match damage {
-        Damage::NoFrame { bytes } => Text::new("biss.damage_no_frame").with("bytes", bytes),
+        Damage::NoFrame { bytes } => TEXTS.text("biss.damage_no_frame").with("bytes", bytes),
         Damage::Reply(ReplyError::Address { expected, got }) => {
-            Text::new("biss.damage_node").with("got", byte(got)).with("expected", byte(expected))
+            TEXTS.text("biss.damage_node").with("got", byte(got)).with("expected", byte(expected))
         }
         Damage::Reply(ReplyError::Command { expected, got }) => {
-            Text::new("biss.damage_command").with("got", byte(got)).with("expected", byte(expected))
+            TEXTS.text("biss.damage_command").with("got", byte(got)).with("expected", byte(expected))
         }
         Damage::Reply(ReplyError::Length { expected, got }) => {
-            Text::new("biss.damage_length").with("got", got).with("expected", expected)
+            TEXTS.text("biss.damage_length").with("got", got).with("expected", expected)
         }
-        Damage::Echo => Text::new("biss.damage_echo"),
+        Damage::Echo => TEXTS.text("biss.damage_echo"),
         Damage::Frame(error) => frame(error),
-        Damage::ControlFrame => Text::new("biss.damage_control"),
+        Damage::ControlFrame => TEXTS.text("biss.damage_control"),
         Damage::Inconsistent => Text::new("damage.inconsistent"),
     }
 }
 
 fn frame(error: &FrameError) -> Text {
     match error {
-        FrameError::StuckLow => Text::new("biss.damage_low"),
-        FrameError::StuckHigh => Text::new("biss.damage_high"),
-        FrameError::Long { bits } => Text::new("biss.damage_long").with("bits", bits),
+        FrameError::StuckLow => TEXTS.text("biss.damage_low"),
+        FrameError::StuckHigh => TEXTS.text("biss.damage_high"),
+        FrameError::Long { bits } => TEXTS.text("biss.damage_long").with("bits", bits),
         FrameError::Crc { expected, got } => {
-            Text::new("biss.damage_crc").with("got", format!("{got:02X}")).with("expected", format!("{expected:02X}"))
+            TEXTS.text("biss.damage_crc").with("got", format!("{got:02X}")).with("expected", format!("{expected:02X}"))
         }
     }
 }

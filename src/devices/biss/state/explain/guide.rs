@@ -6,10 +6,11 @@ use crate::devices::biss::procedures::procedure::{
 };
 use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PulseVoltage};
+use crate::devices::biss::state::TEXTS;
 
 /// The heading of an operation.
 pub fn procedure(op: &Op) -> Text {
-    Text::new(match op {
+    TEXTS.text(match op {
         Op::Calibrate => "guide.calibration",
         Op::WiegandTest { .. } => "guide.wiegand",
         Op::StorePreset { .. } => "guide.store_preset",
@@ -24,22 +25,22 @@ pub fn procedure(op: &Op) -> Text {
 pub fn step(step: Step) -> Text {
     match step {
         Step::Await(task) => self::task(task),
-        Step::Run(run) => Text::new(match run {
+        Step::Run(run) => TEXTS.text(match run {
             Run::CalibrationCounterclockwise => "guide.run_calibration_ccw",
             Run::CalibrationClockwise => "guide.run_calibration_cw",
             Run::WiegandClockwise => "guide.run_wiegand_cw",
             Run::WiegandCounterclockwise => "guide.run_wiegand_ccw",
         }),
-        Step::Enter(mode) => Text::new("guide.enter").with_text("mode", self::mode(mode)),
-        Step::Conditions => Text::new("guide.conditions"),
-        Step::Open => Text::new("guide.open"),
-        Step::Write => Text::new("guide.write"),
-        Step::Results => Text::new("guide.results"),
-        Step::Save => Text::new("guide.save"),
-        Step::Fire => Text::new("guide.fire"),
-        Step::Restart => Text::new("guide.restart"),
-        Step::LeadBack => Text::new("guide.lead_back"),
-        Step::ReadBack => Text::new("guide.read_back"),
+        Step::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode(mode)),
+        Step::Conditions => TEXTS.text("guide.conditions"),
+        Step::Open => TEXTS.text("guide.open"),
+        Step::Write => TEXTS.text("guide.write"),
+        Step::Results => TEXTS.text("guide.results"),
+        Step::Save => TEXTS.text("guide.save"),
+        Step::Fire => TEXTS.text("guide.fire"),
+        Step::Restart => TEXTS.text("guide.restart"),
+        Step::LeadBack => TEXTS.text("guide.lead_back"),
+        Step::ReadBack => TEXTS.text("guide.read_back"),
     }
 }
 
@@ -54,7 +55,7 @@ pub fn mode(mode: DeviceMode) -> Text {
         DeviceMode::PRESET => "biss_mode.preset",
         _ => "biss_mode.unknown",
     };
-    Text::new(id).with("code", format!("0x{:02X}", mode.byte()))
+    TEXTS.text(id).with("code", format!("0x{:02X}", mode.byte()))
 }
 
 /// What a person is to do.
@@ -67,24 +68,24 @@ pub fn task(task: Task) -> Text {
                 (true, false) => "guide.turn_cw",
                 (false, false) => "guide.turn_ccw",
             };
-            speeds(Text::new(id), run.allowed()).with_number("best", run.recommended().middle(), 0)
+            speeds(TEXTS.text(id), run.allowed()).with_number("best", run.recommended().middle(), 0)
         }
-        Task::Stand => Text::new("guide.stand"),
-        Task::StandAtPlace => Text::new("guide.stand_at_place"),
+        Task::Stand => TEXTS.text("guide.stand"),
+        Task::StandAtPlace => TEXTS.text("guide.stand_at_place"),
     }
 }
 
 /// Why a start is not possible.
 pub fn blocker(blocker: Blocker) -> Text {
     match blocker {
-        Blocker::Measuring => Text::new("guide.measuring"),
-        Blocker::NoPosition => Text::new("guide.no_position"),
-        Blocker::Standing => Text::new("guide.standing"),
-        Blocker::Turning { rpm } => Text::new("guide.turning").with_number("rpm", rpm, 1),
-        Blocker::WrongDirection => Text::new("guide.wrong_direction"),
-        Blocker::Speed { rpm, allowed } => speeds(Text::new("guide.speed"), allowed).with_number("rpm", rpm, 0),
-        Blocker::Unsteady { spread } => Text::new("guide.unsteady").with_number("spread", spread, 1),
-        Blocker::Temperature { celsius } => temperatures(Text::new("guide.temperature").with("celsius", celsius)),
+        Blocker::Measuring => TEXTS.text("guide.measuring"),
+        Blocker::NoPosition => TEXTS.text("guide.no_position"),
+        Blocker::Standing => TEXTS.text("guide.standing"),
+        Blocker::Turning { rpm } => TEXTS.text("guide.turning").with_number("rpm", rpm, 1),
+        Blocker::WrongDirection => TEXTS.text("guide.wrong_direction"),
+        Blocker::Speed { rpm, allowed } => speeds(TEXTS.text("guide.speed"), allowed).with_number("rpm", rpm, 0),
+        Blocker::Unsteady { spread } => TEXTS.text("guide.unsteady").with_number("spread", spread, 1),
+        Blocker::Temperature { celsius } => temperatures(TEXTS.text("guide.temperature").with("celsius", celsius)),
     }
 }
 
@@ -93,24 +94,24 @@ pub fn advice(advice: Advice) -> Text {
     match advice {
         Advice::Speed { recommended } => {
             let run = Run::CalibrationCounterclockwise;
-            let text = speeds(Text::new("guide.recommended"), recommended);
+            let text = speeds(TEXTS.text("guide.recommended"), recommended);
             text.with_number("fluctuation", run.fluctuation().unwrap_or_default(), 0)
         }
-        Advice::TableAtRisk => Text::new("guide.table_at_risk"),
-        Advice::Marked => Text::new("guide.marked"),
+        Advice::TableAtRisk => TEXTS.text("guide.table_at_risk"),
+        Advice::Marked => TEXTS.text("guide.marked"),
     }
 }
 
 /// What a calibration needs of motor and encoder.
 pub fn calibration_needs() -> Text {
     let run = Run::CalibrationCounterclockwise;
-    let text = speeds(Text::new("mounting_card.calibrate_words"), run.allowed());
+    let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
     temperatures(text.with_number("best", run.recommended().middle(), 0))
 }
 
 /// What a Wiegand test needs of the motor.
 pub fn wiegand_needs() -> Text {
-    speeds(Text::new("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
+    speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
 }
 
 /// With the temperatures of a calibration.
@@ -126,14 +127,14 @@ pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
 /// What came of an operation, a line each; for the page and for the report.
 pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     match outcome {
-        Outcome::Skipped { after } => vec![Text::new(match after {
+        Outcome::Skipped { after } => vec![TEXTS.text(match after {
             None => "guide.skipped",
             Some(run) if run.calibrates() => "guide.skipped_calibration",
             Some(_) => "guide.skipped_wiegand",
         })],
-        Outcome::Stored { registers } => vec![Text::new("guide.stored").with("count", registers)],
+        Outcome::Stored { registers } => vec![TEXTS.text("guide.stored").with("count", registers)],
         Outcome::PresetStored { value, singleturn_bits } => {
-            vec![Text::new("guide.preset_stored").with_text("value", super::preset(*value, *singleturn_bits))]
+            vec![TEXTS.text("guide.preset_stored").with_text("value", super::preset(*value, *singleturn_bits))]
         }
         Outcome::PresetFired { parts, from, to } => {
             let id = match parts {
@@ -141,12 +142,13 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
                 PresetParts::Singleturn => "guide.preset_singleturn",
                 PresetParts::Multiturn => "guide.preset_multiturn",
             };
-            let text = Text::new(id).with("from_turns", from.turns).with("to_turns", to.turns);
+            let text = TEXTS.text(id).with("from_turns", from.turns).with("to_turns", to.turns);
             vec![text.with_number("from", from.degrees(), 3).with_number("to", to.degrees(), 3)]
         }
         Outcome::FilterSelected(filter) => {
             vec![
-                Text::new("guide.filter_selected")
+                TEXTS
+                    .text("guide.filter_selected")
                     .with_text("filter", crate::devices::biss::state::words::filter(*filter)),
             ]
         }
@@ -159,7 +161,7 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
 pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
     let lines = outcome(own);
     if let Outcome::Skipped { .. } = own {
-        let named = |words| Text::new("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
+        let named = |words| TEXTS.text("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
     // The first says what was done, or how it was judged; the rest is beside it.
@@ -181,8 +183,8 @@ fn verdict(lowest: PulseVoltage) -> Severity {
 }
 
 fn calibrated(report: &CalibrationReport) -> Vec<Text> {
-    let mut texts = vec![Text::new("guide.calibrated")];
-    texts.extend(report.celsius.map(|celsius| Text::new("guide.at_temperature").with("celsius", celsius)));
+    let mut texts = vec![TEXTS.text("guide.calibrated")];
+    texts.extend(report.celsius.map(|celsius| TEXTS.text("guide.at_temperature").with("celsius", celsius)));
     texts.extend(motion("guide.motion_ccw", report.counterclockwise));
     texts.extend(motion("guide.motion_cw", report.clockwise));
     texts
@@ -192,26 +194,27 @@ fn tested(report: &WiegandReport) -> Vec<Text> {
     let result = report.result;
     let direction = |id, average: PulseVoltage, lowest: PulseVoltage| {
         let verdict = if lowest > PulseVoltage::LIMIT { "guide.above_limit" } else { "guide.below_limit" };
-        Text::new(id)
+        TEXTS
+            .text(id)
             .with_number("average", average.volts(), 1)
             .with_number("lowest", lowest.volts(), 1)
-            .with_text("verdict", Text::new(verdict).with_number("limit", PulseVoltage::LIMIT.volts(), 1))
+            .with_text("verdict", TEXTS.text(verdict).with_number("limit", PulseVoltage::LIMIT.volts(), 1))
     };
     let passed = [result.lowest_cw, result.lowest_ccw].into_iter().all(|lowest| lowest > PulseVoltage::LIMIT);
     let mut texts = vec![
-        Text::new(if passed { "guide.wiegand_passed" } else { "guide.wiegand_not_passed" }),
+        TEXTS.text(if passed { "guide.wiegand_passed" } else { "guide.wiegand_not_passed" }),
         direction("guide.pulses_cw", result.average_cw, result.lowest_cw),
         direction("guide.pulses_ccw", result.average_ccw, result.lowest_ccw),
     ];
     texts.extend(motion("guide.motion_cw", report.clockwise));
     texts.extend(motion("guide.motion_ccw", report.counterclockwise));
-    texts.push(Text::new(if report.saved { "guide.result_saved" } else { "guide.result_not_saved" }));
+    texts.push(TEXTS.text(if report.saved { "guide.result_saved" } else { "guide.result_not_saved" }));
     texts
 }
 
 fn motion(id: &'static str, motion: Option<Motion>) -> Option<Text> {
     let motion = motion?;
-    Some(Text::new(id).with_number("rpm", motion.rpm.abs(), 1).with_number("spread", motion.spread, 1))
+    Some(TEXTS.text(id).with_number("rpm", motion.rpm.abs(), 1).with_number("spread", motion.spread, 1))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::app::Text;
 use crate::devices::biss::profile::{OtherType, PlanError};
 use crate::devices::biss::protocol::ProcedureKind;
+use crate::devices::biss::state::TEXTS;
 
 /// A profile that goes onto another type of encoder.
 pub fn other_type(types: &OtherType) -> Text {
@@ -11,8 +12,8 @@ pub fn other_type(types: &OtherType) -> Text {
 
 fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text {
     match types {
-        OtherType::Kind { profile, device } => Text::new(kind).with("profile", profile).with("device", device),
-        OtherType::Width { profile, device } => Text::new(width).with("profile", profile).with("device", device),
+        OtherType::Kind { profile, device } => TEXTS.text(kind).with("profile", profile).with("device", device),
+        OtherType::Width { profile, device } => TEXTS.text(width).with("profile", profile).with("device", device),
     }
 }
 
@@ -23,31 +24,32 @@ pub fn plan(error: &PlanError) -> Text {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
         PlanError::OtherType(types) => of_types(types, "biss_plan.other_kind", "biss_plan.other_width"),
-        PlanError::NoBank { bank } => Text::new("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
+        PlanError::NoBank { bank } => TEXTS.text("biss_plan.no_bank").with("bank", format!("0x{bank:02X}")),
         PlanError::PresetTooWide { value, bits, .. } => {
             let last = (1u64 << bits.min(&63)) - 1;
-            Text::new("biss_plan.too_wide").with("value", value).with("bits", bits).with("last", last)
+            TEXTS.text("biss_plan.too_wide").with("value", value).with("bits", bits).with("last", last)
         }
-        PlanError::UnknownFilter { code } => Text::new("biss_plan.no_filter").with("code", format!("0x{code:02X}")),
+        PlanError::UnknownFilter { code } => TEXTS.text("biss_plan.no_filter").with("code", format!("0x{code:02X}")),
         PlanError::NoProcedure { kind, description } => {
-            Text::new("biss_plan.no_procedure").with_text("what", kind_of(*kind)).with("name", description)
+            TEXTS.text("biss_plan.no_procedure").with_text("what", kind_of(*kind)).with("name", description)
         }
-        PlanError::FirmwareTooOld { kind, needed, found } => Text::new("biss_plan.old_firmware")
+        PlanError::FirmwareTooOld { kind, needed, found } => TEXTS
+            .text("biss_plan.old_firmware")
             .with_text("what", kind_of(*kind))
             .with("needed", needed)
             .with("found", found),
-        PlanError::ReadOnly { address } => Text::new("biss_plan.read_only").with("address", address),
-        PlanError::Guarded { address } => Text::new("biss_plan.guarded").with("address", address),
+        PlanError::ReadOnly { address } => TEXTS.text("biss_plan.read_only").with("address", address),
+        PlanError::Guarded { address } => TEXTS.text("biss_plan.guarded").with("address", address),
         PlanError::ByteCount { range, count } => {
-            Text::new("biss_plan.byte_count").with("range", range).with("count", count)
+            TEXTS.text("biss_plan.byte_count").with("range", range).with("count", count)
         }
-        PlanError::NotBalanced { .. } => Text::new("biss_plan.not_balanced"),
-        PlanError::DrivenByThisEncoder => Text::new("mounting_card.refused"),
+        PlanError::NotBalanced { .. } => TEXTS.text("biss_plan.not_balanced"),
+        PlanError::DrivenByThisEncoder => TEXTS.text("mounting_card.refused"),
     }
 }
 
 pub(super) fn kind_of(kind: ProcedureKind) -> Text {
-    Text::new(match kind {
+    TEXTS.text(match kind {
         ProcedureKind::WiegandTest => "guide.wiegand",
         ProcedureKind::Calibration => "guide.calibration",
         ProcedureKind::DataWrite => "guide.data",

@@ -15,6 +15,7 @@ use crate::devices::biss::procedures::procedure::{Activity, Failure, Run, Standi
 use crate::devices::biss::procedures::write::{Interrupted, Left, Written};
 use crate::devices::biss::profile::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, WiegandStatus};
+use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::filter;
 
 /// A change in words.
@@ -23,12 +24,12 @@ pub fn change(change: &Change) -> Text {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),
         Change::Write(edits) => {
             let bytes: usize = edits.iter().map(|(_, bytes)| bytes.len()).sum();
-            Text::new(if bytes == 1 { "change.store_one" } else { "change.store" }).with("bytes", bytes)
+            TEXTS.text(if bytes == 1 { "change.store_one" } else { "change.store" }).with("bytes", bytes)
         }
-        Change::SelectFilter(to) => Text::new("biss_change.filter").with_text("filter", filter(*to)),
-        Change::Preset { parts: None, .. } => Text::new("biss_change.store_preset"),
-        Change::Preset { .. } => Text::new("biss_change.fire_preset"),
-        Change::Guided { .. } => Text::new("biss_change.guided"),
+        Change::SelectFilter(to) => TEXTS.text("biss_change.filter").with_text("filter", filter(*to)),
+        Change::Preset { parts: None, .. } => TEXTS.text("biss_change.store_preset"),
+        Change::Preset { .. } => TEXTS.text("biss_change.fire_preset"),
+        Change::Guided { .. } => TEXTS.text("biss_change.guided"),
     }
 }
 
@@ -37,11 +38,11 @@ pub fn op(op: &Op, layout: &Layout) -> OpWords {
     let bits = layout.singleturn_bits();
     match op {
         Op::StoreData { area, registers } => OpWords {
-            item: Text::new("biss_op.data").with_text("area", super::name(&area.name)),
+            item: TEXTS.text("biss_op.data").with_text("area", super::name(&area.name)),
             changes: runs(registers),
         },
         Op::StorePreset { from, to } => {
-            OpWords::one(Text::new("biss_op.preset"), preset(*from, bits), preset(*to, bits))
+            OpWords::one(TEXTS.text("biss_op.preset"), preset(*from, bits), preset(*to, bits))
         }
         Op::FirePreset { parts, value } => {
             let new = match parts {
@@ -49,22 +50,22 @@ pub fn op(op: &Op, layout: &Layout) -> OpWords {
                 PresetParts::Singleturn => preset_words("biss_op.singleturn", *value, bits),
                 PresetParts::Multiturn => preset_words("biss_op.multiturn", *value, bits),
             };
-            OpWords::one(Text::new("biss_op.fire"), Text::new("biss_op.place"), new)
+            OpWords::one(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
         }
-        Op::SelectFilter { from, to } => OpWords::one(Text::new("biss_op.filter"), filter(*from), filter(*to)),
+        Op::SelectFilter { from, to } => OpWords::one(TEXTS.text("biss_op.filter"), filter(*from), filter(*to)),
         Op::Calibrate => OpWords::one(
-            Text::new("guide.calibration"),
-            Text::new("biss_op.present_table"),
-            Text::new("biss_op.new_table"),
+            TEXTS.text("guide.calibration"),
+            TEXTS.text("biss_op.present_table"),
+            TEXTS.text("biss_op.new_table"),
         ),
         Op::WiegandTest { save } => OpWords::one(
-            Text::new("guide.wiegand"),
-            Text::new("biss_op.last_result"),
-            Text::new(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
+            TEXTS.text("guide.wiegand"),
+            TEXTS.text("biss_op.last_result"),
+            TEXTS.text(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
         ),
         Op::WriteRegister { address, old, new, .. } => OpWords::one(
-            Text::new("biss_op.register").with("address", address),
-            old.map_or_else(|| Text::new("biss_op.not_readable"), |old| plain(format!("{old:02X}"))),
+            TEXTS.text("biss_op.register").with("address", address),
+            old.map_or_else(|| TEXTS.text("biss_op.not_readable"), |old| plain(format!("{old:02X}"))),
             plain(format!("{new:02X}")),
         ),
     }
@@ -87,7 +88,8 @@ pub fn preset(value: PresetValue, singleturn_bits: u8) -> Text {
 
 fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Text {
     let steps = (1_u64 << singleturn_bits) as f64;
-    Text::new(id)
+    TEXTS
+        .text(id)
         .with_number("degrees", f64::from(value.singleturn()) * 360.0 / steps, 3)
         .with("singleturn", value.singleturn())
         .with("multiturn", value.multiturn())
@@ -96,14 +98,14 @@ fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Te
 /// That the write cycles of the flash are numbered, where a plan comes near their end.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let cycles = prepared.wear()?;
-    Some(Text::new("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
+    Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
 }
 
 /// A write that is done.
 pub fn written(written: &Written) -> Text {
     // Of a calibration the encoder's word is all there is.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
-    Text::new(id).with("verified", written.verified).with("cycles", written.write_cycles)
+    TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
 /// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
@@ -115,23 +117,23 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
         text.with_text("cause", failure(&interrupted.cause))
     }];
-    texts.push(Text::new("biss_left.at").with_text("step", step(interrupted.at)));
+    texts.push(TEXTS.text("biss_left.at").with_text("step", step(interrupted.at)));
     texts.extend(match &interrupted.left {
-        Left::Operation => vec![Text::new("biss_left.operation")],
+        Left::Operation => vec![TEXTS.text("biss_left.operation")],
         Left::Unknown(standing) => left(standing),
     });
     let what_next = match (interrupted.unclear, kind) {
-        (Some(register), _) => Text::new("biss_write.unclear").with("register", register),
+        (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
         // The table may be lost without a write, and no backup holds it.
-        (None, ChangeKind::Calibration) => Text::new("write.backup_calibration"),
+        (None, ChangeKind::Calibration) => TEXTS.text("write.backup_calibration"),
         // An operation that may have been carried out counts as a write cycle, where it costs one.
         _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
         (None, ChangeKind::Restore) => Text::new("write.backup"),
-        (None, ChangeKind::Bytes) => Text::new("biss_write.bytes"),
-        (None, ChangeKind::Guided) => Text::new("biss_write.guided"),
-        (None, ChangeKind::WiegandTest) => Text::new("biss_write.wiegand"),
-        (None, ChangeKind::Filter) => Text::new("biss_write.filter"),
-        (None, ChangeKind::Preset) => Text::new("biss_write.preset"),
+        (None, ChangeKind::Bytes) => TEXTS.text("biss_write.bytes"),
+        (None, ChangeKind::Guided) => TEXTS.text("biss_write.guided"),
+        (None, ChangeKind::WiegandTest) => TEXTS.text("biss_write.wiegand"),
+        (None, ChangeKind::Filter) => TEXTS.text("biss_write.filter"),
+        (None, ChangeKind::Preset) => TEXTS.text("biss_write.preset"),
     };
     let what_next = what_next.with("backup", backup.display());
     texts.push(match &interrupted.left {
@@ -163,22 +165,22 @@ pub fn weight(text: &Text) -> Severity {
 /// In which state an encoder was left that could not be led back.
 fn left(standing: &Standing) -> Vec<Text> {
     let mut texts = vec![match standing.mode.values() {
-        [certain] => Text::new("biss_left.mode").with_text("mode", mode(*certain)),
-        several => Text::new("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
+        [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode(*certain)),
+        several => TEXTS.text("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
     }];
     if standing.password.may_be(true) {
-        texts.push(Text::new("biss_left.password"));
+        texts.push(TEXTS.text("biss_left.password"));
     }
     texts.extend(match standing.activity {
         Activity::Nothing => None,
-        Activity::Running(Run::CalibrationCounterclockwise) => Some(Text::new("biss_left.calibrating_ccw")),
-        Activity::Running(Run::CalibrationClockwise) => Some(Text::new("biss_left.calibrating_cw")),
-        Activity::Running(_) => Some(Text::new("biss_left.testing")),
-        Activity::Entered => Some(Text::new("biss_left.entered")),
-        Activity::Saving => Some(Text::new("biss_left.saving")),
-        Activity::Restarting => Some(Text::new("biss_left.restarting")),
+        Activity::Running(Run::CalibrationCounterclockwise) => Some(TEXTS.text("biss_left.calibrating_ccw")),
+        Activity::Running(Run::CalibrationClockwise) => Some(TEXTS.text("biss_left.calibrating_cw")),
+        Activity::Running(_) => Some(TEXTS.text("biss_left.testing")),
+        Activity::Entered => Some(TEXTS.text("biss_left.entered")),
+        Activity::Saving => Some(TEXTS.text("biss_left.saving")),
+        Activity::Restarting => Some(TEXTS.text("biss_left.restarting")),
     });
-    texts.push(Text::new("biss_left.lead_back"));
+    texts.push(TEXTS.text("biss_left.lead_back"));
     texts
 }
 
@@ -188,52 +190,53 @@ pub fn failure(failure: &Failure) -> Text {
         Failure::Device(error) => encoder(error),
         Failure::Calibration { run, status } => calibration(*run, *status),
         Failure::Wiegand { status, code, .. } => wiegand(*status, *code),
-        Failure::NotBalanced { .. } => Text::new("biss_plan.not_balanced"),
+        Failure::NotBalanced { .. } => TEXTS.text("biss_plan.not_balanced"),
         Failure::Mode { wanted, found } => {
-            Text::new("biss_failure.mode").with_text("wanted", mode(*wanted)).with_text("found", mode(*found))
+            TEXTS.text("biss_failure.mode").with_text("wanted", mode(*wanted)).with_text("found", mode(*found))
         }
-        Failure::Status { kind, expected, found } => Text::new("biss_failure.status")
+        Failure::Status { kind, expected, found } => TEXTS
+            .text("biss_failure.status")
             .with_text("what", kind_of(*kind))
             .with("expected", format!("0x{expected:02X}"))
             .with("found", format!("0x{found:02X}")),
-        Failure::TooLong { seconds, .. } => Text::new("biss_failure.too_long").with("seconds", seconds),
+        Failure::TooLong { seconds, .. } => TEXTS.text("biss_failure.too_long").with("seconds", seconds),
         Failure::NotReady { task: asked, blockers } => {
             let both =
-                |first, second| Text::new("biss_failure.both").with_text("first", first).with_text("second", second);
+                |first, second| TEXTS.text("biss_failure.both").with_text("first", first).with_text("second", second);
             let why = blockers.iter().map(|own| blocker(*own)).reduce(both);
-            let text = Text::new("biss_failure.not_ready").with_text("task", task(*asked));
+            let text = TEXTS.text("biss_failure.not_ready").with_text("task", task(*asked));
             text.with_text("why", why.unwrap_or_else(|| plain("")))
         }
         Failure::NotVerified { item, expected, got } => {
-            Text::new("biss_failure.not_verified").with("item", item).with("expected", expected).with("got", got)
+            TEXTS.text("biss_failure.not_verified").with("item", item).with("expected", expected).with("got", got)
         }
-        Failure::NotDescribed { kind } => Text::new("biss_failure.not_described").with_text("what", kind_of(*kind)),
+        Failure::NotDescribed { kind } => TEXTS.text("biss_failure.not_described").with_text("what", kind_of(*kind)),
     }
 }
 
 fn calibration(run: Run, status: CalibrationStatus) -> Text {
     let why = match status {
-        CalibrationStatus::WrongDirection => Text::new("biss_failure.direction"),
-        CalibrationStatus::Temperature => temperatures(Text::new("biss_failure.temperature")),
-        CalibrationStatus::Speed => speeds(Text::new("biss_failure.speed"), run.allowed()),
-        CalibrationStatus::Failed => Text::new("biss_failure.calibration"),
+        CalibrationStatus::WrongDirection => TEXTS.text("biss_failure.direction"),
+        CalibrationStatus::Temperature => temperatures(TEXTS.text("biss_failure.temperature")),
+        CalibrationStatus::Speed => speeds(TEXTS.text("biss_failure.speed"), run.allowed()),
+        CalibrationStatus::Failed => TEXTS.text("biss_failure.calibration"),
         other => return unknown(other.byte()),
     };
     let id = if run.is_clockwise() { "biss_failure.table_lost" } else { "biss_failure.table_kept" };
-    Text::new(id).with_text("why", why)
+    TEXTS.text(id).with_text("why", why)
 }
 
 fn wiegand(status: WiegandStatus, code: u8) -> Text {
     match status {
-        WiegandStatus::WrongDirection => Text::new("biss_failure.wiegand_direction"),
-        WiegandStatus::Failed => Text::new("biss_failure.wiegand").with("code", format!("0x{code:02X}")),
+        WiegandStatus::WrongDirection => TEXTS.text("biss_failure.wiegand_direction"),
+        WiegandStatus::Failed => TEXTS.text("biss_failure.wiegand").with("code", format!("0x{code:02X}")),
         other => unknown(other.byte()),
     }
 }
 
 /// A status that does not belong there.
 fn unknown(status: u8) -> Text {
-    Text::new("biss_failure.unknown").with("status", format!("0x{status:02X}"))
+    TEXTS.text("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }
 
 #[cfg(test)]

@@ -25,13 +25,14 @@ mod tests;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use plant::{Originator, Plant};
+
 use super::config::Config;
 use super::station::Station;
 use crate::buses::ethernet_ip::protocol::Receiver;
 use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, DatagramDevice, Faults};
 use crate::units::{CharacterFormat, Moment};
-use plant::{Originator, Plant};
 
 /// A TCP connection to a virtual adapter or hub, and the datagrams of all of them. Made of a [`Config`];
 /// [`connection`](Self::connection) gives another originator's, and so does a clone.

@@ -5,6 +5,7 @@ use crate::app::number::within;
 use crate::app::texts::signed;
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, nearest_reference};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::ruler::{Beyond, Measure, Ruler};
 
 /// What is typed, in millimetres.
@@ -102,11 +103,11 @@ impl Entries {
     /// In words, also where it is not within the limits.
     pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<Reference, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
-        let (low, high) = limits.ok_or_else(|| Text::new("hd_axis.unread"))?;
+        let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(asked).filter(|own| (low..=high).contains(own));
         let becomes = becomes.ok_or_else(|| {
             let mm = |steps: i32| words::millimetres(ruler, steps.into());
-            Text::new("hd_axis.reference_outside").with_text("low", mm(low)).with_text("high", mm(high))
+            TEXTS.text("hd_axis.reference_outside").with_text("low", mm(low)).with_text("high", mm(high))
         })?;
         Ok(Reference { asked, becomes })
     }
@@ -141,18 +142,19 @@ pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
 }
 
 fn length(what: &'static str, text: &str, most: f64) -> Result<Length, Text> {
-    let millimetres = within(what, text, 0.001, most)?;
+    let millimetres = within(TEXTS.text(what), text, 0.001, most)?;
     // At least a thousand, at most a thousand million.
     Ok(Length { nanometres: (millimetres * 1e6).round() as u64 })
 }
 
 fn position(what: &'static str, text: &str, ruler: Option<Ruler>) -> Result<i32, Text> {
-    let ruler = ruler.ok_or_else(|| Text::new("hd_axis.unread"))?;
-    let value = within(what, text, -1e6, 1e6)?;
+    let ruler = ruler.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
+    let value = within(TEXTS.text(what), text, -1e6, 1e6)?;
     ruler.steps(value, Measure::Millimetres).map_err(|why| match why {
-        Beyond::NoPitch => Text::new("hd_axis.unread"),
-        Beyond::Bits { least, most } => Text::new("hd_axis.beyond")
-            .with_text("what", Text::new(what))
+        Beyond::NoPitch => TEXTS.text("hd_axis.unread"),
+        Beyond::Bits { least, most } => TEXTS
+            .text("hd_axis.beyond")
+            .with_text("what", TEXTS.text(what))
             .with_number("least", least, 0)
             .with_number("most", most, 0),
     })

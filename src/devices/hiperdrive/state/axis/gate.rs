@@ -5,6 +5,7 @@ use super::{Ask, Axis, Button, Place, Seen, Step, differences, words};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::protocol::State;
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
 impl Axis {
@@ -14,18 +15,18 @@ impl Axis {
     /// Why it cannot be pressed now.
     pub fn ask(&self, button: Button, seen: &Seen) -> Result<Ask, Text> {
         if !seen.connected {
-            return Err(Text::new("hd_axis.not_connected"));
+            return Err(TEXTS.text("hd_axis.not_connected"));
         }
         if seen.busy || self.asked.is_some() {
-            return Err(Text::new("hd_axis.busy"));
+            return Err(TEXTS.text("hd_axis.busy"));
         }
         if seen.stale && button != Button::Give {
-            return Err(Text::new("hd_axis.unread"));
+            return Err(TEXTS.text("hd_axis.unread"));
         }
-        let stands = || if seen.moves { Err(Text::new("hd_axis.moving")) } else { Ok(()) };
+        let stands = || if seen.moves { Err(TEXTS.text("hd_axis.moving")) } else { Ok(()) };
         match button {
             Button::Take | Button::Give if seen.controlled == (button == Button::Take) => {
-                Err(Text::new("hd_axis.already"))
+                Err(TEXTS.text("hd_axis.already"))
             }
             Button::Take => Ok(Ask::Take),
             Button::Give => stands().map(|()| Ask::Give),
@@ -34,19 +35,19 @@ impl Axis {
                 let back = differences::to_write_back(seen);
                 match (back.is_empty(), differences::is_place_other(seen)) {
                     (false, _) => Ok(Ask::Restore(back)),
-                    (true, false) => Err(Text::new("hd_axis.nothing_back")),
-                    (true, true) => Err(Text::new("hd_axis.place_left")),
+                    (true, false) => Err(TEXTS.text("hd_axis.nothing_back")),
+                    (true, true) => Err(TEXTS.text("hd_axis.place_left")),
                 }
             }
-            _ if self.over.is_some() => Err(Text::new("hd_axis.over")),
-            Button::Acknowledge if !seen.controlled => Err(Text::new("hd_axis.no_control")),
-            Button::Acknowledge if !seen.has_failed() => Err(Text::new("hd_axis.no_fault")),
+            _ if self.over.is_some() => Err(TEXTS.text("hd_axis.over")),
+            Button::Acknowledge if !seen.controlled => Err(TEXTS.text("hd_axis.no_control")),
+            Button::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
             Button::Acknowledge => Ok(Ask::Acknowledge),
             _ if let Some(step) = self.fallen() => Err(words::fallen(step)),
             Button::Do => stands().and_then(|()| self.ask_of_step(seen)),
             Button::Confirm => match (seen.scale, seen.limits) {
                 (Some(_), Some(_)) => Ok(Ask::ConfirmLimits),
-                _ => Err(Text::new("hd_axis.unread")),
+                _ => Err(TEXTS.text("hd_axis.unread")),
             },
             Button::Widen => {
                 let preview = self.entries.preview(seen)?;
@@ -56,14 +57,14 @@ impl Axis {
                 self.may_move(seen)?;
                 stands().and_then(|()| self.target(place, seen).map(Ask::Move))
             }
-            Button::PowerCycle if !seen.is_virtual => Err(Text::new("hd_axis.not_virtual")),
-            Button::PowerCycle if seen.controlled => Err(Text::new("hd_axis.give_first")),
+            Button::PowerCycle if !seen.is_virtual => Err(TEXTS.text("hd_axis.not_virtual")),
+            Button::PowerCycle if seen.controlled => Err(TEXTS.text("hd_axis.give_first")),
             Button::PowerCycle => Ok(Ask::PowerCycle),
             Button::Restarted => match self.power {
                 Some(Power::Back { restart: Restart::Unproven, .. }) => Ok(Ask::BelieveRestart),
-                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(Text::new("hd_axis.not_restarted")),
-                Some(Power::Back { .. }) => Err(Text::new("hd_axis.already")),
-                _ => Err(Text::new("hd_axis.needs_power")),
+                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(TEXTS.text("hd_axis.not_restarted")),
+                Some(Power::Back { .. }) => Err(TEXTS.text("hd_axis.already")),
+                _ => Err(TEXTS.text("hd_axis.needs_power")),
             },
         }
     }
@@ -71,12 +72,12 @@ impl Axis {
     /// What the step itself does to the drive.
     fn ask_of_step(&self, seen: &Seen) -> Result<Ask, Text> {
         match self.step {
-            Step::Request if seen.requested == Some(true) => Err(Text::new("hd_axis.already")),
+            Step::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
             Step::Request => Ok(Ask::Try(vec![(152, 1)])),
             Step::Scale => {
                 let preview = self.entries.preview(seen)?;
                 if seen.scale == Some(preview.scale) {
-                    return Err(Text::new("hd_axis.already"));
+                    return Err(TEXTS.text("hd_axis.already"));
                 }
                 let (numerator, denominator) = (preview.scale.numerator(), preview.scale.denominator());
                 let (low, high) = (preview.lower, preview.upper);
@@ -90,7 +91,7 @@ impl Axis {
             Step::Upper => {
                 let (low, high) = self.taught(seen)?;
                 if seen.limits == Some((low, high)) {
-                    return Err(Text::new("hd_axis.already"));
+                    return Err(TEXTS.text("hd_axis.already"));
                 }
                 Ok(Ask::Try(vec![(158, low.into()), (160, high.into())]))
             }
@@ -99,9 +100,9 @@ impl Axis {
                 (Some(Power::On(_) | Power::Back { restart: Restart::Unproven, .. }), Some(false), Some(mark)) => {
                     Ok(Ask::Try(vec![(MARK, mark)]))
                 }
-                _ => Err(Text::new("hd_axis.already")),
+                _ => Err(TEXTS.text("hd_axis.already")),
             },
-            Step::Confirm | Step::Jog | Step::Lower | Step::Test => Err(Text::new("hd_axis.already")),
+            Step::Confirm | Step::Jog | Step::Lower | Step::Test => Err(TEXTS.text("hd_axis.already")),
         }
     }
 
@@ -111,11 +112,11 @@ impl Axis {
         let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
         let mm = |steps: i32| words::millimetres(ruler, steps.into());
         if low >= high {
-            return Err(Text::new("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
+            return Err(TEXTS.text("hd_axis.crossed").with_text("low", mm(low)).with_text("high", mm(high)));
         }
-        let position = seen.position.ok_or_else(|| Text::new("hd_axis.no_position"))?;
+        let position = seen.position.ok_or_else(|| TEXTS.text("hd_axis.no_position"))?;
         if !(low..=high).contains(&position) {
-            let outside = Text::new("hd_axis.outside").with_text("position", mm(position));
+            let outside = TEXTS.text("hd_axis.outside").with_text("position", mm(position));
             return Err(outside.with_text("low", mm(low)).with_text("high", mm(high)));
         }
         Ok((low, high))
@@ -127,20 +128,20 @@ impl Axis {
     /// In words.
     pub fn may_move(&self, seen: &Seen) -> Result<(), Text> {
         if !seen.connected {
-            return Err(Text::new("hd_axis.not_connected"));
+            return Err(TEXTS.text("hd_axis.not_connected"));
         }
         if !seen.controlled {
-            return Err(Text::new("hd_axis.no_control"));
+            return Err(TEXTS.text("hd_axis.no_control"));
         }
         if self.asked.is_some() {
-            return Err(Text::new("hd_axis.busy"));
+            return Err(TEXTS.text("hd_axis.busy"));
         }
         if let Some(step) = self.fallen() {
             return Err(words::fallen(step));
         }
         match seen.actual.map(|actual| actual.status.state()) {
-            Some(State::Fault) => return Err(Text::new("hd_refused.fault")),
-            Some(State::Locked) => return Err(Text::new("hd_refused.lock")),
+            Some(State::Fault) => return Err(TEXTS.text("hd_refused.fault")),
+            Some(State::Locked) => return Err(TEXTS.text("hd_refused.lock")),
             _ => {}
         }
         match seen.locks.first() {
@@ -158,12 +159,12 @@ impl Axis {
             return Err(words::fallen(step));
         }
         if self.asked.is_some() {
-            return Err(Text::new("hd_axis.busy"));
+            return Err(TEXTS.text("hd_axis.busy"));
         }
         if seen.moves {
-            return Err(Text::new("hd_axis.moving"));
+            return Err(TEXTS.text("hd_axis.moving"));
         }
-        seen.position.map(|_| ()).ok_or_else(|| Text::new("hd_axis.no_position"))
+        seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
     }
 
     /// Whether the step can be left out now.
@@ -176,12 +177,12 @@ impl Axis {
     /// # Errors
     /// What is missing.
     pub fn may_go_on(&self, seen: &Seen) -> Result<(), Text> {
-        let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(Text::new(id)) };
+        let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(TEXTS.text(id)) };
         if self.asked.is_some() {
-            return Err(Text::new("hd_axis.busy"));
+            return Err(TEXTS.text("hd_axis.busy"));
         }
         if seen.moves {
-            return Err(Text::new("hd_axis.moving"));
+            return Err(TEXTS.text("hd_axis.moving"));
         }
         if let Some(step) = self.fallen() {
             return Err(words::fallen(step));
@@ -215,8 +216,8 @@ impl Axis {
             }
             Step::Save => lacks(self.saved, "hd_axis.needs_save"),
             Step::PowerCycle => match self.power {
-                Some(Power::Back { restart: Restart::Unproven, .. }) => Err(Text::new("hd_axis.needs_proof")),
-                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(Text::new("hd_axis.not_restarted")),
+                Some(Power::Back { restart: Restart::Unproven, .. }) => Err(TEXTS.text("hd_axis.needs_proof")),
+                Some(Power::Back { restart: Restart::Disproved, .. }) => Err(TEXTS.text("hd_axis.not_restarted")),
                 _ => lacks(self.survived(), "hd_axis.needs_power"),
             },
         }
@@ -235,7 +236,7 @@ impl Axis {
     /// # Errors
     /// Without limits.
     pub fn target(&self, place: Place, seen: &Seen) -> Result<i32, Text> {
-        let (low, high) = seen.limits.ok_or_else(|| Text::new("hd_axis.unread"))?;
+        let (low, high) = seen.limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         Ok(place.between(low, high))
     }
 }

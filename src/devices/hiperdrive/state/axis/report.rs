@@ -2,6 +2,7 @@
 
 use super::{Axis, End, Place, Reached, Seen, Step, words};
 use crate::app::{Language, Text};
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// Whose axis it is, for a report.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,13 +25,13 @@ pub fn report(axis: &Axis, now: &Seen, device: &Device, language: Language) -> O
     let over = axis.over()?;
     let seen = &over.seen;
     let mut page = Page { text: String::new(), language };
-    page.line("", &Text::new("hd_axis.report_title").with("when", &over.when));
-    let drive = Text::new("hd_axis.report_drive").with("device", &device.name).with("drive", axis.drive().get());
-    let variant = device.variant.clone().unwrap_or_else(|| Text::new("hd_op.unknown"));
+    page.line("", &TEXTS.text("hd_axis.report_title").with("when", &over.when));
+    let drive = TEXTS.text("hd_axis.report_drive").with("device", &device.name).with("drive", axis.drive().get());
+    let variant = device.variant.clone().unwrap_or_else(|| TEXTS.text("hd_op.unknown"));
     page.line("", &drive.with_text("variant", variant).with("serial", &device.serial_number));
-    page.line("", &Text::new(if over.end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" }));
+    page.line("", &TEXTS.text(if over.end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" }));
     if let Some(pitch) = seen.pitch {
-        let pitch = Text::new("hd_axis.report_pitch").with_number("pitch", pitch.nanometres as f64 / 1e6, 3);
+        let pitch = TEXTS.text("hd_axis.report_pitch").with_number("pitch", pitch.nanometres as f64 / 1e6, 3);
         page.line("", &pitch);
     }
     page.space();
@@ -42,7 +43,7 @@ pub fn report(axis: &Axis, now: &Seen, device: &Device, language: Language) -> O
 
 fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
     let reached = axis.reached(step);
-    let line = Text::new("hd_axis.report_step").with("number", step.index() + 1);
+    let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
     page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::reached(reached)));
     if matches!(reached, Reached::Done | Reached::Failed)
         && let Some(found) = words::found(axis, step, seen)
@@ -53,7 +54,7 @@ fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
         page.line(INDENT, &words::effort("hd_axis.report_effort"));
         for place in Place::ALL {
             let Some(outcome) = axis.outcome(place) else { continue };
-            let line = Text::new("hd_axis.report_place").with_text("place", words::place(place));
+            let line = TEXTS.text("hd_axis.report_place").with_text("place", words::place(place));
             page.line(INDENT, &line.with_text("outcome", words::outcome(&outcome, seen)));
         }
     }
@@ -63,16 +64,16 @@ fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
 pub fn end_lines(axis: &Axis, now: &Seen) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), words::returned(axis, now)) {
-        (true, None) => lines.push(Text::new("hd_axis.nothing_written")),
+        (true, None) => lines.push(TEXTS.text("hd_axis.nothing_written")),
         (true, Some(returned)) => lines.push(returned),
         (false, returned) => {
             lines.push(words::changes(axis));
             lines.extend(returned);
-            lines.push(Text::new(if axis.is_saved() { "hd_axis.all_saved" } else { "hd_axis.not_saved" }));
+            lines.push(TEXTS.text(if axis.is_saved() { "hd_axis.all_saved" } else { "hd_axis.not_saved" }));
         }
     }
     if axis.is_partly_written() {
-        lines.push(Text::new("hd_axis.partly"));
+        lines.push(TEXTS.text("hd_axis.partly"));
     }
     lines.extend(words::differences(now));
     lines.extend(words::place_left(axis, now));

@@ -4,12 +4,13 @@ use super::{Axis, Change, Outcome, Place, Power, Reached, Restart, Seen, Step};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended};
 use crate::devices::hiperdrive::protocol::{ErrorCode, ScaleError};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::devices::hiperdrive::state::ruler::{Measure, Ruler};
 
 /// What a step is called.
 pub fn title(step: Step) -> Text {
-    Text::new(match step {
+    TEXTS.text(match step {
         Step::Request => "hd_axis.step_request",
         Step::Scale => "hd_axis.step_scale",
         Step::Confirm => "hd_axis.step_confirm",
@@ -25,7 +26,7 @@ pub fn title(step: Step) -> Text {
 
 /// What to do in it.
 pub fn todo(step: Step, seen: &Seen) -> Text {
-    Text::new(match step {
+    TEXTS.text(match step {
         Step::Request => "hd_axis.do_request",
         Step::Scale => "hd_axis.do_scale",
         Step::Confirm => "hd_axis.do_confirm",
@@ -42,7 +43,7 @@ pub fn todo(step: Step, seen: &Seen) -> Text {
 
 /// How far it is, in a word.
 pub fn reached(own: Reached) -> Text {
-    Text::new(match own {
+    TEXTS.text(match own {
         Reached::Done => "guide.done",
         Reached::Now => "guide.waits",
         Reached::Skipped => "guide.left_out",
@@ -53,7 +54,7 @@ pub fn reached(own: Reached) -> Text {
 
 /// What its button does.
 pub fn button(step: Step) -> Text {
-    Text::new(match step {
+    TEXTS.text(match step {
         Step::Request => "hd_axis.request",
         Step::Reference => "hd_axis.set",
         Step::Save => "hd_axis.save",
@@ -68,15 +69,15 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
     let mm = |steps: i32| millimetres(ruler, steps.into());
     match step {
         Step::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
-            (true, Some(true)) => Some(Text::new("hd_axis.found_drive")),
-            (true, Some(false)) => Some(Text::new("hd_axis.found_no_drive")),
+            (true, Some(true)) => Some(TEXTS.text("hd_axis.found_drive")),
+            (true, Some(false)) => Some(TEXTS.text("hd_axis.found_no_drive")),
             // Nothing was heard of the drive: that says nothing of its cable.
             (true, None) => None,
-            (false, _) => Some(Text::new("hd_axis.found_unrequested")),
+            (false, _) => Some(TEXTS.text("hd_axis.found_unrequested")),
         },
         Step::Scale => {
             let ruler = ruler?;
-            let text = Text::new("hd_axis.found_scale").with("numerator", ruler.scale.numerator());
+            let text = TEXTS.text("hd_axis.found_scale").with("numerator", ruler.scale.numerator());
             let text = text.with("denominator", ruler.scale.denominator());
             let per_turn = ruler.scale.steps_per_turn();
             let decimals = if per_turn.fract() == 0.0 { 0 } else { 3 };
@@ -86,64 +87,64 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
             // What was confirmed stays what it was, also after others were taught.
             let confirmed = axis.confirmed.filter(|_| step == Step::Confirm).map(|own| own.seen);
             let (low, high) = confirmed.or(seen.limits)?;
-            Some(Text::new("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))
+            Some(TEXTS.text("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))
         }
         Step::Jog => {
             let travel = axis.travel();
-            let way = Text::new(match travel.clockwise_is_up {
+            let way = TEXTS.text(match travel.clockwise_is_up {
                 Some(true) => "hd_axis.clockwise_up",
                 Some(false) => "hd_axis.clockwise_down",
                 None => return (travel.up + travel.down > 0).then(|| moved(ruler, travel.up, travel.down)),
             });
             let moved = moved(ruler, travel.up, travel.down);
-            Some(Text::new("hd_axis.found_jog").with_text("moved", moved).with_text("way", way))
+            Some(TEXTS.text("hd_axis.found_jog").with_text("moved", moved).with_text("way", way))
         }
-        Step::Reference => Some(Text::new("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
+        Step::Reference => Some(TEXTS.text("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
         Step::Lower => {
-            Some(Text::new("hd_axis.found_lower").with_text("position", mm(axis.entries.lower(ruler).ok()?)))
+            Some(TEXTS.text("hd_axis.found_lower").with_text("position", mm(axis.entries.lower(ruler).ok()?)))
         }
         Step::Test => {
             let good = Place::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
             let worst = good.clone().map(|own| own.missed().abs()).max()?;
-            let text = Text::new("hd_axis.found_test").with("count", good.count());
+            let text = TEXTS.text("hd_axis.found_test").with("count", good.count());
             Some(text.with_text("missed", millimetres(ruler, worst)))
         }
-        Step::Save => axis.is_saved().then(|| Text::new("hd_axis.found_saved")),
+        Step::Save => axis.is_saved().then(|| TEXTS.text("hd_axis.found_saved")),
         Step::PowerCycle => power(axis, ruler),
     }
 }
 
 fn moved(ruler: Option<Ruler>, up: i64, down: i64) -> Text {
-    let text = Text::new("hd_axis.found_moved").with_text("up", millimetres(ruler, up));
+    let text = TEXTS.text("hd_axis.found_moved").with_text("up", millimetres(ruler, up));
     text.with_text("down", millimetres(ruler, down))
 }
 
 fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
     let (kept, moved, allowed, restart) = match axis.power()? {
-        Power::On(_) => return Some(Text::new("hd_axis.power_on")),
-        Power::Gone(_) => return Some(Text::new("hd_axis.power_gone")),
+        Power::On(_) => return Some(TEXTS.text("hd_axis.power_on")),
+        Power::Gone(_) => return Some(TEXTS.text("hd_axis.power_gone")),
         Power::Back { kept, moved, allowed, restart, .. } => (kept, moved, allowed, restart),
     };
-    let proof = Text::new(match restart {
+    let proof = TEXTS.text(match restart {
         Restart::Read => "hd_axis.restart_read",
         Restart::Switched => "hd_axis.restart_switched",
         Restart::Said => "hd_axis.restart_said",
         Restart::Unproven => "hd_axis.restart_unproven",
         Restart::Disproved => "hd_axis.not_restarted",
     });
-    let Some(moved) = moved else { return Some(Text::new("hd_axis.power_unknown")) };
+    let Some(moved) = moved else { return Some(TEXTS.text("hd_axis.power_unknown")) };
     let id = match (kept, moved.abs() <= allowed) {
         (false, _) => "hd_axis.power_lost",
         (true, false) => "hd_axis.power_moved",
         (true, true) => "hd_axis.power_kept",
     };
-    let text = Text::new(id).with_text("moved", millimetres(ruler, moved));
+    let text = TEXTS.text(id).with_text("moved", millimetres(ruler, moved));
     Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
 }
 
 /// Why a step does not hold any more.
 pub fn fallen(step: Step) -> Text {
-    let why = Text::new(match step {
+    let why = TEXTS.text(match step {
         Step::Request => "hd_axis.fell_request",
         Step::Scale => "hd_axis.fell_scale",
         Step::Confirm => "hd_axis.fell_confirm",
@@ -151,7 +152,7 @@ pub fn fallen(step: Step) -> Text {
         Step::Upper => "hd_axis.fell_limits",
         Step::Jog | Step::Lower | Step::Test | Step::Save | Step::PowerCycle => "hd_axis.fell_undone",
     });
-    let text = Text::new("hd_axis.fallen").with("number", step.index() + 1);
+    let text = TEXTS.text("hd_axis.fallen").with("number", step.index() + 1);
     text.with_text("step", title(step)).with_text("why", why)
 }
 
@@ -161,38 +162,38 @@ pub fn fault(seen: &Seen) -> Option<Text> {
         return None;
     }
     let Some(code) = seen.error.filter(|code| *code != ErrorCode::NONE) else {
-        return Some(Text::new("hd_axis.fault_unread"));
+        return Some(TEXTS.text("hd_axis.fault_unread"));
     };
     let words = words::error(code);
-    let text = Text::new("hd_axis.fault").with("code", format!("{:04X}", code.code()));
+    let text = TEXTS.text("hd_axis.fault").with("code", format!("{:04X}", code.code()));
     Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
 }
 
 /// How the pads and the test move: as they are sent.
 pub fn effort(id: &'static str) -> Text {
     let Effort { speed, torque } = Effort::JOG;
-    Text::new(id).with("speed", speed.get()).with("torque", torque.get())
+    TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
 /// What came of a test move.
 pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {
-        let text = Text::new("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
+        let text = TEXTS.text("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
         return text.with_text("missed", mm(outcome.missed()));
     }
     let why = words::ended(outcome.ended, |steps| mm(steps.into()));
-    Text::new("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
+    TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
 }
 
 /// What is known to be other than saved; `None`: nothing is.
 pub fn differences(seen: &Seen) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
         let id = if own.number == super::differences::REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
-        Text::new(id).with("number", own.number).with("now", own.now).with("saved", own.saved)
+        TEXTS.text(id).with("number", own.number).with("now", own.now).with("saved", own.saved)
     };
     let all: Vec<Text> = seen.differences().into_iter().map(difference).collect();
-    (!all.is_empty()).then(|| Text::new("hd_axis.unsaved").with_list("differences", all))
+    (!all.is_empty()).then(|| TEXTS.text("hd_axis.unsaved").with_list("differences", all))
 }
 
 /// What came of writing back; `None`: nothing was.
@@ -202,7 +203,7 @@ pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
     }
     let is_there = |(number, value): &&(u16, i64)| seen.values.get(number) == Some(value);
     let good = axis.returned.iter().filter(is_there).count();
-    let text = Text::new("hd_axis.returned").with("count", good);
+    let text = TEXTS.text("hd_axis.returned").with("count", good);
     Some(text.with("all", axis.returned.len()))
 }
 
@@ -210,18 +211,18 @@ pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
 pub fn place_left(axis: &Axis, seen: &Seen) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, Change::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
-    is_left.then(|| Text::new("hd_axis.place_left"))
+    is_left.then(|| TEXTS.text("hd_axis.place_left"))
 }
 
 /// The position changed while it was not read; `None`: not since the reference.
 pub fn unexplained(axis: &Axis, seen: &Seen) -> Option<Text> {
     let way = axis.unexplained?;
-    Some(Text::new("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
+    Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
 }
 
 /// What a place of the test is called.
 pub fn place(place: Place) -> Text {
-    Text::new(match place {
+    TEXTS.text(match place {
         Place::Middle => "hd_axis.middle",
         Place::Lower => "hd_axis.to_lower",
         Place::Upper => "hd_axis.to_upper",
@@ -237,12 +238,12 @@ pub fn changes(axis: &Axis) -> Text {
     let all = axis.changes();
     let is_last = |(at, own): &(usize, &Change)| !all.iter().skip(at + 1).any(|later| number(later) == number(own));
     let last = all.iter().enumerate().filter(is_last);
-    Text::new("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
+    TEXTS.text("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
 }
 
 /// As the number that was written: the scale may be another by now.
 fn change(own: &Change) -> Text {
-    let text = Text::new("hd_axis.changed");
+    let text = TEXTS.text("hd_axis.changed");
     match own {
         Change::Parameter(number, value) => text.with("number", number).with("value", value),
         Change::Position(steps) => text.with("number", super::differences::REFERENCE).with("value", steps),
@@ -254,16 +255,16 @@ pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
     match ruler.and_then(|ruler| Some((ruler.of(steps, Measure::Millimetres)?, ruler))) {
         Some((value, ruler)) => {
             let decimals = ruler.decimals(Measure::Millimetres).min(4);
-            Text::new("hd_axis.millimetres").with_number("value", value, decimals)
+            TEXTS.text("hd_axis.millimetres").with_number("value", value, decimals)
         }
-        None => Text::new("hd_axis.steps").with("value", steps),
+        None => TEXTS.text("hd_axis.steps").with("value", steps),
     }
 }
 
 /// Why a pitch and a resolution make no scale.
 pub fn scale(error: &ScaleError) -> Text {
     match error {
-        ScaleError::TooFine { steps, .. } => Text::new("hd_axis.too_fine").with("steps", steps),
-        ScaleError::Zero | ScaleError::NoLength => Text::new("hd_axis.no_length"),
+        ScaleError::TooFine { steps, .. } => TEXTS.text("hd_axis.too_fine").with("steps", steps),
+        ScaleError::Zero | ScaleError::NoLength => TEXTS.text("hd_axis.no_length"),
     }
 }

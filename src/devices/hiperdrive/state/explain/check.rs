@@ -7,6 +7,7 @@ use crate::app::explain::plain;
 use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::procedures::check::{Finding, Line, Step};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber};
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// The lines of a check.
 pub fn check(lines: &[Line]) -> Vec<CheckLine> {
@@ -14,15 +15,15 @@ pub fn check(lines: &[Line]) -> Vec<CheckLine> {
 }
 
 pub(super) fn step(step: Step) -> Text {
-    let of = |id: &'static str, drive: DriveNumber| Text::new(id).with("drive", drive.get());
+    let of = |id: &'static str, drive: DriveNumber| TEXTS.text(id).with("drive", drive.get());
     match step {
-        Step::Messages => Text::new("check.messages"),
-        Step::Device => Text::new("check.device"),
-        Step::Supply => Text::new("check.control_supply"),
+        Step::Messages => TEXTS.text("check.messages"),
+        Step::Device => TEXTS.text("check.device"),
+        Step::Supply => TEXTS.text("check.control_supply"),
         Step::Temperature => Text::new("check.warmth"),
-        Step::Address => Text::new("check.ip_address"),
-        Step::Memory => Text::new("check.memory"),
-        Step::Drives => Text::new("check.drives"),
+        Step::Address => TEXTS.text("check.ip_address"),
+        Step::Memory => TEXTS.text("check.memory"),
+        Step::Drives => TEXTS.text("check.drives"),
         Step::Request(drive) => of("check.request", drive),
         Step::Line(drive) => of("check.rs485", drive),
         Step::Timeout(drive) => of("check.drive_timeout", drive),
@@ -35,60 +36,63 @@ pub(super) fn step(step: Step) -> Text {
 fn finding(finding: &Finding) -> Text {
     match finding {
         Finding::Replies { asked, slowest_ms, late } => {
-            Text::new("hd_check.replies").with("asked", asked).with("slowest", slowest_ms).with("late", late)
+            TEXTS.text("hd_check.replies").with("asked", asked).with("slowest", slowest_ms).with("late", late)
         }
         Finding::Category(words) | Finding::Version(words) => plain(words),
         Finding::SerialNumber(number) => Text::new("check.serial").with("number", number),
-        Finding::Supply(tenths) => Text::new("hd_check.supply").with_number("volts", *tenths as f64 / 10.0, 1),
-        Finding::Temperature(celsius) => Text::new("hd_check.celsius").with("celsius", celsius),
+        Finding::Supply(tenths) => TEXTS.text("hd_check.supply").with_number("volts", *tenths as f64 / 10.0, 1),
+        Finding::Temperature(celsius) => TEXTS.text("hd_check.celsius").with("celsius", celsius),
         Finding::Switch(switch) => self::switch(*switch),
-        Finding::UnknownSwitch(number) => Text::new("hd_check.unknown_switch").with("number", number),
+        Finding::UnknownSwitch(number) => TEXTS.text("hd_check.unknown_switch").with("number", number),
         Finding::Source(source) => self::source(*source),
-        Finding::Saved => Text::new("hd_check.saved"),
-        Finding::NotSaved(number) => Text::new("hd_check.not_saved").with("number", number),
-        Finding::Drive { number, variant: own, serial_number } => Text::new("hd_check.drive")
+        Finding::Saved => TEXTS.text("hd_check.saved"),
+        Finding::NotSaved(number) => TEXTS.text("hd_check.not_saved").with("number", number),
+        Finding::Drive { number, variant: own, serial_number } => TEXTS
+            .text("hd_check.drive")
             .with("drive", number.get())
             .with_text("variant", variant(*own))
             .with("serial", serial_number),
-        Finding::NoDrives => Text::new("hd_check.no_drives"),
-        Finding::Requested => Text::new("hd_check.requested"),
-        Finding::NotRequested => Text::new("hd_check.not_requested"),
-        Finding::LookAtS3 => Text::new("hd_check.look_at_s3"),
-        Finding::LineGood => Text::new("hd_check.line_good"),
-        Finding::LineWord(0xFFFF) => Text::new("hd_check.line_none"),
-        Finding::LineWord(word) => Text::new("hd_check.line_word").with("word", hex(*word)),
-        Finding::Timeout(tenths) => Text::new("hd_check.timeout").with_number("seconds", *tenths as f64 / 10.0, 1),
-        Finding::NoTimeout => Text::new("hd_lock.no_timeout"),
+        Finding::NoDrives => TEXTS.text("hd_check.no_drives"),
+        Finding::Requested => TEXTS.text("hd_check.requested"),
+        Finding::NotRequested => TEXTS.text("hd_check.not_requested"),
+        Finding::LookAtS3 => TEXTS.text("hd_check.look_at_s3"),
+        Finding::LineGood => TEXTS.text("hd_check.line_good"),
+        Finding::LineWord(0xFFFF) => TEXTS.text("hd_check.line_none"),
+        Finding::LineWord(word) => TEXTS.text("hd_check.line_word").with("word", hex(*word)),
+        Finding::Timeout(tenths) => TEXTS.text("hd_check.timeout").with_number("seconds", *tenths as f64 / 10.0, 1),
+        Finding::NoTimeout => TEXTS.text("hd_lock.no_timeout"),
         Finding::State(own) => state(*own),
-        Finding::StrayStatus(word) => Text::new("hd_check.stray").with("word", hex(*word)),
-        Finding::DriveWord(word) => Text::new("hd_check.drive_word").with("word", hex(*word)),
-        Finding::MotionWord(word) => Text::new("hd_check.motion_word").with("word", hex(*word)),
+        Finding::StrayStatus(word) => TEXTS.text("hd_check.stray").with("word", hex(*word)),
+        Finding::DriveWord(word) => TEXTS.text("hd_check.drive_word").with("word", hex(*word)),
+        Finding::MotionWord(word) => TEXTS.text("hd_check.motion_word").with("word", hex(*word)),
         Finding::Error(code) => {
             let words = error(*code);
-            Text::new("hd_check.error")
+            TEXTS
+                .text("hd_check.error")
                 .with("code", format!("{:04X}", code.code()))
                 .with_text("name", words.name)
                 .with_text("cause", words.cause)
                 .with_text("remedy", words.remedy)
         }
-        Finding::Faults(count) => Text::new("hd_check.faults").with("count", count),
-        Finding::Range { numerator, denominator, lower, upper } => Text::new("hd_check.range")
+        Finding::Faults(count) => TEXTS.text("hd_check.faults").with("count", count),
+        Finding::Range { numerator, denominator, lower, upper } => TEXTS
+            .text("hd_check.range")
             .with("numerator", numerator)
             .with("denominator", denominator)
             .with("lower", lower)
             .with("upper", upper),
         Finding::BadScale { numerator, denominator } => {
-            Text::new("hd_check.bad_scale").with("numerator", numerator).with("denominator", denominator)
+            TEXTS.text("hd_check.bad_scale").with("numerator", numerator).with("denominator", denominator)
         }
         Finding::LimitsCrossed { lower, upper } => {
-            Text::new("hd_check.crossed").with("lower", lower).with("upper", upper)
+            TEXTS.text("hd_check.crossed").with("lower", lower).with("upper", upper)
         }
         Finding::BeyondTravel { limit, turns, most } => {
-            Text::new("hd_check.beyond").with("limit", limit).with_number("turns", *turns, 1).with("most", most)
+            TEXTS.text("hd_check.beyond").with("limit", limit).with_number("turns", *turns, 1).with("most", most)
         }
-        Finding::Within(position) => Text::new("hd_check.within").with("position", position),
+        Finding::Within(position) => TEXTS.text("hd_check.within").with("position", position),
         Finding::Outside { position, lower, upper } => {
-            Text::new("hd_check.outside").with("position", position).with("lower", lower).with("upper", upper)
+            TEXTS.text("hd_check.outside").with("position", position).with("lower", lower).with("upper", upper)
         }
     }
 }
@@ -96,21 +100,21 @@ fn finding(finding: &Finding) -> Text {
 /// What the address switches say.
 pub fn switch(switch: AddressSwitch) -> Text {
     match switch {
-        AddressSwitch::Object => Text::new("hd_switch.object"),
-        AddressSwitch::Fixed(address) => Text::new("hd_switch.fixed").with("address", address),
-        AddressSwitch::Stored => Text::new("hd_switch.stored"),
-        AddressSwitch::Bootp => Text::new("hd_switch.bootp"),
-        AddressSwitch::Dhcp => Text::new("hd_switch.dhcp"),
+        AddressSwitch::Object => TEXTS.text("hd_switch.object"),
+        AddressSwitch::Fixed(address) => TEXTS.text("hd_switch.fixed").with("address", address),
+        AddressSwitch::Stored => TEXTS.text("hd_switch.stored"),
+        AddressSwitch::Bootp => TEXTS.text("hd_switch.bootp"),
+        AddressSwitch::Dhcp => TEXTS.text("hd_switch.dhcp"),
     }
 }
 
 /// Where the TCP/IP object says that the address comes from.
 pub fn source(source: AddressSource) -> Text {
     match source {
-        AddressSource::Stored => Text::new("hd_switch.source_stored"),
-        AddressSource::Bootp => Text::new("hd_switch.source_bootp"),
-        AddressSource::Dhcp => Text::new("hd_switch.source_dhcp"),
-        AddressSource::Unknown(method) => Text::new("hd_switch.source_other").with("method", method),
+        AddressSource::Stored => TEXTS.text("hd_switch.source_stored"),
+        AddressSource::Bootp => TEXTS.text("hd_switch.source_bootp"),
+        AddressSource::Dhcp => TEXTS.text("hd_switch.source_dhcp"),
+        AddressSource::Unknown(method) => TEXTS.text("hd_switch.source_other").with("method", method),
     }
 }
 

@@ -6,49 +6,54 @@ use crate::app::explain::{link, plain};
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
 use crate::devices::hiperdrive::procedures::{Asked, Damage, Error, Late, Refusal, WrongLength};
 use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, Range, Topology};
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// What a device did not do.
 pub fn device(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
         Error::Cancelled => Text::new("encoder.cancelled"),
-        Error::NeverSilent => Text::new("hd_said.never_silent"),
+        Error::NeverSilent => TEXTS.text("hd_said.never_silent"),
         Error::NoReply { asked: what, tries, late: None } => {
-            Text::new("hd_said.no_reply").with_text("asked", asked(*what)).with("tries", tries)
+            TEXTS.text("hd_said.no_reply").with_text("asked", asked(*what)).with("tries", tries)
         }
-        Error::NoReply { asked: what, tries, late: Some(Late { took, waited }) } => Text::new("hd_said.late_reply")
+        Error::NoReply { asked: what, tries, late: Some(Late { took, waited }) } => TEXTS
+            .text("hd_said.late_reply")
             .with_text("asked", asked(*what))
             .with("tries", tries)
             .with("took", took.as_millis())
             .with("waited", waited.as_millis()),
-        Error::Damaged { asked: what, tries, cause } => Text::new("hd_said.damaged")
+        Error::Damaged { asked: what, tries, cause } => TEXTS
+            .text("hd_said.damaged")
             .with_text("asked", asked(*what))
             .with("tries", tries)
             .with_text("why", damage(cause)),
-        Error::Encapsulation { asked: what, status } => Text::new("hd_said.refused")
+        Error::Encapsulation { asked: what, status } => TEXTS
+            .text("hd_said.refused")
             .with_text("asked", asked(*what))
             .with("status", status)
             .with_text("remedy", frame_remedy(*status)),
-        Error::Refused { asked: what, refusal } => Text::new("hd_said.refused")
+        Error::Refused { asked: what, refusal } => TEXTS
+            .text("hd_said.refused")
             .with_text("asked", asked(*what))
             .with("status", refusal)
             .with_text("remedy", remedy(refusal)),
-        Error::OtherMaster { extended } => Text::new("hd_said.other_master").with("code", format!("0x{extended:04X}")),
+        Error::OtherMaster { extended } => TEXTS.text("hd_said.other_master").with("code", format!("0x{extended:04X}")),
         Error::TooSlow { asked_ms, got_ms } => {
-            Text::new("hd_said.too_slow").with("asked", asked_ms).with("got", got_ms)
+            TEXTS.text("hd_said.too_slow").with("asked", asked_ms).with("got", got_ms)
         }
-        Error::InControl => Text::new("hd_said.in_control"),
-        Error::NoCyclic => Text::new("hd_said.no_cyclic"),
-        Error::Unknown(number) => Text::new("hd_said.unknown").with("number", number),
-        Error::NoNumber(number) => Text::new("hd_said.unknown").with("number", number),
+        Error::InControl => TEXTS.text("hd_said.in_control"),
+        Error::NoCyclic => TEXTS.text("hd_said.no_cyclic"),
+        Error::Unknown(number) => TEXTS.text("hd_said.unknown").with("number", number),
+        Error::NoNumber(number) => TEXTS.text("hd_said.unknown").with("number", number),
         Error::NoPlace { drive, topology: Topology::Adapter } => {
-            Text::new("hd_said.one_drive").with("drive", drive.get())
+            TEXTS.text("hd_said.one_drive").with("drive", drive.get())
         }
         Error::NoPlace { drive, topology } => {
-            Text::new("hd_said.no_place").with("drive", drive.get()).with("places", topology.drives())
+            TEXTS.text("hd_said.no_place").with("drive", drive.get()).with("places", topology.drives())
         }
-        Error::NoDrive { drive } => Text::new("hd_said.no_drive").with("drive", drive.get()),
-        Error::NotRequested { drive } => Text::new("hd_said.not_requested").with("drive", drive.get()),
+        Error::NoDrive { drive } => TEXTS.text("hd_said.no_drive").with("drive", drive.get()),
+        Error::NotRequested { drive } => TEXTS.text("hd_said.not_requested").with("drive", drive.get()),
         Error::OutOfRange(error) => out_of_range(error),
         Error::Refuses(error) => ranged("hd_said.refuses", error),
         Error::Length(error) => wrong_length(error),
@@ -56,16 +61,16 @@ pub fn device(error: &Error) -> Text {
         Error::ReadOnly { number, .. } => named("hd_said.read_only", *number),
         Error::WriteOnly { number, .. } => named("hd_said.write_only", *number),
         Error::Motion { number, .. } => named("hd_said.motion", *number),
-        Error::Moving { drive } => Text::new("hd_said.moving").with("drive", drive.get()),
-        Error::NotHiperdrive { says } => Text::new("hd_said.other_device").with("says", says),
+        Error::Moving { drive } => TEXTS.text("hd_said.moving").with("drive", drive.get()),
+        Error::NotHiperdrive { says } => TEXTS.text("hd_said.other_device").with("says", says),
         Error::NotTaken { number, wanted, reads } => {
             named("hd_said.not_taken", *number).with("wanted", wanted).with("reads", reads)
         }
-        Error::NetworkNotTaken { attribute } => Text::new("hd_said.network_not_taken").with("attribute", attribute),
+        Error::NetworkNotTaken { attribute } => TEXTS.text("hd_said.network_not_taken").with("attribute", attribute),
         Error::Busy { reads, milliseconds } => {
-            Text::new("hd_said.busy").with("reads", reads).with("milliseconds", milliseconds)
+            TEXTS.text("hd_said.busy").with("reads", reads).with("milliseconds", milliseconds)
         }
-        Error::Changed { item } => Text::new("hd_said.changed").with("item", item),
+        Error::Changed { item } => TEXTS.text("hd_said.changed").with("item", item),
         Error::OtherPlan => Text::new("interbus.other_plan"),
     }
 }
@@ -86,11 +91,11 @@ pub fn wrong_length(error: &WrongLength) -> Text {
 /// What a parameter may be, in a sentence.
 pub fn range(range: Range) -> Text {
     match range {
-        Range::Any => Text::new("hd_range.any"),
-        Range::Within(low, high) if low == high => Text::new("hd_range.only").with("low", low),
-        Range::Within(low, high) => Text::new("hd_range.within").with("low", low).with("high", high),
+        Range::Any => TEXTS.text("hd_range.any"),
+        Range::Within(low, high) if low == high => TEXTS.text("hd_range.only").with("low", low),
+        Range::Within(low, high) => TEXTS.text("hd_range.within").with("low", low).with("high", high),
         Range::WithinOr(low, high, also) => {
-            Text::new("hd_range.within_or").with("low", low).with("high", high).with("also", also)
+            TEXTS.text("hd_range.within_or").with("low", low).with("high", high).with("also", also)
         }
         Range::OneOf(values) => Text::new("plain.words").with_list("words", values.iter().map(plain)),
     }
@@ -102,36 +107,36 @@ fn ranged(id: &'static str, error: &OutOfRange) -> Text {
 
 /// About a parameter, with its number and its name.
 pub(super) fn named(id: &'static str, number: ParameterNumber) -> Text {
-    Text::new(id).with("number", number).with_text("name", parameter(number))
+    TEXTS.text(id).with("number", number).with_text("name", parameter(number))
 }
 
 fn asked(asked: Asked) -> Text {
     match asked {
-        Asked::Session => Text::new("hd_asked.session"),
+        Asked::Session => TEXTS.text("hd_asked.session"),
         Asked::Parameter(number) => named("hd_asked.parameter", number),
         Asked::Set(number) => named("hd_asked.set", number),
-        Asked::Identity => Text::new("hd_asked.identity"),
-        Asked::Network { attribute } => Text::new("hd_asked.network").with("attribute", attribute),
-        Asked::SetNetwork { attribute } => Text::new("hd_asked.set_network").with("attribute", attribute),
-        Asked::Mac => Text::new("hd_asked.mac"),
-        Asked::Open => Text::new("hd_asked.open"),
-        Asked::Close => Text::new("hd_asked.close"),
+        Asked::Identity => TEXTS.text("hd_asked.identity"),
+        Asked::Network { attribute } => TEXTS.text("hd_asked.network").with("attribute", attribute),
+        Asked::SetNetwork { attribute } => TEXTS.text("hd_asked.set_network").with("attribute", attribute),
+        Asked::Mac => TEXTS.text("hd_asked.mac"),
+        Asked::Open => TEXTS.text("hd_asked.open"),
+        Asked::Close => TEXTS.text("hd_asked.close"),
     }
 }
 
 /// What was wrong with a reply.
 pub fn damage(damage: &Damage) -> Text {
     match damage {
-        Damage::Packet(why) => Text::new("hd_damage.packet").with("why", why),
-        Damage::Value(why) => Text::new("hd_damage.value").with("why", why),
-        Damage::Empty => Text::new("hd_damage.empty"),
-        Damage::Service { .. } => Text::new("hd_damage.service"),
-        Damage::Cut { bytes } => Text::new("hd_damage.cut").with("bytes", bytes),
+        Damage::Packet(why) => TEXTS.text("hd_damage.packet").with("why", why),
+        Damage::Value(why) => TEXTS.text("hd_damage.value").with("why", why),
+        Damage::Empty => TEXTS.text("hd_damage.empty"),
+        Damage::Service { .. } => TEXTS.text("hd_damage.service"),
+        Damage::Cut { bytes } => TEXTS.text("hd_damage.cut").with("bytes", bytes),
     }
 }
 
 fn frame_remedy(status: EncapsulationStatus) -> Text {
-    Text::new(match status.code() {
+    TEXTS.text(match status.code() {
         0x01 | 0x69 => "hd_status.absent",
         0x02 => "hd_status.again",
         0x64 => "hd_status.anew",
@@ -144,7 +149,7 @@ fn remedy(refusal: &Refusal) -> Text {
     if refusal.status == GeneralStatus::CONNECTION
         && let Some(row) = refusal.row()
     {
-        return Text::new(match row.code {
+        return TEXTS.text(match row.code {
             0x0100 | 0x0113 => "hd_status.full",
             0x0107 | 0x0203 => "hd_status.anew",
             0x0108 | 0x0109 | 0x0127 | 0x0128 | 0x0117 => "hd_status.size",
@@ -153,7 +158,7 @@ fn remedy(refusal: &Refusal) -> Text {
             _ => "hd_status.defect",
         });
     }
-    Text::new(match refusal.status.code() {
+    TEXTS.text(match refusal.status.code() {
         0x02 => "hd_status.full",
         0x05 | 0x08 | 0x14 | 0x16 => "hd_status.absent",
         0x07 => "hd_status.anew",

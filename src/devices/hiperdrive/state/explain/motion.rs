@@ -6,10 +6,11 @@ use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
 use crate::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase, Refusal};
 use crate::devices::hiperdrive::protocol::State;
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// Why nothing may move, and what to do.
 pub fn lock(lock: Lock) -> Text {
-    Text::new(match lock {
+    TEXTS.text(match lock {
         Lock::Unread => "hd_lock.unread",
         Lock::NoTimeout => "hd_lock.no_timeout",
         Lock::LimitsUnconfirmed => "hd_lock.limits",
@@ -23,48 +24,51 @@ pub fn lock(lock: Lock) -> Text {
 pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
         Refusal::Locked(own) => lock(own),
-        Refusal::NoEffort => Text::new("hd_refused.no_effort"),
-        Refusal::Outside { target, low, high } => Text::new("hd_refused.outside")
+        Refusal::NoEffort => TEXTS.text("hd_refused.no_effort"),
+        Refusal::Outside { target, low, high } => TEXTS
+            .text("hd_refused.outside")
             .with_text("target", place(target))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        Refusal::Outward { position, low, high } => Text::new("hd_refused.outward")
+        Refusal::Outward { position, low, high } => TEXTS
+            .text("hd_refused.outward")
             .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        Refusal::Unclear { position, low, high } => Text::new("hd_refused.unclear")
+        Refusal::Unclear { position, low, high } => TEXTS
+            .text("hd_refused.unclear")
             .with_text("position", place(position))
             .with_text("low", place(low))
             .with_text("high", place(high)),
-        Refusal::Endless => Text::new("hd_refused.endless"),
-        Refusal::Fault => Text::new("hd_refused.fault"),
-        Refusal::SwitchOnLock => Text::new("hd_refused.lock"),
-        Refusal::NothingToPause => Text::new("hd_refused.nothing_to_pause"),
-        Refusal::NothingToResume => Text::new("hd_refused.nothing_to_resume"),
-        Refusal::Absent => Text::new("hd_refused.absent"),
+        Refusal::Endless => TEXTS.text("hd_refused.endless"),
+        Refusal::Fault => TEXTS.text("hd_refused.fault"),
+        Refusal::SwitchOnLock => TEXTS.text("hd_refused.lock"),
+        Refusal::NothingToPause => TEXTS.text("hd_refused.nothing_to_pause"),
+        Refusal::NothingToResume => TEXTS.text("hd_refused.nothing_to_resume"),
+        Refusal::Absent => TEXTS.text("hd_refused.absent"),
     }
 }
 
 /// How an act ended, and what to do where it did not end well.
 pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     match ended {
-        Ended::Done => Text::new("hd_end.done"),
-        Ended::Arrived => Text::new("hd_end.arrived"),
-        Ended::RangeEnd => Text::new("hd_end.range_end"),
-        Ended::Stopped => Text::new("hd_end.stopped"),
-        Ended::Replaced => Text::new("hd_end.replaced"),
-        Ended::Stale => Text::new("hd_end.stale"),
-        Ended::Deaf => Text::new("hd_end.deaf"),
-        Ended::Lost => Text::new("hd_end.lost"),
-        Ended::Fault => Text::new("hd_end.fault"),
+        Ended::Done => TEXTS.text("hd_end.done"),
+        Ended::Arrived => TEXTS.text("hd_end.arrived"),
+        Ended::RangeEnd => TEXTS.text("hd_end.range_end"),
+        Ended::Stopped => TEXTS.text("hd_end.stopped"),
+        Ended::Replaced => TEXTS.text("hd_end.replaced"),
+        Ended::Stale => TEXTS.text("hd_end.stale"),
+        Ended::Deaf => TEXTS.text("hd_end.deaf"),
+        Ended::Lost => TEXTS.text("hd_end.lost"),
+        Ended::Fault => TEXTS.text("hd_end.fault"),
         Ended::Locked(own) => lock(own),
         Ended::Refused(why) => refusal(why, place),
-        Ended::NoAnswer(own) => Text::new("hd_end.no_answer").with_text("state", state(own)),
-        Ended::NotStarted => Text::new("hd_end.not_started"),
-        Ended::Left(own) => Text::new("hd_end.left").with_text("state", state(own)),
-        Ended::Short => Text::new("hd_end.short"),
-        Ended::Beyond { position } => Text::new("hd_end.beyond").with_text("position", place(position)),
-        Ended::WrongWay { position } => Text::new("hd_end.wrong_way").with_text("position", place(position)),
+        Ended::NoAnswer(own) => TEXTS.text("hd_end.no_answer").with_text("state", state(own)),
+        Ended::NotStarted => TEXTS.text("hd_end.not_started"),
+        Ended::Left(own) => TEXTS.text("hd_end.left").with_text("state", state(own)),
+        Ended::Short => TEXTS.text("hd_end.short"),
+        Ended::Beyond { position } => TEXTS.text("hd_end.beyond").with_text("position", place(position)),
+        Ended::WrongWay { position } => TEXTS.text("hd_end.wrong_way").with_text("position", place(position)),
     }
 }
 
@@ -98,12 +102,12 @@ pub fn goal(goal: Goal) -> Text {
 /// What a drive does for its person.
 pub fn phase(phase: Phase) -> Text {
     match phase {
-        Phase::Idle => Text::new("hd_phase.idle"),
-        Phase::Leading(own) => Text::new("hd_phase.leading").with_text("goal", goal(own)),
-        Phase::Starting(_) => Text::new("hd_phase.starting"),
-        Phase::Moving(_) => Text::new("hd_phase.moving"),
-        Phase::Paused { .. } => Text::new("hd_phase.paused"),
-        Phase::Stopping(_) => Text::new("hd_phase.stopping"),
+        Phase::Idle => TEXTS.text("hd_phase.idle"),
+        Phase::Leading(own) => TEXTS.text("hd_phase.leading").with_text("goal", goal(own)),
+        Phase::Starting(_) => TEXTS.text("hd_phase.starting"),
+        Phase::Moving(_) => TEXTS.text("hd_phase.moving"),
+        Phase::Paused { .. } => TEXTS.text("hd_phase.paused"),
+        Phase::Stopping(_) => TEXTS.text("hd_phase.stopping"),
     }
 }
 
@@ -114,11 +118,11 @@ pub const LOST: [&str; 6] =
 /// Why the cyclic connection is gone, and what to do.
 pub fn lost(lost: Option<&CyclicLost>) -> Text {
     match lost {
-        Some(CyclicLost::Silent { after }) => Text::new("hd_lost.silent").with("milliseconds", after.as_millis()),
-        Some(CyclicLost::Port(error)) => Text::new("hd_lost.port").with_text("why", link(error)),
-        Some(CyclicLost::DoesNotStand(drive)) => Text::new("hd_lost.does_not_stand").with("drive", drive.get()),
-        Some(CyclicLost::Session) => Text::new("hd_lost.session"),
-        Some(CyclicLost::Failed) => Text::new("hd_lost.failed"),
-        None => Text::new("hd_end.lost"),
+        Some(CyclicLost::Silent { after }) => TEXTS.text("hd_lost.silent").with("milliseconds", after.as_millis()),
+        Some(CyclicLost::Port(error)) => TEXTS.text("hd_lost.port").with_text("why", link(error)),
+        Some(CyclicLost::DoesNotStand(drive)) => TEXTS.text("hd_lost.does_not_stand").with("drive", drive.get()),
+        Some(CyclicLost::Session) => TEXTS.text("hd_lost.session"),
+        Some(CyclicLost::Failed) => TEXTS.text("hd_lost.failed"),
+        None => TEXTS.text("hd_end.lost"),
     }
 }

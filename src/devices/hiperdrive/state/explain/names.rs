@@ -3,10 +3,11 @@
 use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::hiperdrive::protocol::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
+use crate::devices::hiperdrive::state::TEXTS;
 
 /// A state of the drive.
 pub fn state(state: State) -> Text {
-    Text::new(match state {
+    TEXTS.text(match state {
         State::NotReady => "hd_state.not_ready",
         State::Ready => "hd_state.ready",
         State::Operational => "hd_state.operational",
@@ -19,7 +20,7 @@ pub fn state(state: State) -> Text {
 
 /// What a bit of the status word says when it is set.
 pub fn status_bit(bit: StatusBit) -> Text {
-    Text::new(match bit {
+    TEXTS.text(match bit {
         StatusBit::Ready => "hd_bit.ready",
         StatusBit::Operational => "hd_bit.operational",
         StatusBit::OperationEnabled => "hd_bit.operation_enabled",
@@ -41,7 +42,7 @@ pub fn status_bit(bit: StatusBit) -> Text {
 
 /// What a bit of the control word says when it is set; bits 4 to 6 mean something else in speed mode.
 pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
-    Text::new(match (bit, speed_mode) {
+    TEXTS.text(match (bit, speed_mode) {
         (ControlBit::On, _) => "hd_bit.control_on",
         (ControlBit::Enable, _) => "hd_bit.control_enable",
         (ControlBit::NoStop, false) => "hd_bit.control_no_stop",
@@ -94,7 +95,7 @@ pub fn error(code: ErrorCode) -> ErrorWords {
         ErrorCode::RS485 => ("hd_error.rs485", "hd_cause.rs485", "hd_remedy.rs485"),
         _ => ("hd_error.unknown", "hd_cause.unknown", "hd_remedy.unknown"),
     };
-    ErrorWords { name: Text::new(name), cause: Text::new(cause), remedy: Text::new(remedy) }
+    ErrorWords { name: TEXTS.text(name), cause: TEXTS.text(cause), remedy: TEXTS.text(remedy) }
 }
 
 /// A parameter, without its number and drive.
@@ -154,19 +155,19 @@ pub fn parameter(number: ParameterNumber) -> Text {
         198 => "hd_parameter.reference",
         199 => "hd_parameter.reset",
         base @ (24..=42) if base % 2 == 0 => {
-            return Text::new("hd_parameter.register").with("number", (base - 22) / 2);
+            return TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2);
         }
-        base @ (108..=115) => return Text::new("hd_parameter.error").with("number", base - 107),
-        _ => return Text::new("hd_parameter.other").with("number", number),
+        base @ (108..=115) => return TEXTS.text("hd_parameter.error").with("number", base - 107),
+        _ => return TEXTS.text("hd_parameter.other").with("number", number),
     };
-    Text::new(id)
+    TEXTS.text(id)
 }
 
 /// Which drive it is.
 pub fn variant(variant: Variant) -> Text {
     match variant.row() {
         Some(row) => plain(row.name),
-        None if variant == Variant::NONE => Text::new("hd_variant.none"),
-        None => Text::new("hd_variant.other").with("number", format!("{:04X}", variant.number())),
+        None if variant == Variant::NONE => TEXTS.text("hd_variant.none"),
+        None => TEXTS.text("hd_variant.other").with("number", format!("{:04X}", variant.number())),
     }
 }

@@ -12,6 +12,7 @@ use crate::app::review::OpWords;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
 use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
 use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, OtherType, PlanError, Service, Warning};
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::network::refused;
 
 /// A change in words.
@@ -21,25 +22,25 @@ pub fn change(change: &Change) -> Text {
             "" => Text::new("ib_change.restore"),
             serial => Text::new("change.restore").with("serial", serial),
         },
-        Change::Write(_) => Text::new("hd_change.write"),
-        Change::Try(_) => Text::new("hd_change.try"),
+        Change::Write(_) => TEXTS.text("hd_change.write"),
+        Change::Try(_) => TEXTS.text("hd_change.try"),
         Change::SetPosition { drive, position, .. } => {
-            Text::new("hd_change.position").with("drive", drive.get()).with("position", position)
+            TEXTS.text("hd_change.position").with("drive", drive.get()).with("position", position)
         }
         Change::Do(own) => service(*own),
-        Change::Network(_) => Text::new("hd_change.network"),
+        Change::Network(_) => TEXTS.text("hd_change.network"),
     }
 }
 
 /// What a device does when it is asked to.
 pub fn service(service: Service) -> Text {
     match service {
-        Service::Save => Text::new("hd_service.save"),
-        Service::Recall => Text::new("hd_service.recall"),
-        Service::Factory => Text::new("hd_service.factory"),
-        Service::FactoryAll => Text::new("hd_service.factory_all"),
-        Service::Reset => Text::new("hd_service.reset"),
-        Service::Acknowledge(drive) => Text::new("hd_service.acknowledge").with("drive", drive.get()),
+        Service::Save => TEXTS.text("hd_service.save"),
+        Service::Recall => TEXTS.text("hd_service.recall"),
+        Service::Factory => TEXTS.text("hd_service.factory"),
+        Service::FactoryAll => TEXTS.text("hd_service.factory_all"),
+        Service::Reset => TEXTS.text("hd_service.reset"),
+        Service::Acknowledge(drive) => TEXTS.text("hd_service.acknowledge").with("drive", drive.get()),
     }
 }
 
@@ -47,7 +48,7 @@ pub fn service(service: Service) -> Text {
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Write { number, old, new } => {
-            let old = old.map_or_else(|| Text::new("hd_op.unknown"), plain);
+            let old = old.map_or_else(|| TEXTS.text("hd_op.unknown"), plain);
             OpWords::one(item(Item(*number)), old, plain(new))
         }
         Op::Service(own) => {
@@ -58,15 +59,16 @@ pub fn op(op: &Op) -> OpWords {
                 Service::Reset => ("hd_op.as_now", "hd_op.restarted"),
                 Service::Acknowledge(_) => ("hd_op.fault", "hd_op.acknowledged"),
             };
-            OpWords::one(service(*own), Text::new(before), Text::new(after))
+            OpWords::one(service(*own), TEXTS.text(before), TEXTS.text(after))
         }
-        Op::Network { from, to } => OpWords::one(Text::new("hd_op.network"), network(from), network(to)),
+        Op::Network { from, to } => OpWords::one(TEXTS.text("hd_op.network"), network(from), network(to)),
     }
 }
 
 fn network(settings: &NetworkSettings) -> Text {
     let NetworkSettings { source: own, interface } = settings;
-    Text::new("hd_op.addresses")
+    TEXTS
+        .text("hd_op.addresses")
         .with_text("source", source(*own))
         .with("address", interface.address)
         .with("mask", interface.mask)
@@ -75,7 +77,7 @@ fn network(settings: &NetworkSettings) -> Text {
 
 /// A parameter with its number, its drive and its name.
 pub fn item(item: Item) -> Text {
-    Text::new("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
+    TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
 /// A profile that goes onto another type of device or drive.
@@ -86,9 +88,10 @@ pub fn other_type(types: &OtherType) -> Text {
 fn of_types(types: &OtherType, whole: &'static str, of_drive: &'static str) -> Text {
     match types {
         OtherType::Device { profile, device } => {
-            Text::new(whole).with("profile", profile.category()).with("device", device.category())
+            TEXTS.text(whole).with("profile", profile.category()).with("device", device.category())
         }
-        OtherType::Drive { drive, profile, device } => Text::new(of_drive)
+        OtherType::Drive { drive, profile, device } => TEXTS
+            .text(of_drive)
             .with("drive", drive.get())
             .with_text("profile", variant(*profile))
             .with_text("device", variant(*device)),
@@ -99,10 +102,10 @@ fn of_types(types: &OtherType, whole: &'static str, of_drive: &'static str) -> T
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
-            Text::new("hd_plan.other_device").with("profile", profile).with("device", device)
+            TEXTS.text("hd_plan.other_device").with("profile", profile).with("device", device)
         }
         PlanError::OtherDrive { drive, profile, device } => {
-            Text::new("hd_plan.other_drive").with("drive", drive.get()).with("profile", profile).with("device", device)
+            TEXTS.text("hd_plan.other_drive").with("drive", drive.get()).with("profile", profile).with("device", device)
         }
         PlanError::OtherType(types) => of_types(types, "hd_plan.other_kind", "hd_plan.other_variant"),
         PlanError::OutOfRange(error) => out_of_range(error),
@@ -111,46 +114,47 @@ pub fn plan(error: &PlanError) -> Text {
         PlanError::Acts { item } => about("hd_plan.acts", *item),
         PlanError::NotRead { item } => about("hd_plan.not_read", *item),
         PlanError::LimitsCrossed { drive, lower, upper } => {
-            Text::new("hd_plan.crossed").with("drive", drive.get()).with("lower", lower).with("upper", upper)
+            TEXTS.text("hd_plan.crossed").with("drive", drive.get()).with("lower", lower).with("upper", upper)
         }
-        PlanError::PositionOutside { drive, position, lower, upper } => Text::new("hd_plan.outside")
+        PlanError::PositionOutside { drive, position, lower, upper } => TEXTS
+            .text("hd_plan.outside")
             .with("drive", drive.get())
             .with("position", position)
             .with("lower", lower)
             .with("upper", upper),
         PlanError::PositionTooLarge { drive, position } => {
-            Text::new("hd_plan.too_large").with("drive", drive.get()).with("position", position)
+            TEXTS.text("hd_plan.too_large").with("drive", drive.get()).with("position", position)
         }
-        PlanError::ReferenceOutside { drive, position, becomes, lower, upper } => {
-            Text::new("hd_plan.reference_outside")
-                .with("drive", drive.get())
-                .with("position", position)
-                .with("becomes", becomes)
-                .with("lower", lower)
-                .with("upper", upper)
-        }
-        PlanError::Address(why) => Text::new("hd_plan.address").with_text("why", refused(why)),
-        PlanError::Source(method) => Text::new("hd_plan.source").with("method", method),
+        PlanError::ReferenceOutside { drive, position, becomes, lower, upper } => TEXTS
+            .text("hd_plan.reference_outside")
+            .with("drive", drive.get())
+            .with("position", position)
+            .with("becomes", becomes)
+            .with("lower", lower)
+            .with("upper", upper),
+        PlanError::Address(why) => TEXTS.text("hd_plan.address").with_text("why", refused(why)),
+        PlanError::Source(method) => TEXTS.text("hd_plan.source").with("method", method),
     }
 }
 
 fn about(id: &'static str, item: Item) -> Text {
-    Text::new(id).with("number", item).with_text("name", parameter(item.0))
+    TEXTS.text(id).with("number", item).with_text("name", parameter(item.0))
 }
 
 /// What somebody should know of a plan.
 pub fn warning(warning: &Warning) -> Text {
     match warning {
-        Warning::LimitsMove { drive, now, then } => Text::new("hd_warning.limits_move")
+        Warning::LimitsMove { drive, now, then } => TEXTS
+            .text("hd_warning.limits_move")
             .with("drive", drive.get())
             .with_number("lower_now", now.0, 2)
             .with_number("upper_now", now.1, 2)
             .with_number("lower_then", then.0, 2)
             .with_number("upper_then", then.1, 2),
-        Warning::AfterReset(own) => Text::new("hd_warning.after_reset").with_text("item", item(*own)),
-        Warning::NoTimeout(drive) => Text::new("hd_warning.no_timeout").with("drive", drive.get()),
-        Warning::NotRequested(drive) => Text::new("hd_warning.not_requested").with("drive", drive.get()),
-        Warning::SwitchDecides(own) => Text::new("hd_warning.switch").with_text("switch", switch(*own)),
+        Warning::AfterReset(own) => TEXTS.text("hd_warning.after_reset").with_text("item", item(*own)),
+        Warning::NoTimeout(drive) => TEXTS.text("hd_warning.no_timeout").with("drive", drive.get()),
+        Warning::NotRequested(drive) => TEXTS.text("hd_warning.not_requested").with("drive", drive.get()),
+        Warning::SwitchDecides(own) => TEXTS.text("hd_warning.switch").with_text("switch", switch(*own)),
     }
 }
 
@@ -158,7 +162,7 @@ pub fn warning(warning: &Warning) -> Text {
 pub fn written(written: &Written) -> Text {
     // Of what a device does nothing is read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
-    Text::new(id).with("verified", written.verified).with("cycles", written.write_cycles)
+    TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
 /// A write that was cut off: how far it came and why, and where the state before is.
@@ -171,11 +175,11 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         text.with_text("cause", device(cause))
     }];
     if let Some(item) = unclear {
-        texts.push(Text::new("hd_left.unclear").with("item", item));
+        texts.push(TEXTS.text("hd_left.unclear").with("item", item));
     }
     let untouched = done.written == 0 && done.write_cycles == 0 && unclear.is_none();
     if !untouched && done.write_cycles == 0 && done.written > 0 {
-        texts.push(Text::new("hd_left.unsaved"));
+        texts.push(TEXTS.text("hd_left.unsaved"));
     }
     let what_next = match kind {
         _ if untouched => "write.untouched",
@@ -183,6 +187,6 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         ChangeKind::Edits => "ib_left.edits",
         ChangeKind::Try | ChangeKind::Position | ChangeKind::Service(_) | ChangeKind::Network => "hd_left.again",
     };
-    texts.push(Text::new(what_next).with("backup", backup.display()));
+    texts.push(TEXTS.text(what_next).with("backup", backup.display()));
     texts
 }

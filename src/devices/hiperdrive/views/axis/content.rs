@@ -5,9 +5,10 @@ use egui::{RichText, Ui, vec2};
 use super::Shown;
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::Motor;
 use crate::devices::hiperdrive::state::axis::{Action as Run, Button, Entries, Place, Step, words};
+use crate::devices::hiperdrive::state::{Motor, TEXTS};
 use crate::devices::hiperdrive::views::jog::pad_ui;
+use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_entry};
 use crate::ui::widgets::HoldButton;
 use crate::ui::{Skin, icons};
@@ -72,7 +73,7 @@ fn buttons(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action
     let step = shown.axis.step();
     if matches!(step, Step::Lower | Step::Upper) {
         let allowed = shown.axis.may_take_place(shown.seen);
-        if allowed_button(ui, skin, &allowed, icons::TARGET, &skin.say("hd_axis.take_place")).clicked() {
+        if allowed_button(ui, skin, &allowed, icons::TARGET, &say(skin, "hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
     }
@@ -111,9 +112,9 @@ pub(super) fn messages_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: 
 /// Without the cyclic connection nothing moves, nor in a fault.
 fn control(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = skin.say("hd_axis.take");
+        let word = say(skin, "hd_axis.take");
         shown.button(ui, skin, Button::Take, (icons::PLUGS_CONNECTED, &word), actions);
-        let word = skin.say("hd_axis.acknowledge");
+        let word = say(skin, "hd_axis.acknowledge");
         shown.button(ui, skin, Button::Acknowledge, (icons::CHECK, &word), actions);
     });
     ui.add_space(skin.space.inside);
@@ -151,7 +152,7 @@ fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
         {
-            let (label, enabled) = (skin.say(label), may_jog(shown, direction).is_ok());
+            let (label, enabled) = (say(skin, label), may_jog(shown, direction).is_ok());
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let press = Motor::SlowJogPress { direction, repeated: false };
             let about = (shown.unit.session.id, shown.axis.drive());
@@ -162,7 +163,7 @@ fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
 }
 
 fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String) {
-    let word = skin.say(id);
+    let word = say(skin, id);
     entry(ui, skin, &word, |ui| text_entry(ui, text, NUMBER, &word, ""));
 }
 
@@ -176,22 +177,22 @@ fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
         Err(why) => return problem(ui, skin, Some(&why)),
     };
     let ruler = Some(preview.ruler);
-    let range = |low: Text, high: Text| Text::new("hd_axis.range").with_text("low", low).with_text("high", high);
+    let range = |low: Text, high: Text| TEXTS.text("hd_axis.range").with_text("low", low).with_text("high", high);
     let mm = |steps: i32| words::millimetres(ruler, steps.into());
     let scale = format!("{} / {}", preview.scale.numerator(), preview.scale.denominator());
-    row(ui, skin, &skin.say("hd_axis.preview_scale"), skin.mono(scale));
-    row(ui, skin, &skin.say("hd_axis.preview_steps"), skin.mono(skin.plain(preview.scale.steps_per_turn())));
-    row(ui, skin, &skin.say("hd_axis.preview_grain"), skin.mono(skin.words(&mm(64))));
+    row(ui, skin, &say(skin, "hd_axis.preview_scale"), skin.mono(scale));
+    row(ui, skin, &say(skin, "hd_axis.preview_steps"), skin.mono(skin.plain(preview.scale.steps_per_turn())));
+    row(ui, skin, &say(skin, "hd_axis.preview_grain"), skin.mono(skin.words(&mm(64))));
     let whole = skin.words(&range(mm(preview.lower), mm(preview.upper)));
-    row(ui, skin, &skin.say("hd_axis.preview_range"), skin.mono(whole));
+    row(ui, skin, &say(skin, "hd_axis.preview_range"), skin.mono(whole));
     if let (Some((low, high)), true) = (preview.unchanged, shown.seen.scale != Some(preview.scale)) {
-        let value = |own: f64| Text::new("hd_axis.millimetres").with_number("value", own, 0);
-        let text = Text::new("hd_axis.preview_unchanged_value");
+        let value = |own: f64| TEXTS.text("hd_axis.millimetres").with_number("value", own, 0);
+        let text = TEXTS.text("hd_axis.preview_unchanged_value");
         let text = text.with_text("low", value(low)).with_text("high", value(high));
         row(
             ui,
             skin,
-            &skin.say("hd_axis.preview_unchanged"),
+            &say(skin, "hd_axis.preview_unchanged"),
             RichText::new(skin.words(&text)).color(skin.palette.warn),
         );
     }
@@ -201,14 +202,14 @@ fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
 fn limits(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
-        skin.words(&Text::new("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
+        skin.words(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
     };
-    ui.label(skin.value(shown.seen.limits.map_or_else(|| skin.say("hd_axis.none"), range)));
+    ui.label(skin.value(shown.seen.limits.map_or_else(|| say(skin, "hd_axis.none"), range)));
     ui.add_space(skin.space.inside);
     ui.horizontal_wrapped(|ui| {
-        let word = skin.say("hd_axis.confirm");
+        let word = say(skin, "hd_axis.confirm");
         shown.button(ui, skin, Button::Confirm, (icons::EYE, &word), actions);
-        let word = skin.say("hd_axis.widen");
+        let word = say(skin, "hd_axis.widen");
         shown.button(ui, skin, Button::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
     });
 }
@@ -218,7 +219,7 @@ fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
     match entries.reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
             let text =
-                Text::new("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
+                TEXTS.text("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
             paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
         }
         Ok(_) => {}
@@ -233,7 +234,7 @@ fn test(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
         let word = skin.words(&words::place(own));
         entry(ui, skin, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
-            let go = format!("{} {}", skin.say("hd_axis.go"), target.map(&mm).unwrap_or_default());
+            let go = format!("{} {}", say(skin, "hd_axis.go"), target.map(&mm).unwrap_or_default());
             // What comes of the three stands below each other.
             let size = vec2(GO, ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -241,7 +242,7 @@ fn test(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
                 shown.button(ui, skin, Button::Go(own), (icons::PLAY, &go), actions);
             });
             if shown.axis.going() == Some(own) {
-                ui.label(skin.label(skin.say("hd_axis.goes")));
+                ui.label(skin.label(say(skin, "hd_axis.goes")));
             } else if let Some(outcome) = shown.axis.outcome(own) {
                 let (icon, ink) = match outcome.is_good() {
                     true => (icons::CHECK, skin.palette.good),
@@ -258,13 +259,13 @@ fn power(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>)
     ui.horizontal_wrapped(|ui| {
         let word = skin.words(&words::button(Step::PowerCycle));
         shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
-        let word = skin.say("hd_axis.give");
+        let word = say(skin, "hd_axis.give");
         shown.button(ui, skin, Button::Give, (icons::PLUGS, &word), actions);
         if shown.seen.is_virtual {
-            let word = skin.say("hd_axis.power_cycle");
+            let word = say(skin, "hd_axis.power_cycle");
             shown.button(ui, skin, Button::PowerCycle, (icons::POWER, &word), actions);
         } else {
-            let word = skin.say("hd_axis.restarted");
+            let word = say(skin, "hd_axis.restarted");
             shown.button(ui, skin, Button::Restarted, (icons::POWER, &word), actions);
         }
         super::skip(ui, skin, shown, actions);

@@ -1,8 +1,9 @@
 //! Noise, silence, a dying power supply; and that nothing whatever brings the line down.
 
+use proptest::prelude::{Just, Strategy, any, prop_oneof, proptest};
+
 use super::*;
 use crate::devices::hiperface::protocol::Command;
-use proptest::prelude::{Just, Strategy, any, prop_oneof, proptest};
 
 const POSITION: &str = "40 42 00 0E 05 31 38";
 

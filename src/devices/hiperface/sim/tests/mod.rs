@@ -13,8 +13,7 @@ use super::*;
 use crate::bits::{hex, parse_hex};
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::ByteDevice;
-use crate::units::CharacterFormat;
-use crate::units::Moment;
+use crate::units::{CharacterFormat, Moment};
 
 /// A host at the line: it waits for everything that comes by itself, then keeps the dead time.
 struct Host {

@@ -2,11 +2,11 @@
 
 use super::outcome::may_read;
 use super::{Action, Slot};
+use crate::app::Severity;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, WithMemory};
-use crate::app::{Severity, Text};
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob};
-use crate::devices::hiperface::state::Encoder;
+use crate::devices::hiperface::state::{Encoder, TEXTS};
 
 impl Encoder {
     pub(in crate::devices::hiperface::state) fn act_commutation(&mut self, action: Action, services: &mut Services) {
@@ -27,7 +27,7 @@ impl Encoder {
                     if (address..).zip(&bytes).all(is_there) {
                         let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));
                         let id = if edited { "commutation.staged" } else { "commutation.same" };
-                        let text = Text::new(id).with("field", field).with("address", address);
+                        let text = TEXTS.text(id).with("field", field).with("address", address);
                         services.tell(Severity::Good, vec![text], Some(&self.session.name()));
                     }
                 }

@@ -5,6 +5,7 @@ use crate::analysis::commutation::Motor;
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole, within};
 use crate::devices::hiperface::protocol::Geometry;
+use crate::devices::hiperface::state::TEXTS;
 
 /// The form of the assistant. An empty number of periods is that of the encoder's type.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,8 +163,8 @@ impl Form {
     }
 
     fn each_limit(&self) -> (Result<f64, Text>, Result<f64, Text>) {
-        let current = within("commutation.current", &self.current_a, 0.001, 1000.0);
-        (current, within("commutation.time", &self.time_s, 0.1, 600.0))
+        let current = within(TEXTS.text("commutation.current"), &self.current_a, 0.001, 1000.0);
+        (current, within(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }
 
     /// All that has to be so before the motor is energised is ticked and written down.
@@ -176,9 +177,9 @@ impl Form {
             (self.uncoupled, "commutation.uncoupled"),
             (self.released, "commutation.released"),
         ];
-        let open: Vec<Text> = ticks.into_iter().filter(|(ticked, _)| !ticked).map(|(_, id)| Text::new(id)).collect();
+        let open: Vec<Text> = ticks.into_iter().filter(|(ticked, _)| !ticked).map(|(_, id)| TEXTS.text(id)).collect();
         if !open.is_empty() {
-            return Err(Text::new("commutation.unprepared").with_list("what", open));
+            return Err(TEXTS.text("commutation.unprepared").with_list("what", open));
         }
         self.limits()?;
         self.vector_deg().map(|_| ())
@@ -193,7 +194,7 @@ impl Form {
             Vector::UAgainstBoth => Ok(0.0),
             Vector::UAgainstV => Ok(-30.0),
             Vector::UAgainstW => Ok(30.0),
-            Vector::Other => within("commutation.vector_angle", &self.vector_deg, -360.0, 360.0),
+            Vector::Other => within(TEXTS.text("commutation.vector_angle"), &self.vector_deg, -360.0, 360.0),
         }
     }
 
@@ -202,7 +203,7 @@ impl Form {
     /// # Errors
     /// In words.
     pub fn second_turns(&self) -> Result<f64, Text> {
-        Ok(within("commutation.second_angle", &self.second_deg, 1.0, 170.0)? / 360.0)
+        Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
     /// The position inside a period that was typed.
@@ -224,7 +225,7 @@ impl Form {
             Slot::OtherSide => other,
             Slot::Second => second,
         };
-        within("commutation.fine", text, 0.0, f64::from(1_u32 << 27))
+        within(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
     /// Signal periods a revolution: as typed, or else as the encoder's type has them.
@@ -233,9 +234,9 @@ impl Form {
     /// In words.
     pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         match (self.periods.trim().is_empty(), geometry) {
-            (_, Some(Geometry::Linear { .. })) => Err(Text::new("commutation.linear")),
+            (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),
             (true, Some(Geometry::Rotary { periods, .. })) => Ok(periods.max(1)),
-            _ => whole("commutation.periods", &self.periods, 1, MOST_PERIODS),
+            _ => whole(TEXTS.text("commutation.periods"), &self.periods, 1, MOST_PERIODS),
         }
     }
 
@@ -243,7 +244,7 @@ impl Form {
     pub fn other_periods(&self, geometry: Option<Geometry>) -> Option<Text> {
         let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
         let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
-        Some(Text::new("commutation.other_periods").with("own", own).with("typed", typed))
+        Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))
     }
 
     /// All numbers that the offset needs.
@@ -251,7 +252,7 @@ impl Form {
     /// # Errors
     /// The first that is none, in words.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<Inputs, Text> {
-        let pole_pairs = whole("commutation.pole_pairs", &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
+        let pole_pairs = whole(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
         let periods = self.periods(geometry)?;
         Ok(Inputs {
             motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing("commutation.pole_pairs"))?,
@@ -259,17 +260,17 @@ impl Form {
             pole_pairs,
             reversed: self.reversed,
             vector_turns: self.vector_deg()? / 360.0,
-            limit_deg: within("commutation.limit", &self.limit_deg, 0.1, 90.0)?,
+            limit_deg: within(TEXTS.text("commutation.limit"), &self.limit_deg, 0.1, 90.0)?,
         })
     }
 }
 
 fn missing(what: &'static str) -> Text {
-    Text::new("entry.missing").with_text("what", Text::new(what))
+    Text::new("entry.missing").with_text("what", TEXTS.text(what))
 }
 
 /// A typed position inside a period.
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
-    let periods = within("commutation.phase", text, 0.0, 0.999_999_999)?;
+    let periods = within(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
     Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))
 }

@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::app::number::whole;
 use crate::devices::hiperface::profile::{CommutationRecord, Damaged};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
-use crate::devices::hiperface::state::{Allowed, Staged};
+use crate::devices::hiperface::state::{Allowed, Staged, TEXTS};
 
 /// Method 2 is refused where its step is this or more: the torque may have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;
@@ -68,12 +68,12 @@ impl Commutation {
         let (first, apart) = match (one, other) {
             (Some(one), Some(other)) => (one, Some(apart(one.fine_periods, other.fine_periods, inputs.periods))),
             (Some(own), None) | (None, Some(own)) if own.kind == Kind::Typed => (own, None),
-            (None, None) => return Err(Text::new("commutation.no_reading")),
-            _ => return Err(Text::new("commutation.one_side_only")),
+            (None, None) => return Err(TEXTS.text("commutation.no_reading")),
+            _ => return Err(TEXTS.text("commutation.one_side_only")),
         };
         let apart_deg = apart.map(|apart| electrical_deg(apart.abs(), &inputs));
         if let Some(apart_deg) = apart_deg.filter(|apart| *apart > inputs.limit_deg) {
-            let text = Text::new("commutation.friction").with_number("apart", apart_deg, 1);
+            let text = TEXTS.text("commutation.friction").with_number("apart", apart_deg, 1);
             return Err(text.with_number("limit", inputs.limit_deg, 1));
         }
         let turn = f64::from(inputs.periods);
@@ -89,7 +89,7 @@ impl Commutation {
             fine_periods,
             shaft_deg: fine_periods / turn * 360.0,
             apart_deg,
-            angle: angle(fine_periods, &inputs).ok_or_else(|| Text::new("commutation.no_reading"))?,
+            angle: angle(fine_periods, &inputs).ok_or_else(|| TEXTS.text("commutation.no_reading"))?,
             resolution_deg: resolution.map(|periods| electrical_deg(periods, &inputs)),
         })
     }
@@ -116,18 +116,18 @@ impl Commutation {
             let text = text.with_number("moved", moved / f64::from(inputs.periods) * 360.0, 2);
             text.with_number("expected", turns * 360.0 / f64::from(inputs.pole_pairs), 2)
         };
-        let Some(said) = said else { return Ok((Verdict::Fault, degrees(Text::new("commutation.still")))) };
+        let Some(said) = said else { return Ok((Verdict::Fault, degrees(TEXTS.text("commutation.still")))) };
         let pairs = turns * f64::from(inputs.periods) / moved.abs();
         let whole = (pairs - pairs.round()).abs() < 0.25 && said.pole_pairs > 0;
         let own = said.pole_pairs == inputs.pole_pairs;
         let id = match (own && FITS.contains(&said.ratio.abs()), said.ratio > 0.0) {
-            (true, true) => return Ok((Verdict::Ok, degrees(Text::new("commutation.fits")))),
+            (true, true) => return Ok((Verdict::Ok, degrees(TEXTS.text("commutation.fits")))),
             (true, false) => "commutation.exchanged",
             (false, true) if whole && !own => "commutation.other_pairs",
             (false, false) if whole && !own => "commutation.exchanged_pairs",
             _ => "commutation.unclear",
         };
-        Ok((Verdict::Fault, degrees(Text::new(id)).with("pairs", said.pole_pairs)))
+        Ok((Verdict::Fault, degrees(TEXTS.text(id)).with("pairs", said.pole_pairs)))
     }
 
     /// The second vector was read and fits.
@@ -143,17 +143,17 @@ impl Commutation {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         // What was found wrong is not stored, what was not looked at may be.
         if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
-            return Err(Text::new("commutation.second_refuses"));
+            return Err(TEXTS.text("commutation.second_refuses"));
         }
         let Place { field, address } = self.place(staged)?;
         let bytes = match self.form.storage {
             Storage::Number => offset.angle.bits().to_be_bytes().to_vec(),
             Storage::Record => {
                 if !address.is_multiple_of(CommutationRecord::BYTES) {
-                    return Err(Text::new("commutation.block").with("address", address));
+                    return Err(TEXTS.text("commutation.block").with("address", address));
                 }
                 let pole_pairs = u8::try_from(inputs.pole_pairs);
-                let pole_pairs = pole_pairs.map_err(|_| Text::new("commutation.too_many_pairs"))?;
+                let pole_pairs = pole_pairs.map_err(|_| TEXTS.text("commutation.too_many_pairs"))?;
                 let confirmed = self.is_confirmed(geometry);
                 let record =
                     CommutationRecord { offset: offset.angle, pole_pairs, reversed: inputs.reversed, confirmed };
@@ -170,22 +170,22 @@ impl Commutation {
     pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
         let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
-            return Err(Text::new("commutation.second_refuses"));
+            return Err(TEXTS.text("commutation.second_refuses"));
         }
         let step = inputs.motor.electrical_step_deg();
         if step >= UNUSABLE_DEG {
-            return Err(Text::new("commutation.unusable").with_number("step", step, 1));
+            return Err(TEXTS.text("commutation.unusable").with_number("step", step, 1));
         }
         let here = self.last.filter(|slot| *slot != Slot::Second).and_then(|slot| self.reading(slot));
-        let here = here.ok_or_else(|| Text::new("commutation.not_there"))?;
-        let phase = Phase::of_periods(here.fine_periods).ok_or_else(|| Text::new("commutation.not_there"))?;
+        let here = here.ok_or_else(|| TEXTS.text("commutation.not_there"))?;
+        let phase = Phase::of_periods(here.fine_periods).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let steps = u64::from(STEPS_PER_PERIOD);
         let periods = geometry.and_then(Geometry::range).map_or(u64::from(inputs.periods), |range| range / steps);
         let last = u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX).min((1 << 27) - 1);
-        let period = whole("commutation.period", &self.form.period, 0, last)?;
-        let value = position_to_set(period, phase).ok_or_else(|| Text::new("commutation.not_there"))?;
+        let period = whole(TEXTS.text("commutation.period"), &self.form.period, 0, last)?;
+        let value = position_to_set(period, phase).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let remaining = angle(f64::from(period) + phase.periods(), &inputs);
-        let remaining = remaining.ok_or_else(|| Text::new("commutation.not_there"))?.degrees();
+        let remaining = remaining.ok_or_else(|| TEXTS.text("commutation.not_there"))?.degrees();
         let off_step = here.raw.map_or(0, |raw| (raw % STEPS_PER_PERIOD).abs_diff(value % STEPS_PER_PERIOD));
         Ok(Setting {
             value,
@@ -218,7 +218,7 @@ pub fn may_read(commutation: &Commutation, ready: bool) -> Allowed {
     if commutation.form.source == Source::Typed {
         commutation.form.phase()?;
     }
-    if ready { Ok(()) } else { Err(Text::new("commutation.not_ready")) }
+    if ready { Ok(()) } else { Err(TEXTS.text("commutation.not_ready")) }
 }
 
 /// From one position to the other, in periods, the short way round within a revolution.

@@ -6,7 +6,7 @@ use crate::app::Text;
 use crate::app::number::whole;
 use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
-use crate::devices::hiperface::state::{Staged, rules};
+use crate::devices::hiperface::state::{Staged, TEXTS, rules};
 
 /// Bytes that hold nothing: erased, or never written.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
@@ -27,7 +27,7 @@ impl Commutation {
     /// # Errors
     /// In words, where nothing has room or what is typed is no address.
     pub fn place(&self, staged: &Staged) -> Result<Place, Text> {
-        let no_room = || Text::new("commutation.no_room").with("bytes", CommutationRecord::BYTES);
+        let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
         let wanted = staged.wanted();
         let writable = || wanted.iter().rev().filter(|field| rules::edit(field).is_ok());
@@ -37,7 +37,7 @@ impl Commutation {
             let free = || asked().find_map(|field| first(field, is_filler));
             return kept.or_else(free).ok_or_else(no_room);
         }
-        let address = whole("commutation.address", &form.address, 0, 127)? as usize;
+        let address = whole(TEXTS.text("commutation.address"), &form.address, 0, 127)? as usize;
         let field = form.field.or_else(|| writable().next().map(|field| field.number));
         let field = field.ok_or_else(no_room)?;
         Ok(Place { field, address })
@@ -56,7 +56,7 @@ impl Commutation {
         if there.len() < bytes.len() || there == bytes || is_filler(&there) || is_kept(self.form.storage, &there) {
             return None;
         }
-        let text = Text::new("commutation.replaces").with("field", field).with("first", address);
+        let text = TEXTS.text("commutation.replaces").with("field", field).with("first", address);
         Some(text.with("last", address + bytes.len() - 1).with("text", ascii(&there)))
     }
 }

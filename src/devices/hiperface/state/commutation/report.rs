@@ -3,47 +3,48 @@
 use super::{Commutation, Kind, Reading, Slot, Vector};
 use crate::app::Text;
 use crate::devices::hiperface::protocol::Geometry;
+use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
     /// The lines of the report, for an encoder of that name.
     pub fn report(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
         let form = &self.form;
-        let mut lines = vec![Text::new("commutation.report_title").with("name", name)];
+        let mut lines = vec![TEXTS.text("commutation.report_title").with("name", name)];
         let ticks = [
             (form.disabled, "commutation.disabled"),
             (form.uncoupled, "commutation.uncoupled"),
             (form.released, "commutation.released"),
         ];
-        let ticked: Vec<Text> = ticks.into_iter().filter(|(ticked, _)| *ticked).map(|(_, id)| Text::new(id)).collect();
+        let ticked: Vec<Text> = ticks.into_iter().filter(|(ticked, _)| *ticked).map(|(_, id)| TEXTS.text(id)).collect();
         if !ticked.is_empty() {
-            lines.push(Text::new("commutation.report_prepared").with_list("what", ticked));
+            lines.push(TEXTS.text("commutation.report_prepared").with_list("what", ticked));
         }
         if let Ok((current, time)) = form.limits() {
-            let text = Text::new("commutation.report_limits").with_number("current", current, 2);
+            let text = TEXTS.text("commutation.report_limits").with_number("current", current, 2);
             lines.push(text.with_number("time", time, 1));
         }
         if let Ok(degrees) = form.vector_deg() {
             lines.push(match form.vector {
-                Vector::Other => Text::new("commutation.report_angle").with_number("degrees", degrees, 1),
-                named => Text::new("commutation.report_vector").with_text("vector", Text::new(named.word())),
+                Vector::Other => TEXTS.text("commutation.report_angle").with_number("degrees", degrees, 1),
+                named => TEXTS.text("commutation.report_vector").with_text("vector", TEXTS.text(named.word())),
             });
         }
         if let Ok(inputs) = form.inputs(geometry) {
-            let direction = Text::new(if inputs.reversed { "commutation.against" } else { "commutation.with" });
-            let text = Text::new("commutation.report_motor").with("pairs", inputs.pole_pairs);
+            let direction = TEXTS.text(if inputs.reversed { "commutation.against" } else { "commutation.with" });
+            let text = TEXTS.text("commutation.report_motor").with("pairs", inputs.pole_pairs);
             lines.push(text.with("periods", inputs.periods).with_text("direction", direction));
         }
         for slot in Slot::ALL {
             if let Some(reading) = self.reading(slot) {
-                let text = Text::new("commutation.report_reading").with_text("slot", Text::new(slot.word()));
+                let text = TEXTS.text("commutation.report_reading").with_text("slot", TEXTS.text(slot.word()));
                 lines.push(text.with_number("fine", reading.fine_periods, 5).with_text("kind", kind_words(reading)));
             }
         }
         if let Ok(offset) = self.offset(geometry) {
             if let Some(apart) = offset.apart_deg {
-                lines.push(Text::new("commutation.report_apart").with_number("apart", apart, 2));
+                lines.push(TEXTS.text("commutation.report_apart").with_number("apart", apart, 2));
             }
-            let text = Text::new("commutation.report_offset").with_number("degrees", offset.angle.degrees(), 4);
+            let text = TEXTS.text("commutation.report_offset").with_number("degrees", offset.angle.degrees(), 4);
             lines.push(text.with("hex", format!("{:08X}", offset.angle.bits())));
         }
         lines.extend(self.second(geometry).and_then(Result::ok).map(|(_, text)| text));
@@ -55,10 +56,10 @@ impl Commutation {
 pub fn kind_words(reading: &Reading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {
-            Text::new("commutation.kind_fine").with_number("residual", residual_periods * 32.0, 2)
+            TEXTS.text("commutation.kind_fine").with_number("residual", residual_periods * 32.0, 2)
         }
-        Kind::Absolute => Text::new("commutation.kind_absolute"),
-        Kind::Typed => Text::new("commutation.kind_typed"),
+        Kind::Absolute => TEXTS.text("commutation.kind_absolute"),
+        Kind::Typed => TEXTS.text("commutation.kind_typed"),
     }
 }
 

@@ -7,6 +7,7 @@ use crate::app::check::CheckLine;
 use crate::app::explain::plain;
 use crate::devices::hiperface::procedures::LineQuality;
 use crate::devices::hiperface::procedures::check::{Finding, Line, Step};
+use crate::devices::hiperface::state::TEXTS;
 
 /// The lines of a check.
 pub fn check(lines: &[Line]) -> Vec<CheckLine> {
@@ -14,7 +15,7 @@ pub fn check(lines: &[Line]) -> Vec<CheckLine> {
 }
 
 fn step(step: Step) -> Text {
-    Text::new(match step {
+    TEXTS.text(match step {
         Step::Restart => "check.restart",
         Step::Status => "check.status",
         Step::Identity => "check.identity",
@@ -28,7 +29,8 @@ fn step(step: Step) -> Text {
 /// How good a line is.
 pub fn line_quality(quality: &LineQuality) -> Text {
     let [retries, damaged, silent, late] = quality.troubles();
-    Text::new(if quality.is_troubled() { "line.troubled" } else { "line.good" })
+    TEXTS
+        .text(if quality.is_troubled() { "line.troubled" } else { "line.good" })
         .with("requests", quality.requests)
         .with("retries", retries)
         .with("damaged", damaged)
@@ -46,20 +48,22 @@ fn finding(finding: &Finding) -> Text {
         Finding::SerialNumber(number) => plain(number),
         Finding::Limit { channel, value, limit } => {
             let channel = format!("{channel:02X}h");
-            Text::new("check.limit").with("channel", channel).with("value", value).with("limit", limit)
+            TEXTS.text("check.limit").with("channel", channel).with("value", value).with("limit", limit)
         }
         Finding::Field { number, status } => {
-            Text::new("check.field").with("number", number).with_text("status", field_status(*status))
+            TEXTS.text("check.field").with("number", number).with_text("status", field_status(*status))
         }
-        Finding::FieldLocked { number, status } => Text::new("check.field_locked")
+        Finding::FieldLocked { number, status } => TEXTS
+            .text("check.field_locked")
             .with("number", number)
             .with_text("status", field_status(*status))
             .with("code", status.code()),
-        Finding::FieldRefused { number, codes } => Text::new("check.field_refused")
+        Finding::FieldRefused { number, codes } => TEXTS
+            .text("check.field_refused")
             .with("number", number)
             .with_list("codes", codes.iter().copied().map(status_with_number)),
         Finding::FieldUnreadable { number, why } => {
-            Text::new("check.field_unreadable").with("number", number).with_text("why", encoder(why))
+            TEXTS.text("check.field_unreadable").with("number", number).with_text("why", encoder(why))
         }
         Finding::Unreadable(why) => encoder(why),
         Finding::Line(quality) => line_quality(quality),

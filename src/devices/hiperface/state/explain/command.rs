@@ -2,10 +2,11 @@
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::Command;
+use crate::devices::hiperface::state::TEXTS;
 
 /// What a command is called.
 pub fn command(command: Command) -> Text {
-    Text::new(match command {
+    TEXTS.text(match command {
         Command::ReadPosition => "command.read_position",
         Command::SetPosition => "command.set_position",
         Command::ReadAnalogue => "command.read_analogue",

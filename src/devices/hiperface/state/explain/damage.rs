@@ -4,16 +4,17 @@ use super::words::status_with_number;
 use crate::app::Text;
 use crate::devices::hiperface::procedures::Damage;
 use crate::devices::hiperface::protocol::{FrameError, ReplyError};
+use crate::devices::hiperface::state::TEXTS;
 
 /// What was wrong with a reply.
 pub fn damage(damage: &Damage) -> Text {
     match damage {
         Damage::Reply(error) => reply(error),
-        Damage::Unreadable => Text::new("damage.unreadable"),
-        Damage::Trailing => Text::new("damage.trailing"),
-        Damage::Late => Text::new("damage.late"),
-        Damage::Echo => Text::new("damage.echo"),
-        Damage::AtEncoder(code) => Text::new("damage.at_encoder").with_text("code", status_with_number(*code)),
+        Damage::Unreadable => TEXTS.text("damage.unreadable"),
+        Damage::Trailing => TEXTS.text("damage.trailing"),
+        Damage::Late => TEXTS.text("damage.late"),
+        Damage::Echo => TEXTS.text("damage.echo"),
+        Damage::AtEncoder(code) => TEXTS.text("damage.at_encoder").with_text("code", status_with_number(*code)),
         Damage::Inconsistent => Text::new("damage.inconsistent"),
     }
 }
@@ -21,20 +22,20 @@ pub fn damage(damage: &Damage) -> Text {
 fn reply(error: &ReplyError) -> Text {
     let byte = |byte: &u8| format!("{byte:02X}h");
     match error {
-        ReplyError::Frame(FrameError::Short { got }) => Text::new("damage.short").with("got", got),
+        ReplyError::Frame(FrameError::Short { got }) => TEXTS.text("damage.short").with("got", got),
         ReplyError::Frame(FrameError::Checksum { expected, got }) => {
-            Text::new("damage.checksum").with("got", format!("{got:02X}")).with("expected", format!("{expected:02X}"))
+            TEXTS.text("damage.checksum").with("got", format!("{got:02X}")).with("expected", format!("{expected:02X}"))
         }
         ReplyError::Address { expected, got } => {
-            Text::new("damage.address").with("got", byte(got)).with("expected", byte(expected))
+            TEXTS.text("damage.address").with("got", byte(got)).with("expected", byte(expected))
         }
         ReplyError::Command { expected, got } => {
-            Text::new("damage.command").with("got", byte(got)).with("expected", byte(expected))
+            TEXTS.text("damage.command").with("got", byte(got)).with("expected", byte(expected))
         }
         ReplyError::Length { command, got } => {
-            Text::new("damage.length").with("got", got).with("command", byte(command))
+            TEXTS.text("damage.length").with("got", got).with("command", byte(command))
         }
-        ReplyError::Argument => Text::new("damage.argument"),
+        ReplyError::Argument => TEXTS.text("damage.argument"),
     }
 }
 

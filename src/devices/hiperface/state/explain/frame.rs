@@ -8,27 +8,29 @@ use crate::devices::hiperface::protocol::{
     Arguments, BROADCAST, Command, DataFieldStatus, EncoderTypes, Frame, LineSettings, Reply, RequestError, Said,
     SerialLabel, StatusCode, TypeLabel,
 };
+use crate::devices::hiperface::state::TEXTS;
 
 /// One thing that a frame says.
 pub fn frame(said: &Said) -> Text {
     match said {
         Said::Heading { address, command } => heading(*address, *command),
         Said::Request(arguments) => request(arguments),
-        Said::NoRequest(error) => Text::new("frame.no_request").with_text("why", no_request(*error)),
-        Said::Refused(code) => Text::new("frame.refused").with_text("code", kind_and_code(*code)),
+        Said::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", no_request(*error)),
+        Said::Refused(code) => TEXTS.text("frame.refused").with_text("code", kind_and_code(*code)),
         Said::Code(code) => kind_and_code(*code),
-        Said::Reply(reply) => Text::new("frame.reply").with_text("words", answer(reply)),
+        Said::Reply(reply) => TEXTS.text("frame.reply").with_text("words", answer(reply)),
     }
 }
 
 fn heading(address: u8, byte: u8) -> Text {
     let who = match address {
-        BROADCAST => Text::new("frame.broadcast"),
-        address => Text::new("frame.address").with("address", number(address)),
+        BROADCAST => TEXTS.text("frame.broadcast"),
+        address => TEXTS.text("frame.address").with("address", number(address)),
     };
-    let what = Command::from_byte(byte).map_or_else(|| Text::new("command.unknown"), command);
+    let what = Command::from_byte(byte).map_or_else(|| TEXTS.text("command.unknown"), command);
     let flagged = byte & Frame::ERROR_BIT != 0;
-    Text::new(if flagged { "frame.heading_error" } else { "frame.heading" })
+    TEXTS
+        .text(if flagged { "frame.heading_error" } else { "frame.heading" })
         .with_text("who", who)
         .with_text("command", what)
         .with("number", number(byte & !Frame::ERROR_BIT))
@@ -36,40 +38,40 @@ fn heading(address: u8, byte: u8) -> Text {
 
 fn request(arguments: &Arguments) -> Text {
     match arguments {
-        Arguments::None => Text::new("frame.request"),
+        Arguments::None => TEXTS.text("frame.request"),
         Arguments::Position(position) => {
-            Text::new("frame.request_position").with("position", position).with("word", word(*position))
+            TEXTS.text("frame.request_position").with("position", position).with("word", word(*position))
         }
-        Arguments::Channel(channel) => Text::new("frame.request_channel").with("channel", number(*channel)),
-        Arguments::Read { field, address, count } => {
-            Text::new(if *count == 1 { "frame.request_byte" } else { "frame.request_bytes" })
-                .with("field", number(*field))
-                .with("count", count)
-                .with("address", address)
-        }
-        Arguments::Store { field, address, data } => Text::new("frame.request_store")
+        Arguments::Channel(channel) => TEXTS.text("frame.request_channel").with("channel", number(*channel)),
+        Arguments::Read { field, address, count } => TEXTS
+            .text(if *count == 1 { "frame.request_byte" } else { "frame.request_bytes" })
+            .with("field", number(*field))
+            .with("count", count)
+            .with("address", address),
+        Arguments::Store { field, address, data } => TEXTS
+            .text("frame.request_store")
             .with("field", number(*field))
             .with("address", address)
             .with("bytes", hex(data)),
-        Arguments::Field(field) => Text::new("frame.request_field").with("field", number(*field)),
+        Arguments::Field(field) => TEXTS.text("frame.request_field").with("field", number(*field)),
         Arguments::Define { field, status } => {
-            Text::new("frame.request_define").with("field", number(*field)).with_text("status", status_byte(*status))
+            TEXTS.text("frame.request_define").with("field", number(*field)).with_text("status", status_byte(*status))
         }
-        Arguments::Code(code) => Text::new("frame.request_code").with("number", code),
-        Arguments::Address(address) => Text::new("frame.request_address").with("address", address),
+        Arguments::Code(code) => TEXTS.text("frame.request_code").with("number", code),
+        Arguments::Address(address) => TEXTS.text("frame.request_address").with("address", address),
         Arguments::Settings(settings) => {
-            Text::new("frame.request_settings").with_text("settings", settings_byte(*settings))
+            TEXTS.text("frame.request_settings").with_text("settings", settings_byte(*settings))
         }
     }
 }
 
 fn no_request(error: RequestError) -> Text {
     match error {
-        RequestError::Command(byte) => Text::new("frame.no_command").with("command", number(byte)),
+        RequestError::Command(byte) => TEXTS.text("frame.no_command").with("command", number(byte)),
         RequestError::Length { expected, got } => {
-            Text::new("frame.wrong_length").with("got", got).with("expected", expected)
+            TEXTS.text("frame.wrong_length").with("got", got).with("expected", expected)
         }
-        RequestError::Argument(name) => Text::new("frame.wrong_argument").with("name", name),
+        RequestError::Argument(name) => TEXTS.text("frame.wrong_argument").with("name", name),
     }
 }
 
@@ -78,25 +80,27 @@ fn kind_and_code(code: StatusCode) -> Text {
     if code == StatusCode::OK {
         return named;
     }
-    Text::new(if code.is_warning() { "frame.warning" } else { "frame.error" }).with_text("code", named)
+    TEXTS.text(if code.is_warning() { "frame.warning" } else { "frame.error" }).with_text("code", named)
 }
 
 fn answer(reply: &Reply) -> Text {
     match reply {
-        Reply::Done => Text::new("frame.done"),
-        Reply::Position(raw) => Text::new("frame.position").with("position", raw).with("word", word(*raw)),
-        Reply::Analogue(value) => Text::new("frame.value").with("value", value),
-        Reply::Counter(value) => Text::new("frame.counter").with("value", value),
-        Reply::Data(bytes) => Text::new("frame.data").with("bytes", hex(bytes)),
-        Reply::FieldStatus(status) => Text::new("frame.field_status").with_text("status", status_byte(*status)),
-        Reply::FreeMemory(free) => Text::new(if free.fields == 1 { "frame.free_one" } else { "frame.free" })
+        Reply::Done => TEXTS.text("frame.done"),
+        Reply::Position(raw) => TEXTS.text("frame.position").with("position", raw).with("word", word(*raw)),
+        Reply::Analogue(value) => TEXTS.text("frame.value").with("value", value),
+        Reply::Counter(value) => TEXTS.text("frame.counter").with("value", value),
+        Reply::Data(bytes) => TEXTS.text("frame.data").with("bytes", hex(bytes)),
+        Reply::FieldStatus(status) => TEXTS.text("frame.field_status").with_text("status", status_byte(*status)),
+        Reply::FreeMemory(free) => TEXTS
+            .text(if free.fields == 1 { "frame.free_one" } else { "frame.free" })
             .with("bytes", free.bytes())
             .with("fields", free.fields),
         Reply::Status(codes) => {
-            Text::new("frame.codes").with_list("codes", codes.iter().copied().map(status_with_number))
+            TEXTS.text("frame.codes").with_list("codes", codes.iter().copied().map(status_with_number))
         }
         Reply::TypeLabel(label) => type_label(label),
-        Reply::Serial(SerialLabel { serial_number, firmware_version, firmware_date, .. }) => Text::new("frame.serial")
+        Reply::Serial(SerialLabel { serial_number, firmware_version, firmware_date, .. }) => TEXTS
+            .text("frame.serial")
             .with("serial", serial_number)
             .with("version", firmware_version)
             .with("date", firmware_date),
@@ -106,20 +110,21 @@ fn answer(reply: &Reply) -> Text {
 fn type_label(label: &TypeLabel) -> Text {
     let types = EncoderTypes::built_in();
     let name = types.find(label.encoder_type);
-    Text::new("frame.type_label")
+    TEXTS
+        .text("frame.type_label")
         .with_text("settings", settings_byte(label.settings))
         .with("type", number(label.encoder_type))
-        .with_text("name", name.map_or_else(|| Text::new("frame.unknown_type"), |row| plain(&row.name)))
+        .with_text("name", name.map_or_else(|| TEXTS.text("frame.unknown_type"), |row| plain(&row.name)))
         .with("bytes", label.eeprom_bytes())
         .with("options", number(label.options))
 }
 
 fn status_byte(status: DataFieldStatus) -> Text {
-    Text::new("frame.byte").with("byte", number(status.byte())).with_text("words", field_status(status))
+    TEXTS.text("frame.byte").with("byte", number(status.byte())).with_text("words", field_status(status))
 }
 
 fn settings_byte(settings: LineSettings) -> Text {
-    Text::new("frame.byte").with("byte", number(settings.byte())).with_text("words", line_settings(settings))
+    TEXTS.text("frame.byte").with("byte", number(settings.byte())).with_text("words", line_settings(settings))
 }
 
 fn number(byte: u8) -> String {

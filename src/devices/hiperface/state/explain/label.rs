@@ -3,6 +3,7 @@
 use crate::app::Text;
 use crate::bits::hex;
 use crate::devices::hiperface::protocol::{ExtendedLabel, LabelPart};
+use crate::devices::hiperface::state::TEXTS;
 
 /// Some bytes of the label with their meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,22 +37,22 @@ pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
 
 fn meaning(part: LabelPart, linear: bool, flags: u8, fits: bool) -> Option<Text> {
     Some(match part {
-        LabelPart::Checksum => Text::new(if fits { "label.checksum" } else { "label.checksum_other" }),
+        LabelPart::Checksum => TEXTS.text(if fits { "label.checksum" } else { "label.checksum_other" }),
         LabelPart::Flags => {
-            let kind = Text::new(if linear { "label.linear" } else { "label.rotary" });
+            let kind = TEXTS.text(if linear { "label.linear" } else { "label.rotary" });
             let bipolar = flags & ExtendedLabel::BIPOLAR != 0;
-            let counting = Text::new(if bipolar { "label.bipolar" } else { "label.unipolar" });
-            Text::new("label.flags").with_text("kind", kind).with_text("counting", counting)
+            let counting = TEXTS.text(if bipolar { "label.bipolar" } else { "label.unipolar" });
+            TEXTS.text("label.flags").with_text("kind", kind).with_text("counting", counting)
         }
         LabelPart::Resolution(number) => {
-            Text::new(if linear { "label.period" } else { "label.periods" }).with("number", number)
+            TEXTS.text(if linear { "label.period" } else { "label.periods" }).with("number", number)
         }
         LabelPart::Range(number) => {
-            Text::new(if linear { "label.range" } else { "label.turns" }).with("number", number)
+            TEXTS.text(if linear { "label.range" } else { "label.turns" }).with("number", number)
         }
-        LabelPart::Designation => Text::new("label.designation"),
-        LabelPart::Selector(_) => Text::new("label.selector"),
+        LabelPart::Designation => TEXTS.text("label.designation"),
+        LabelPart::Selector(_) => TEXTS.text("label.selector"),
         LabelPart::Limit { valid: false, .. } => return None,
-        LabelPart::Limit { number, value, .. } => Text::new("label.limit").with("number", number).with("value", value),
+        LabelPart::Limit { number, value, .. } => TEXTS.text("label.limit").with("number", number).with("value", value),
     })
 }

@@ -7,6 +7,7 @@ use crate::app::review::OpWords;
 use crate::bits::hex;
 use crate::devices::hiperface::profile::Op;
 use crate::devices::hiperface::protocol::DataFieldStatus;
+use crate::devices::hiperface::state::TEXTS;
 
 /// An operation in words. An access code is not told.
 pub fn op(op: &Op) -> OpWords {
@@ -14,31 +15,32 @@ pub fn op(op: &Op) -> OpWords {
         Op::Define { field, from, to } => define(*field, *from, *to),
         Op::Store { field, address, old, new, .. } => OpWords::one(
             bytes(*field, usize::from(*address), new.len()),
-            old.as_ref().map_or_else(|| Text::new("op.new_field"), |old| plain(hex(old))),
+            old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| plain(hex(old))),
             plain(hex(new)),
         ),
         Op::ChangeCode { number, .. } => OpWords::one(
-            Text::new("op.access_code").with("number", number),
-            Text::new("op.present_code"),
-            Text::new("op.changed_code"),
+            TEXTS.text("op.access_code").with("number", number),
+            TEXTS.text("op.present_code"),
+            TEXTS.text("op.changed_code"),
         ),
         Op::SetPosition { from, to, synchronise } => {
             let item = if *synchronise { "op.synchronise" } else { "op.position" };
-            OpWords::one(Text::new(item), plain(from), plain(to))
+            OpWords::one(TEXTS.text(item), plain(from), plain(to))
         }
-        Op::SetAddress { from, to } => OpWords::one(Text::new("op.address"), plain(format!("{from:02X}h")), plain(to)),
-        Op::Configure { from, to } => OpWords::one(Text::new("op.settings"), line_settings(*from), line_settings(*to)),
-        Op::ClearCounter { from } => OpWords::one(Text::new("op.counter"), plain(from), plain(0)),
+        Op::SetAddress { from, to } => OpWords::one(TEXTS.text("op.address"), plain(format!("{from:02X}h")), plain(to)),
+        Op::Configure { from, to } => OpWords::one(TEXTS.text("op.settings"), line_settings(*from), line_settings(*to)),
+        Op::ClearCounter { from } => OpWords::one(TEXTS.text("op.counter"), plain(from), plain(0)),
         Op::IncrementCounter { from } => {
-            OpWords::one(Text::new("op.counter"), plain(from), plain((from + 1) & 0x00FF_FFFF))
+            OpWords::one(TEXTS.text("op.counter"), plain(from), plain((from + 1) & 0x00FF_FFFF))
         }
     }
 }
 
 fn bytes(field: u8, first: usize, count: usize) -> Text {
     match count {
-        1 => Text::new("op.byte").with("field", field).with("first", first),
-        _ => Text::new("op.bytes")
+        1 => TEXTS.text("op.byte").with("field", field).with("first", first),
+        _ => TEXTS
+            .text("op.bytes")
             .with("field", field)
             .with("first", first)
             .with("last", (first + count).saturating_sub(1)),
@@ -46,22 +48,22 @@ fn bytes(field: u8, first: usize, count: usize) -> Text {
 }
 
 fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OpWords {
-    let item = Text::new("op.field").with("field", field);
+    let item = TEXTS.text("op.field").with("field", field);
     match from {
-        Some(from) if from.exists() && !to.exists() => OpWords::one(item, field_status(from), Text::new("op.deleted")),
+        Some(from) if from.exists() && !to.exists() => OpWords::one(item, field_status(from), TEXTS.text("op.deleted")),
         Some(from) if from.exists() => {
             let (old, new) = differing(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
-            let parts = |texts: Vec<Text>| Text::new("op.parts").with_list("parts", texts);
+            let parts = |texts: Vec<Text>| TEXTS.text("op.parts").with_list("parts", texts);
             OpWords::one(item, parts(old), parts(new))
         }
-        _ => OpWords::one(item, Text::new("op.not_there"), field_status(to)),
+        _ => OpWords::one(item, TEXTS.text("op.not_there"), field_status(to)),
     }
 }
 
 /// Only what an operation changes of a field: that is what has to be looked at.
 fn differing(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
-    let size = |status: DataFieldStatus| Text::new("op.size").with("size", status.size().bytes());
-    let code = |status: DataFieldStatus| Text::new("op.code").with("code", status.code());
+    let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
+    let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());
     let parts: [&dyn Fn(DataFieldStatus) -> Text; 4] = [&size, &field_access, &code, &field_code_required];
     parts.into_iter().map(|part| (part(from), part(to))).filter(|(old, new)| old != new).collect()
 }

@@ -5,6 +5,7 @@ use crate::app::action::OpenFailed;
 use crate::app::explain::{self as general, syntax};
 use crate::devices::hiperface::jobs::BrokenTypes;
 use crate::devices::hiperface::protocol::TypeTableError;
+use crate::devices::hiperface::state::TEXTS;
 use crate::store::StoreError;
 use crate::worker::OpenError;
 
@@ -13,7 +14,7 @@ pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<BrokenTypes>() {
         Some(BrokenTypes { path, cause }) => {
-            Text::new("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
+            TEXTS.text("store.encoder_types").with("path", path.display()).with_text("why", type_table(cause))
         }
         None => general::store(error),
     }
@@ -38,7 +39,8 @@ pub fn open_failed(failed: &OpenFailed) -> Text {
 fn type_table(error: &TypeTableError) -> Text {
     match error {
         TypeTableError::Syntax { line, column, what } => syntax(*line, *column, what),
-        TypeTableError::Range { code, quantity, range } => Text::new("detail.range")
+        TypeTableError::Range { code, quantity, range } => TEXTS
+            .text("detail.range")
             .with("code", format!("{code:02X}h"))
             .with("quantity", quantity)
             .with("low", range.start())

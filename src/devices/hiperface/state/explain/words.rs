@@ -2,6 +2,7 @@
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};
+use crate::devices::hiperface::state::TEXTS;
 
 /// Texts of the status codes.
 const STATUS: [(u8, &str); 27] = [
@@ -37,20 +38,21 @@ const STATUS: [(u8, &str); 27] = [
 /// What a status code says.
 pub fn status(code: StatusCode) -> Text {
     let id = STATUS.iter().find(|(byte, _)| *byte == code.byte()).map_or("status.unknown", |(_, id)| id);
-    Text::new(id)
+    TEXTS.text(id)
 }
 
 /// A status code with its number: "0Fh wrong access code".
 pub fn status_with_number(code: StatusCode) -> Text {
-    Text::new("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status(code))
+    TEXTS.text("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status(code))
 }
 
 /// What the status byte of a data field says: "48 bytes, write protected, code 2, code required".
 pub fn field_status(status: DataFieldStatus) -> Text {
     if !status.exists() {
-        return Text::new("field.not_defined");
+        return TEXTS.text("field.not_defined");
     }
-    Text::new("field.status")
+    TEXTS
+        .text("field.status")
         .with("size", status.size().bytes())
         .with_text("access", field_access(status))
         .with("code", status.code())
@@ -59,26 +61,26 @@ pub fn field_status(status: DataFieldStatus) -> Text {
 
 /// "writable" or "write protected".
 pub fn field_access(status: DataFieldStatus) -> Text {
-    Text::new(if status.is_writable() { "field.writable" } else { "field.write_protected" })
+    TEXTS.text(if status.is_writable() { "field.writable" } else { "field.write_protected" })
 }
 
 /// "code required" or "code not required".
 pub fn field_code_required(status: DataFieldStatus) -> Text {
-    Text::new(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
+    TEXTS.text(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
 }
 
 /// Periods and turns, or the length of a period.
 pub fn geometry(geometry: Geometry) -> Text {
     match geometry {
-        Geometry::Rotary { periods, turns: 1 } => Text::new("geometry.singleturn").with("periods", periods),
+        Geometry::Rotary { periods, turns: 1 } => TEXTS.text("geometry.singleturn").with("periods", periods),
         Geometry::Rotary { periods, turns } => {
-            Text::new("geometry.multiturn").with("periods", periods).with("turns", turns)
+            TEXTS.text("geometry.multiturn").with("periods", periods).with("turns", turns)
         }
         Geometry::Linear { period_nm, .. } => {
             // As many decimals as a whole number of nanometres needs.
             let decimals = (0..6u32).find(|decimals| period_nm.is_multiple_of(10u32.pow(6 - decimals))).unwrap_or(6);
             let decimals = usize::try_from(decimals).unwrap_or(6);
-            Text::new("geometry.linear").with_number("millimetres", f64::from(period_nm) * 1e-6, decimals)
+            TEXTS.text("geometry.linear").with_number("millimetres", f64::from(period_nm) * 1e-6, decimals)
         }
     }
 }
@@ -87,26 +89,27 @@ pub fn geometry(geometry: Geometry) -> Text {
 pub fn position(position: Position) -> Text {
     match (position.turns(), position.degrees(), position.millimetres()) {
         (Some(turn), Some(degrees), _) => {
-            Text::new("position.rotary").with("turn", turn).with_number("degrees", degrees, 3)
+            TEXTS.text("position.rotary").with("turn", turn).with_number("degrees", degrees, 3)
         }
-        (.., Some(millimetres)) => Text::new("position.linear").with_number("millimetres", millimetres, 6),
+        (.., Some(millimetres)) => TEXTS.text("position.linear").with_number("millimetres", millimetres, 6),
         _ => raw_position(position.raw),
     }
 }
 
 /// A position word whose meaning is not known.
 pub fn raw_position(raw: u32) -> Text {
-    Text::new("position.steps").with("steps", raw)
+    TEXTS.text("position.steps").with("steps", raw)
 }
 
 /// What the settings byte of the interface says: "9600 8E1, time-out 44 bits, standard".
 pub fn line_settings(settings: LineSettings) -> Text {
-    let text = Text::new("line.settings")
+    let text = TEXTS
+        .text("line.settings")
         .with("bits", if settings.long_timeout() { 44 } else { 11 })
-        .with_text("wiring", Text::new(if settings.is_bus() { "line.bus" } else { "line.standard" }));
+        .with_text("wiring", TEXTS.text(if settings.is_bus() { "line.bus" } else { "line.standard" }));
     match settings.format() {
         Some(format) => text.with("format", format),
-        None => text.with_text("format", Text::new("line.reserved")),
+        None => text.with_text("format", TEXTS.text("line.reserved")),
     }
 }
 

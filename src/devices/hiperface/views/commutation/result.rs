@@ -1,20 +1,20 @@
 //! What comes of the readings: the offset, its way into a data field, a position to be set, and the report.
 
-use crate::app::DeviceCommand;
 use egui::{RichText, Ui};
 
 use super::{ask, number};
 use crate::analysis::quality::Verdict;
-use crate::app::{Action, Text};
-use crate::devices::hiperface::state::Encoder;
+use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperface::state::commutation::{Action as Assistant, Form, Storage, Stored, stored};
+use crate::devices::hiperface::state::{Encoder, TEXTS};
+use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, paragraph, primary, row, verdict_ui,
 };
 use crate::ui::{Skin, icons};
 
 pub(super) fn offset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, "commutation.offset", |ui| {
+    card(ui, skin, TEXTS.text("commutation.offset"), |ui| {
         let offset = match encoder.commutation.offset(encoder.geometry()) {
             Ok(offset) => offset,
             Err(why) => {
@@ -22,36 +22,41 @@ pub(super) fn offset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
                 return paragraph(ui, skin.label(skin.words(&why)));
             }
         };
-        let degrees = |id, degrees, decimals| Text::new(id).with_number("degrees", degrees, decimals);
+        let degrees = |id, degrees, decimals| TEXTS.text(id).with_number("degrees", degrees, decimals);
         ui.label(skin.value(skin.words(&degrees("commutation.offset_value", offset.angle.degrees(), 4))));
-        row(ui, skin, &skin.say("commutation.as_number"), skin.mono(format!("{:08X}h", offset.angle.bits())));
-        row(ui, skin, &skin.say("commutation.shaft"), skin.mono(format!("{}°", skin.number(offset.shaft_deg, 4))));
+        row(ui, skin, &say(skin, "commutation.as_number"), skin.mono(format!("{:08X}h", offset.angle.bits())));
+        row(ui, skin, &say(skin, "commutation.shaft"), skin.mono(format!("{}°", skin.number(offset.shaft_deg, 4))));
         if let Some(resolution) = offset.resolution_deg {
             let text = degrees("commutation.resolution_value", resolution, 2);
-            row(ui, skin, &skin.say("commutation.resolution"), skin.mono(skin.words(&text)));
+            row(ui, skin, &say(skin, "commutation.resolution"), skin.mono(skin.words(&text)));
         }
         if !encoder.commutation.is_confirmed(encoder.geometry()) {
-            verdict_ui(ui, skin, Verdict::Warn, &Text::new("commutation.unconfirmed"));
+            verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.unconfirmed"));
         }
     });
 }
 
 pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, skin, "commutation.method_one", |ui| {
-        paragraph(ui, skin.label(skin.say("commutation.method_one_words")));
-        entry(ui, skin, &skin.say("commutation.storage"), |ui| {
+    card(ui, skin, TEXTS.text("commutation.method_one"), |ui| {
+        paragraph(ui, skin.label(say(skin, "commutation.method_one_words")));
+        entry(ui, skin, &say(skin, "commutation.storage"), |ui| {
             let ways = [(Storage::Record, "commutation.record"), (Storage::Number, "commutation.number")];
-            choice(ui, &skin.say("commutation.storage"), &mut form.storage, ways.map(|(way, id)| (way, skin.say(id))));
+            choice(
+                ui,
+                &say(skin, "commutation.storage"),
+                &mut form.storage,
+                ways.map(|(way, id)| (way, say(skin, id))),
+            );
         });
         if form.storage == Storage::Number {
-            verdict_ui(ui, skin, Verdict::Warn, &Text::new("commutation.number_words"));
+            verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.number_words"));
         }
         let place = encoder.commutation.place(&encoder.staged).ok();
-        entry(ui, skin, &skin.say("commutation.field"), |ui| {
+        entry(ui, skin, &say(skin, "commutation.field"), |ui| {
             let fields = encoder.staged.device().iter().map(|field| (Some(field.number), field.number.to_string()));
             let shown = form.field.or(place.map(|place| place.field));
             let mut chosen = shown;
-            choice(ui, &skin.say("commutation.field"), &mut chosen, fields);
+            choice(ui, &say(skin, "commutation.field"), &mut chosen, fields);
             if chosen != shown {
                 form.field = chosen;
             }
@@ -72,11 +77,11 @@ pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut F
         }
         ui.horizontal_wrapped(|ui| {
             let allowed = bytes.as_ref().map(|_| ()).map_err(Clone::clone);
-            if allowed_button(ui, skin, &allowed, icons::MEMORY, &skin.say("commutation.store")).clicked() {
+            if allowed_button(ui, skin, &allowed, icons::MEMORY, &say(skin, "commutation.store")).clicked() {
                 actions.push(ask(encoder, Assistant::Store));
             }
             let ready = encoder.session.is_ready() && encoder.staged.is_dirty();
-            if primary(ui, skin, ready, icons::LIST_CHECKS, &skin.say("commutation.review")).clicked() {
+            if primary(ui, skin, ready, icons::LIST_CHECKS, &say(skin, "commutation.review")).clicked() {
                 actions.push(Action::Command(encoder.session.id, DeviceCommand::Review));
             }
         });
@@ -88,14 +93,15 @@ pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut F
 
 fn found_ui(ui: &mut Ui, skin: &Skin, found: &Stored) {
     let text = match found.record {
-        Ok(record) => Text::new("commutation.found")
+        Ok(record) => TEXTS
+            .text("commutation.found")
             .with_number("degrees", record.offset.degrees(), 4)
             .with("pairs", record.pole_pairs),
-        Err(_) => Text::new("commutation.found_damaged"),
+        Err(_) => TEXTS.text("commutation.found_damaged"),
     };
     let text = text.with("field", found.field).with("address", found.address);
     ui.horizontal_wrapped(|ui| {
-        ui.label(skin.label(skin.say("commutation.found_title")));
+        ui.label(skin.label(say(skin, "commutation.found_title")));
         let colour = match (found.record.is_err(), found.edited) {
             (true, _) => skin.palette.bad,
             (false, true) => skin.palette.staged,
@@ -103,30 +109,31 @@ fn found_ui(ui: &mut Ui, skin: &Skin, found: &Stored) {
         };
         ui.label(RichText::new(skin.words(&text)).color(colour));
         if found.edited {
-            ui.label(RichText::new(skin.say("commutation.found_edited")).color(skin.palette.staged).underline());
+            ui.label(RichText::new(say(skin, "commutation.found_edited")).color(skin.palette.staged).underline());
         }
     });
 }
 
 pub(super) fn position_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, skin, "commutation.method_two", |ui| {
-        paragraph(ui, skin.label(skin.say("commutation.method_two_words")));
+    card(ui, skin, TEXTS.text("commutation.method_two"), |ui| {
+        paragraph(ui, skin.label(say(skin, "commutation.method_two_words")));
         if let Ok(inputs) = form.inputs(encoder.geometry()) {
-            let text = Text::new("commutation.step_value")
+            let text = TEXTS
+                .text("commutation.step_value")
                 .with_number("mechanical", inputs.motor.mechanical_step_deg(), 4)
                 .with_number("electrical", inputs.motor.electrical_step_deg(), 2);
-            row(ui, skin, &skin.say("commutation.step"), skin.mono(skin.words(&text)));
+            row(ui, skin, &say(skin, "commutation.step"), skin.mono(skin.words(&text)));
         }
         number(ui, skin, "commutation.period", &mut form.period, "0");
         let setting = encoder.commutation.setting(encoder.geometry());
         match &setting {
             Ok(setting) => {
                 let value = format!("{} = {:X}h", setting.value, setting.value);
-                row(ui, skin, &skin.say("commutation.position"), skin.mono(value));
-                let left = Text::new("commutation.remaining_value").with_number("degrees", setting.remaining_deg, 2);
-                row(ui, skin, &skin.say("commutation.remaining"), skin.mono(skin.words(&left)));
+                row(ui, skin, &say(skin, "commutation.position"), skin.mono(value));
+                let left = TEXTS.text("commutation.remaining_value").with_number("degrees", setting.remaining_deg, 2);
+                row(ui, skin, &say(skin, "commutation.remaining"), skin.mono(skin.words(&left)));
                 if setting.verdict == Verdict::Warn {
-                    verdict_ui(ui, skin, Verdict::Warn, &Text::new("commutation.weak"));
+                    verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.weak"));
                 }
             }
             Err(why) if encoder.commutation.offset(encoder.geometry()).is_ok() => {
@@ -135,8 +142,8 @@ pub(super) fn position_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mu
             Err(_) => {}
         }
         let allowed = setting.map(|_| ());
-        let ready = if encoder.session.is_ready() { allowed } else { Err(Text::new("commutation.not_ready")) };
-        if allowed_button(ui, skin, &ready, icons::CROSSHAIR, &skin.say("commutation.set")).clicked() {
+        let ready = if encoder.session.is_ready() { allowed } else { Err(TEXTS.text("commutation.not_ready")) };
+        if allowed_button(ui, skin, &ready, icons::CROSSHAIR, &say(skin, "commutation.set")).clicked() {
             actions.push(ask(encoder, Assistant::Set));
         }
     });
@@ -150,11 +157,11 @@ pub(super) fn report_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
         .map(|line| skin.words(line))
         .collect();
     let copy = |ui: &mut Ui| {
-        if icon_button(ui, true, icons::COPY, &skin.say("commutation.copy")).clicked() {
+        if icon_button(ui, true, icons::COPY, &say(skin, "commutation.copy")).clicked() {
             ui.ctx().copy_text(lines.join("\n"));
         }
     };
-    card_with(ui, skin, "commutation.report", copy, |ui| {
+    card_with(ui, skin, TEXTS.text("commutation.report"), copy, |ui| {
         for line in &lines {
             ui.add(egui::Label::new(line).wrap().selectable(true));
         }

@@ -5,6 +5,7 @@ use crate::app::Text;
 use crate::devices::interbus::profile::{
     CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableRow, Unit, Wrong,
 };
+use crate::devices::interbus::state::TEXTS;
 
 /// Decimals beyond which nobody reads.
 const MOST_DECIMALS: usize = 6;
@@ -17,36 +18,36 @@ pub fn layout(table: &CamTable) -> Text {
         Some(Delimiter::Comma) | None => "camtable.comma",
     };
     let id = if table.header { "camtable.with_header" } else { "camtable.without_header" };
-    Text::new(id).with("count", table.rows.len()).with_text("delimiter", Text::new(delimiter))
+    TEXTS.text(id).with("count", table.rows.len()).with_text("delimiter", TEXTS.text(delimiter))
 }
 
 /// Something that could not be taken, with where it stands.
 pub fn problem(problem: &TableProblem) -> Text {
-    let text = Text::new("camtable.problem").with("line", problem.line).with("column", problem.column);
+    let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
     text.with_text("what", wrong(&problem.what))
 }
 
 fn wrong(wrong: &Wrong) -> Text {
     match wrong {
-        Wrong::Empty => Text::new("camtable.empty"),
-        Wrong::NoColumn(own) => Text::new("camtable.no_column").with_text("column", column(*own)),
-        Wrong::Missing(own) => Text::new("camtable.missing").with_text("column", column(*own)),
-        Wrong::Number { text } => Text::new("camtable.number").with("text", text),
-        Wrong::Program { text } => Text::new("camtable.program").with("text", text),
-        Wrong::Cam { text } => Text::new("camtable.cam").with("text", text),
+        Wrong::Empty => TEXTS.text("camtable.empty"),
+        Wrong::NoColumn(own) => TEXTS.text("camtable.no_column").with_text("column", column(*own)),
+        Wrong::Missing(own) => TEXTS.text("camtable.missing").with_text("column", column(*own)),
+        Wrong::Number { text } => TEXTS.text("camtable.number").with("text", text),
+        Wrong::Program { text } => TEXTS.text("camtable.program").with("text", text),
+        Wrong::Cam { text } => TEXTS.text("camtable.cam").with("text", text),
         Wrong::Outside { column: own, outside } => {
             let decimals = |value: f64| if value.fract() == 0.0 { 0 } else { 3 };
-            let text = Text::new("camtable.outside").with_text("column", column(*own));
+            let text = TEXTS.text("camtable.outside").with_text("column", column(*own));
             let text = text.with_number("value", outside.value, decimals(outside.value));
             let text = text.with_number("least", outside.least, decimals(outside.least));
             text.with_number("most", outside.most, decimals(outside.most))
         }
-        Wrong::Full(program) => Text::new("camtable.full").with("program", program.get()),
+        Wrong::Full(program) => TEXTS.text("camtable.full").with("program", program.get()),
         Wrong::Twice { program, cam, first } => {
-            let text = Text::new("camtable.twice").with("program", program.get()).with("cam", cam.get());
+            let text = TEXTS.text("camtable.twice").with("program", program.get()).with("cam", cam.get());
             text.with("first", first)
         }
-        Wrong::Name { most } => Text::new("camtable.name").with("most", most),
+        Wrong::Name { most } => TEXTS.text("camtable.name").with("most", most),
     }
 }
 
@@ -55,12 +56,12 @@ pub fn note(note: &TableNote) -> Text {
     match note {
         TableNote::Pulses { program, name, cams } => {
             let cams: Vec<String> = cams.iter().map(|cam| cam.get().to_string()).collect();
-            let text = Text::new("camtable.pulses").with("program", program.get()).with("name", name);
+            let text = TEXTS.text("camtable.pulses").with("program", program.get()).with("name", name);
             text.with("count", cams.len()).with("cams", cams.join(", "))
         }
-        TableNote::OtherHeader => Text::new("camtable.other_header"),
+        TableNote::OtherHeader => TEXTS.text("camtable.other_header"),
         TableNote::OtherUnit { header, used } => {
-            let text = Text::new("camtable.other_unit").with_text("header", unit(*header));
+            let text = TEXTS.text("camtable.other_unit").with_text("header", unit(*header));
             text.with_text("used", unit(*used))
         }
     }
@@ -68,7 +69,7 @@ pub fn note(note: &TableNote) -> Text {
 
 /// A row whose edges are not where they were asked for.
 pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
-    let text = Text::new("camtable.rounded").with("line", row.line).with("program", row.program.get());
+    let text = TEXTS.text("camtable.rounded").with("line", row.line).with("program", row.program.get());
     let text = text.with("cam", row.cam.get());
     text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
 }
@@ -79,8 +80,8 @@ pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
     // As it stands in the table: rounded here too, nobody would see what became of it.
     let asked = decimals.max(written_decimals(edge.asked));
-    let text = Text::new(id).with_number("asked", edge.asked, asked).with("unit", scale.unit().symbol());
-    let off = Text::new(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
+    let text = TEXTS.text(id).with_number("asked", edge.asked, asked).with("unit", scale.unit().symbol());
+    let off = TEXTS.text(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
     let off = off.with_number("off", edge.off.abs(), decimals + 1).with("unit", scale.unit().symbol());
     text.with("step", edge.step).with_text("off", off)
 }
@@ -92,7 +93,7 @@ fn written_decimals(number: f64) -> usize {
 }
 
 fn column(column: Column) -> Text {
-    Text::new(match column {
+    TEXTS.text(match column {
         Column::Program => "camtable.column_program",
         Column::Cam => "camtable.column_cam",
         Column::Name => "camtable.column_name",
@@ -103,7 +104,7 @@ fn column(column: Column) -> Text {
 
 /// A unit by its name.
 pub fn unit(unit: Unit) -> Text {
-    Text::new(match unit {
+    TEXTS.text(match unit {
         Unit::Steps => "camtable.steps",
         Unit::Degrees => "camtable.degrees",
         Unit::Millimetres => "camtable.millimetres",

@@ -4,36 +4,38 @@ use super::{Chart, Lamp, Lane};
 use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, LONGEST_NAME, Scale, Unit};
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, ProgramNumber, TURNS};
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::staged::{EditError, Mark};
 
 /// A cam by its number, and its name where it has one.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
-        Some(name) => Text::new("cams.named").with("cam", lane.cam.get()).with("name", name),
+        Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),
         None => bare(lane.cam),
     }
 }
 
 /// A cam by its number.
 pub fn bare(cam: CamNumber) -> Text {
-    Text::new("cams.cam").with("cam", cam.get())
+    TEXTS.text("cams.cam").with("cam", cam.get())
 }
 
 /// An edge of a cam.
 pub fn edge(lane: &Lane, edge: Edge) -> Text {
-    Text::new(match edge {
-        Edge::Start => "cams.start_of",
-        Edge::Stop => "cams.stop_of",
-    })
-    .with_text("cam", bare(lane.cam))
+    TEXTS
+        .text(match edge {
+            Edge::Start => "cams.start_of",
+            Edge::Stop => "cams.stop_of",
+        })
+        .with_text("cam", bare(lane.cam))
 }
 
 /// A position: in steps, and in units of the machine where it has others.
 pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     match scale.unit() {
-        Unit::Steps if scale.zero() == 0 => Text::new("cams.steps").with("step", step),
+        Unit::Steps if scale.zero() == 0 => TEXTS.text("cams.steps").with("step", step),
         unit => {
-            let text = Text::new("cams.scaled").with("step", step).with("unit", unit.symbol());
+            let text = TEXTS.text("cams.scaled").with("step", step).with("unit", unit.symbol());
             text.with_number("value", scale.value(step, range), scale.decimals())
         }
     }
@@ -41,13 +43,13 @@ pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
 
 /// A number of units, as a ruler says it.
 pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
-    Text::new("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
+    TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
 
 /// Where a cam is, and how long.
 pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     let (start, stop) = (cam.start.get(), cam.stop.get());
-    let text = Text::new(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
+    let text = TEXTS.text(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
     let text = text.with_text("start", position(start, scale, range)).with_text("stop", position(stop, scale, range));
     let whole = i64::from(range.max(1));
     text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
@@ -55,28 +57,28 @@ pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
 
 /// A lane in a sentence: where its cam is and whether it works.
 pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
-    let Some(edges) = own.edges else { return Text::new("cams.no_edges") };
+    let Some(edges) = own.edges else { return TEXTS.text("cams.no_edges") };
     let id = if own.on { "cams.works" } else { "cams.works_not" };
-    Text::new(id).with_text("where", stretch(edges, scale, range))
+    TEXTS.text(id).with_text("where", stretch(edges, scale, range))
 }
 
 /// What is not right about a lane.
 pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
-    let beyond = lane.beyond.then(|| Text::new("cams.beyond").with("last", chart.last()));
-    let clash = lane.clashes.then(|| Text::new("cams.clash").with("name", lane.name.as_deref().unwrap_or_default()));
+    let beyond = lane.beyond.then(|| TEXTS.text("cams.beyond").with("last", chart.last()));
+    let clash = lane.clashes.then(|| TEXTS.text("cams.clash").with("name", lane.name.as_deref().unwrap_or_default()));
     beyond.into_iter().chain(clash).collect()
 }
 
 /// A lamp: whether the output is on, and what the encoder says otherwise.
 pub fn lamp(lamp: Lamp) -> Text {
-    let says = |on| Text::new(if on { "cams.lamp_on" } else { "cams.lamp_off" });
+    let says = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
-        (None, None) => Text::new("cams.lamp_unknown"),
+        (None, None) => TEXTS.text("cams.lamp_unknown"),
         (Some(own), Some(simulated)) if own != simulated => {
-            Text::new("cams.lamp_differs").with_text("own", says(own)).with_text("simulated", says(simulated))
+            TEXTS.text("cams.lamp_differs").with_text("own", says(own)).with_text("simulated", says(simulated))
         }
-        (Some(own), _) => Text::new("cams.lamp_own").with_text("own", says(own)),
-        (None, Some(simulated)) => Text::new("cams.lamp_simulated").with_text("simulated", says(simulated)),
+        (Some(own), _) => TEXTS.text("cams.lamp_own").with_text("own", says(own)),
+        (None, Some(simulated)) => TEXTS.text("cams.lamp_simulated").with_text("simulated", says(simulated)),
     }
 }
 
@@ -101,7 +103,7 @@ pub fn marks(marks: &[Mark]) -> Vec<Text> {
         let cams: Vec<String> = cams.collect();
         texts.push(match *own {
             Mark::Beyond { last, .. } if cams.len() > 1 => {
-                let text = Text::new("cams.mark_beyond_several").with("program", program.get());
+                let text = TEXTS.text("cams.mark_beyond_several").with("program", program.get());
                 text.with("cams", cams.join(", ")).with("last", last)
             }
             _ => mark(own),
@@ -111,10 +113,10 @@ pub fn marks(marks: &[Mark]) -> Vec<Text> {
 }
 
 fn mark(mark: &Mark) -> Text {
-    let program = |id, program: ProgramNumber| Text::new(id).with("program", program.get());
+    let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match *mark {
         Mark::Gear(error) => gear(&error),
-        Mark::Preset { last } => Text::new("cams.mark_preset").with("last", last),
+        Mark::Preset { last } => TEXTS.text("cams.mark_preset").with("last", last),
         Mark::Beyond { program: own, cam, last, .. } => {
             program("cams.mark_beyond", own).with("cam", cam.get()).with("last", last)
         }
@@ -127,11 +129,11 @@ fn mark(mark: &Mark) -> Text {
 
 /// Why something could not be changed, and what to do.
 pub fn refused(error: &EditError) -> Text {
-    let program = |id, program: ProgramNumber| Text::new(id).with("program", program.get());
+    let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {
-        EditError::NothingRead => Text::new("cams.nothing_read"),
+        EditError::NothingRead => TEXTS.text("cams.nothing_read"),
         EditError::NotRead(own) => program("cams.not_read", *own),
-        EditError::ShiftNotRead => Text::new("cams.shift_not_read"),
+        EditError::ShiftNotRead => TEXTS.text("cams.shift_not_read"),
         EditError::NoCam { program: own, cam } => program("cams.no_cam", *own).with("cam", cam.get()),
         EditError::Gear(error) => gear(error),
         EditError::Parameter(error) => {
@@ -139,28 +141,28 @@ pub fn refused(error: &EditError) -> Text {
                 Parameter::Preset => "cams.preset_limit",
                 _ => "cams.parameter_limit",
             };
-            Text::new(id).with("value", error.value).with("low", error.low).with("high", error.high)
+            TEXTS.text(id).with("value", error.value).with("low", error.low).with("high", error.high)
         }
         EditError::Edge { edge, to, last } => {
             let id = match edge {
                 Edge::Start => "cams.edge_start",
                 Edge::Stop => "cams.edge_stop",
             };
-            Text::new(id).with("to", to).with("last", last)
+            TEXTS.text(id).with("to", to).with("last", last)
         }
         EditError::Beyond { program: own, cam, last } => {
             program("cams.beyond_moved", *own).with("cam", cam.get()).with("last", last)
         }
-        EditError::Name => Text::new("cams.long_name").with("most", LONGEST_NAME),
+        EditError::Name => TEXTS.text("cams.long_name").with("most", LONGEST_NAME),
     }
 }
 
 /// Why steps and turns do not go together.
 pub fn gear(error: &GearError) -> Text {
     match *error {
-        GearError::Turns { turns } => Text::new("cams.gear_turns").with("turns", turns).with("most", TURNS),
+        GearError::Turns { turns } => TEXTS.text("cams.gear_turns").with("turns", turns).with("most", TURNS),
         GearError::Steps { steps, turns, most } => {
-            Text::new("cams.gear_steps").with("steps", steps).with("turns", turns).with("most", most)
+            TEXTS.text("cams.gear_steps").with("steps", steps).with("turns", turns).with("most", most)
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::app::Text;
 use crate::devices::interbus::procedures::{Asked, Damage, Exception};
+use crate::devices::interbus::state::TEXTS;
 
 /// What a gateway was asked; the part of a sentence.
 pub(super) fn asked(asked: Asked) -> Text {
@@ -10,7 +11,7 @@ pub(super) fn asked(asked: Asked) -> Text {
         Asked::Output { .. } => "ib_asked.output",
         Asked::Write { .. } => "ib_asked.write",
     };
-    let text = Text::new(id).with("register", asked.register());
+    let text = TEXTS.text(id).with("register", asked.register());
     match asked {
         Asked::Write { word, .. } => text.with("word", super::word(word)),
         Asked::Input { .. } | Asked::Output { .. } => text,
@@ -19,7 +20,7 @@ pub(super) fn asked(asked: Asked) -> Text {
 
 /// What is the matter, most likely, and what to do.
 pub fn exception(exception: Exception) -> Text {
-    Text::new(match exception.code() {
+    TEXTS.text(match exception.code() {
         0x01 => "ib_exception.function",
         0x02 => "ib_exception.address",
         0x03 => "ib_exception.value",
@@ -35,9 +36,9 @@ pub fn exception(exception: Exception) -> Text {
 /// What was wrong with a reply.
 pub fn damage(damage: Damage) -> Text {
     match damage {
-        Damage::NoFrame { bytes } => Text::new("ib_damage.no_frame").with("bytes", bytes),
-        Damage::Unit { asked, got } => Text::new("ib_damage.unit").with("asked", asked).with("got", got),
-        Damage::Function { asked, got } => Text::new("ib_damage.function").with("asked", asked).with("got", got),
-        Damage::Registers => Text::new("ib_damage.registers"),
+        Damage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),
+        Damage::Unit { asked, got } => TEXTS.text("ib_damage.unit").with("asked", asked).with("got", got),
+        Damage::Function { asked, got } => TEXTS.text("ib_damage.function").with("asked", asked).with("got", got),
+        Damage::Registers => TEXTS.text("ib_damage.registers"),
     }
 }

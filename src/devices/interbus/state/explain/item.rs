@@ -4,10 +4,11 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::interbus::profile::{Direction, Edge};
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ReadOut, StartupMode};
+use crate::devices::interbus::state::TEXTS;
 
 /// A parameter.
 pub fn parameter(parameter: Parameter) -> Text {
-    Text::new(match parameter {
+    TEXTS.text(match parameter {
         Parameter::Steps => "ib_item.steps",
         Parameter::Turns => "ib_item.revolutions",
         Parameter::Direction => "ib_item.direction",
@@ -27,7 +28,7 @@ pub(super) fn number(parameter: Parameter, number: u32) -> Text {
 
 /// Which way a position counts.
 pub fn direction(direction: Direction) -> Text {
-    Text::new(match direction {
+    TEXTS.text(match direction {
         Direction::Clockwise => "ib_item.clockwise",
         Direction::Counterclockwise => "ib_item.counterclockwise",
     })
@@ -37,45 +38,46 @@ pub fn direction(direction: Direction) -> Text {
 pub(super) fn cams(mask: u8) -> Text {
     let on: Vec<String> =
         CamNumber::all().map(CamNumber::get).filter(|cam| mask >> cam & 1 != 0).map(|cam| cam.to_string()).collect();
-    if on.is_empty() { Text::new("ib_item.no_cam") } else { plain(on.join(", ")) }
+    if on.is_empty() { TEXTS.text("ib_item.no_cam") } else { plain(on.join(", ")) }
 }
 
 /// An edge of a cam.
 pub(super) fn edge(cam: CamNumber, edge: Edge) -> Text {
-    Text::new(match edge {
-        Edge::Start => "ib_item.start",
-        Edge::Stop => "ib_item.stop",
-    })
-    .with("cam", cam.get())
+    TEXTS
+        .text(match edge {
+            Edge::Start => "ib_item.start",
+            Edge::Stop => "ib_item.stop",
+        })
+        .with("cam", cam.get())
 }
 
 /// What an encoder does when it is left alone.
 pub fn startup(mode: StartupMode) -> Text {
     match mode {
-        StartupMode::K2 => Text::new("ib_startup.k2"),
-        StartupMode::K3 => Text::new("ib_startup.k3"),
-        StartupMode::Velocity => Text::new("ib_startup.velocity"),
-        StartupMode::Cams(program) => Text::new("ib_startup.program").with("program", program.get()),
-        StartupMode::Unknown(value) => Text::new("ib_startup.unknown").with("code", value.get()),
+        StartupMode::K2 => TEXTS.text("ib_startup.k2"),
+        StartupMode::K3 => TEXTS.text("ib_startup.k3"),
+        StartupMode::Velocity => TEXTS.text("ib_startup.velocity"),
+        StartupMode::Cams(program) => TEXTS.text("ib_startup.program").with("program", program.get()),
+        StartupMode::Unknown(value) => TEXTS.text("ib_startup.unknown").with("code", value.get()),
     }
 }
 
 /// What is read out.
 pub fn read_out(read_out: ReadOut) -> Text {
     match (read_out.number(), read_out.register()) {
-        (_, Some(register)) => Text::new("ib_doing.chip").with("register", register),
-        (0x0, _) => Text::new("ib_doing.serial"),
-        (0x1, _) => Text::new("ib_item.steps"),
-        (0x2, _) => Text::new("ib_item.revolutions"),
-        (0x3, _) => Text::new("ib_item.direction"),
-        (0x4, _) => Text::new("ib_item.preset"),
-        (0x5, _) => Text::new("ib_item.zero_shift"),
-        (0x6, _) => Text::new("ib_doing.preset_flag"),
-        (0x7, _) => Text::new("ib_doing.version"),
-        (0x8, _) => Text::new("ib_doing.time"),
-        (0x9, _) => Text::new("ib_doing.mode"),
-        (0xA, _) => Text::new("ib_doing.flags"),
-        (0xC, _) => Text::new("ib_doing.temperature"),
-        (number, _) => Text::new("ib_doing.other").with("number", format!("0x{number:X}")),
+        (_, Some(register)) => TEXTS.text("ib_doing.chip").with("register", register),
+        (0x0, _) => TEXTS.text("ib_doing.serial"),
+        (0x1, _) => TEXTS.text("ib_item.steps"),
+        (0x2, _) => TEXTS.text("ib_item.revolutions"),
+        (0x3, _) => TEXTS.text("ib_item.direction"),
+        (0x4, _) => TEXTS.text("ib_item.preset"),
+        (0x5, _) => TEXTS.text("ib_item.zero_shift"),
+        (0x6, _) => TEXTS.text("ib_doing.preset_flag"),
+        (0x7, _) => TEXTS.text("ib_doing.version"),
+        (0x8, _) => TEXTS.text("ib_doing.time"),
+        (0x9, _) => TEXTS.text("ib_doing.mode"),
+        (0xA, _) => TEXTS.text("ib_doing.flags"),
+        (0xC, _) => TEXTS.text("ib_doing.temperature"),
+        (number, _) => TEXTS.text("ib_doing.other").with("number", format!("0x{number:X}")),
     }
 }

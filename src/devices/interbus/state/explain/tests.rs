@@ -9,9 +9,9 @@ use crate::devices::interbus::procedures::write::{Interrupted, Left, Written};
 use crate::devices::interbus::procedures::{Asked, Damage, Exception};
 use crate::devices::interbus::profile::{Edge, Item, Op, OtherType, PlanError};
 use crate::devices::interbus::protocol::{
-    CamNumber, Code, Command, Flags, Mode, OutOfRange, Parameter, ProgramNumber, Refused,
+    CamNumber, Code, Command, Flags, Mode, OutOfRange, Parameter, ProgramNumber, Refused, StartupMode, Value,
+    WindowShift,
 };
-use crate::devices::interbus::protocol::{StartupMode, Value, WindowShift};
 use crate::link::LinkErrorKind;
 use crate::worker::NotBegun;
 

@@ -14,6 +14,7 @@ use crate::devices::interbus::profile::{
     CamChange, Edge, Item, Op, OtherType, ParameterChange, PlanError, ProgramChange,
 };
 use crate::devices::interbus::protocol::{Flags, GearError};
+use crate::devices::interbus::state::TEXTS;
 use crate::worker::NotBegun;
 
 /// A change in words.
@@ -23,9 +24,9 @@ pub fn change(change: &Change) -> Text {
             "" => Text::new("ib_change.restore"),
             serial => Text::new("change.restore").with("serial", serial),
         },
-        Change::Write(_) | Change::Item(..) => Text::new("ib_change.write"),
-        Change::Preset { value } => Text::new("ib_change.preset").with("value", value),
-        Change::Default => Text::new("ib_change.default"),
+        Change::Write(_) | Change::Item(..) => TEXTS.text("ib_change.write"),
+        Change::Preset { value } => TEXTS.text("ib_change.preset").with("value", value),
+        Change::Default => TEXTS.text("ib_change.default"),
     }
 }
 
@@ -33,7 +34,7 @@ pub fn change(change: &Change) -> Text {
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Parameterise(changes) => OpWords {
-            item: Text::new("ib_op.parameters"),
+            item: TEXTS.text("ib_op.parameters"),
             changes: changes
                 .iter()
                 .map(|ParameterChange { parameter: own, from, to }| ChangeWords {
@@ -43,12 +44,13 @@ pub fn op(op: &Op) -> OpWords {
                 })
                 .collect(),
         },
-        Op::Program(change) => {
-            OpWords { item: Text::new("ib_op.program").with("program", change.program.get()), changes: program(change) }
-        }
-        Op::FirePreset { value } => OpWords::one(Text::new("ib_op.fire"), Text::new("ib_op.place"), plain(value)),
+        Op::Program(change) => OpWords {
+            item: TEXTS.text("ib_op.program").with("program", change.program.get()),
+            changes: program(change),
+        },
+        Op::FirePreset { value } => OpWords::one(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), plain(value)),
         Op::Default => {
-            OpWords::one(Text::new("ib_op.default"), Text::new("ib_op.as_set"), Text::new("ib_op.as_delivered"))
+            OpWords::one(TEXTS.text("ib_op.default"), TEXTS.text("ib_op.as_set"), TEXTS.text("ib_op.as_delivered"))
         }
     }
 }
@@ -56,8 +58,8 @@ pub fn op(op: &Op) -> OpWords {
 fn program(change: &ProgramChange) -> Vec<ChangeWords> {
     let words = |part: Text, old: Text, new: Text| ChangeWords { part: Some(part), old, new };
     let of_cam = |own: &CamChange| words(edge(own.cam, own.edge), plain(own.from.get()), plain(own.to.get()));
-    let mask = change.mask.map(|(old, new)| words(Text::new("ib_item.mask"), cams(old), cams(new)));
-    let shift = change.shift.map(|(old, new)| words(Text::new("ib_item.shift"), plain(old.get()), plain(new.get())));
+    let mask = change.mask.map(|(old, new)| words(TEXTS.text("ib_item.mask"), cams(old), cams(new)));
+    let shift = change.shift.map(|(old, new)| words(TEXTS.text("ib_item.shift"), plain(old.get()), plain(new.get())));
     change.cams.iter().map(of_cam).chain(mask).chain(shift).collect()
 }
 
@@ -73,8 +75,8 @@ fn of_types(id: &'static str, types: OtherType) -> Text {
         (true, true) => "ib_type.multiturn_less_one",
         (false, true) => "ib_type.single_turn_less_one",
     };
-    let [profile, device] = [types.profile, types.device].map(|flags| Text::new(name(flags)));
-    Text::new(id).with_text("profile", profile).with_text("device", device)
+    let [profile, device] = [types.profile, types.device].map(|flags| TEXTS.text(name(flags)));
+    TEXTS.text(id).with_text("profile", profile).with_text("device", device)
 }
 
 /// Why something cannot be planned.
@@ -84,16 +86,18 @@ pub fn plan(error: &PlanError) -> Text {
             Text::new("plan.other_device").with("profile", profile).with("device", device)
         }
         PlanError::OtherType(types) => of_types("ib_plan.other_type", *types),
-        PlanError::Gear(GearError::Turns { turns }) => Text::new("ib_plan.turns").with("turns", turns),
+        PlanError::Gear(GearError::Turns { turns }) => TEXTS.text("ib_plan.turns").with("turns", turns),
         PlanError::Gear(GearError::Steps { steps, turns, most }) => {
-            Text::new("ib_plan.steps").with("steps", steps).with("turns", turns).with("most", most)
+            TEXTS.text("ib_plan.steps").with("steps", steps).with("turns", turns).with("most", most)
         }
-        PlanError::OutOfRange(error) => Text::new("ib_plan.range")
+        PlanError::OutOfRange(error) => TEXTS
+            .text("ib_plan.range")
             .with_text("item", parameter(error.parameter))
             .with("value", error.value)
             .with("low", error.low)
             .with("high", error.high),
-        PlanError::MountingLeft { item, value, low, high } => Text::new("ib_plan.mounting_left")
+        PlanError::MountingLeft { item, value, low, high } => TEXTS
+            .text("ib_plan.mounting_left")
             .with_text("item", item.parameter().map_or_else(|| plain(item), parameter))
             .with("value", value)
             .with("low", low)
@@ -103,14 +107,14 @@ pub fn plan(error: &PlanError) -> Text {
                 Edge::Start => "ib_plan.cam_start",
                 Edge::Stop => "ib_plan.cam_stop",
             };
-            let text = Text::new(id).with("program", program.get()).with("cam", cam.get());
+            let text = TEXTS.text(id).with("program", program.get()).with("cam", cam.get());
             text.with("position", position).with("last", last)
         }
         PlanError::CamBeyondRange { item, position, last, .. } => {
-            let text = Text::new("ib_plan.range").with("item", item);
+            let text = TEXTS.text("ib_plan.range").with("item", item);
             text.with("value", position).with("low", 0).with("high", last)
         }
-        PlanError::NotRead { item } => Text::new("ib_plan.not_read").with("item", item),
+        PlanError::NotRead { item } => TEXTS.text("ib_plan.not_read").with("item", item),
     }
 }
 
@@ -120,16 +124,16 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
         Wear::Known(after) => ("ib_stores.known", after),
         Wear::Ask(after) => ("ib_stores.ask", after),
         Wear::Worn(after) => ("ib_stores.worn", after),
-        Wear::Unknown => return Some(Text::new("ib_stores.unknown")),
+        Wear::Unknown => return Some(TEXTS.text("ib_stores.unknown")),
     };
-    Some(Text::new(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
+    Some(TEXTS.text(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
 }
 
 /// Why a write was not begun.
 pub(super) fn not_begun(why: &NotBegun) -> Text {
     match why {
         NotBegun::Worn { seen, cost, .. } => {
-            Text::new("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
+            TEXTS.text("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
         }
         NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_begun(why),
     }
@@ -139,7 +143,7 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
 pub fn written(written: &Written) -> Text {
     // Of the default nobody knows what there is to be read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
-    Text::new(id).with("verified", written.verified).with("cycles", written.write_cycles)
+    TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
 /// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
@@ -153,21 +157,21 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     }];
     let untouched = done.write_cycles == 0 && done.written == 0;
     let state = match left {
-        Left::AsFound => Text::new("ib_left.as_found"),
-        Left::Unknown(_) => Text::new("ib_left.unknown"),
+        Left::AsFound => TEXTS.text("ib_left.as_found"),
+        Left::Unknown(_) => TEXTS.text("ib_left.unknown"),
     };
     texts.push(if untouched || unclear.is_empty() {
         state
     } else {
-        let items = Text::new("ib_left.unclear").with_list("items", unclear.iter().map(plain));
-        Text::new("ib_left.both").with_text("state", state).with_text("unclear", items)
+        let items = TEXTS.text("ib_left.unclear").with_list("items", unclear.iter().map(plain));
+        TEXTS.text("ib_left.both").with_text("state", state).with_text("unclear", items)
     });
     let what_next = match kind {
         _ if untouched => Text::new("write.untouched"),
         ChangeKind::Restore => Text::new("write.backup"),
         ChangeKind::Edits => Text::new("ib_left.edits"),
-        ChangeKind::Preset => Text::new("ib_left.preset"),
-        ChangeKind::Default => Text::new("ib_left.default"),
+        ChangeKind::Preset => TEXTS.text("ib_left.preset"),
+        ChangeKind::Default => TEXTS.text("ib_left.default"),
     };
     let what_next = what_next.with("backup", backup.display());
     texts.push(match left {

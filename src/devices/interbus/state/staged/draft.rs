@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::edit;
-use super::{Ground, Staged, Wanted};
+use super::{Ground, Staged, Wanted, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 

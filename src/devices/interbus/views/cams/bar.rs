@@ -6,7 +6,8 @@ use super::View as Page;
 use crate::app::{Action, Language, Text};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::words;
-use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, forms};
+use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, TEXTS, forms};
+use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem, text_entry};
 use crate::ui::{Skin, icons};
 
@@ -27,7 +28,7 @@ pub(super) fn bar_ui(
 ) {
     let marks = encoder.staged.wanted().map(|wanted| wanted.marks()).unwrap_or_default();
     ui.horizontal_wrapped(|ui| {
-        ui.label(skin.label(skin.say("ib_cams.program")));
+        ui.label(skin.label(say(skin, "ib_cams.program")));
         for own in ProgramNumber::all() {
             let says = encoder.staged.program(own);
             let ink = match says {
@@ -38,7 +39,7 @@ pub(super) fn bar_ui(
             };
             let text = RichText::new(own.get().to_string()).color(ink);
             let response = ui.add(egui::Button::selectable(own == program, text).min_size([30.0, 28.0].into()));
-            let word = Text::new("ib_startup.program").with("program", own.get());
+            let word = TEXTS.text("ib_startup.program").with("program", own.get());
             if name(response, true, &skin.words(&word)).clicked() {
                 view.program = Some(own);
             }
@@ -69,27 +70,27 @@ fn whole(
 ) {
     let id = encoder.session.id;
     let mut put = |edit: Edit| actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
-    icon_menu(ui, icons::PENCIL_SIMPLE, &skin.say("ib_cams.whole"), |ui| {
+    icon_menu(ui, icons::PENCIL_SIMPLE, &say(skin, "ib_cams.whole"), |ui| {
         ui.set_max_width(300.0);
-        ui.label(skin.heading(skin.say("ib_cams.copy")));
+        ui.label(skin.heading(say(skin, "ib_cams.copy")));
         ui.horizontal_wrapped(|ui| {
             for to in ProgramNumber::all().filter(|to| *to != program) {
                 let word = to.get().to_string();
-                let text = Text::new("ib_cams.copy_to").with("program", to.get());
+                let text = TEXTS.text("ib_cams.copy_to").with("program", to.get());
                 if name(ui.button(&word), true, &skin.words(&text)).clicked() {
                     put(Edit::Copy { from: program, to });
                 }
             }
         });
         ui.add_space(skin.space.inside);
-        ui.label(skin.heading(skin.say("ib_cams.move")));
-        if button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &skin.say("ib_cams.mirror")).clicked() {
+        ui.label(skin.heading(say(skin, "ib_cams.move")));
+        if button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &say(skin, "ib_cams.mirror")).clicked() {
             put(Edit::Mirror(program));
         }
-        let word = skin.say("ib_cams.by");
+        let word = say(skin, "ib_cams.by");
         entry(ui, skin, &word, |ui| {
             text_entry(ui, &mut view.by, 80.0, &word, "-100");
-            if button(ui, icons::CHECK, &skin.say("ib_cams.rotate")).clicked() {
+            if button(ui, icons::CHECK, &say(skin, "ib_cams.rotate")).clicked() {
                 match forms::offset(&view.by) {
                     Ok(by) => {
                         view.refused = None;
@@ -100,28 +101,28 @@ fn whole(
             }
         });
         problem(ui, skin, view.refused.as_ref());
-        paragraph(ui, skin.caption(skin.say("ib_cams.move_words")));
+        paragraph(ui, skin.caption(say(skin, "ib_cams.move_words")));
     });
 }
 
 /// Tables of cams, in and out.
 fn tables(ui: &mut Ui, skin: &Skin, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    icon_menu(ui, icons::TABLE, &skin.say("ib_cams.tables"), |ui| {
+    icon_menu(ui, icons::TABLE, &say(skin, "ib_cams.tables"), |ui| {
         ui.set_max_width(300.0);
-        if button(ui, icons::FOLDER_OPEN, &skin.say("ib_table.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &say(skin, "ib_table.open")).clicked() {
             actions.push(Action::device(id, Interbus::AskTable(program)));
             ui.close();
         }
-        if button(ui, icons::COPY, &skin.say("ib_table.paste")).clicked() {
+        if button(ui, icons::COPY, &say(skin, "ib_table.paste")).clicked() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
             ui.close();
         }
-        if button(ui, icons::FLOPPY_DISK, &skin.say("ib_table.save")).clicked() {
+        if button(ui, icons::FLOPPY_DISK, &say(skin, "ib_table.save")).clicked() {
             actions
                 .push(Action::device(id, Interbus::AskSaveTable { decimal_comma: skin.language == Language::German }));
             ui.close();
         }
-        paragraph(ui, skin.caption(skin.say("ib_table.words")));
+        paragraph(ui, skin.caption(say(skin, "ib_table.words")));
     });
 }

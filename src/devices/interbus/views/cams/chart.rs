@@ -2,10 +2,11 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::{Action, Text};
+use crate::app::Action;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::devices::interbus::state::cams::{Chart, View as Stretch};
-use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, Preview};
+use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, Preview, TEXTS};
+use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
 use crate::ui::controls::{card_with, icon_button, name, paragraph};
 use crate::ui::{Skin, icons};
@@ -39,21 +40,21 @@ pub(super) fn card_ui(
     let View { ring: is_ring, snaps, stretch, selected } = *view;
     let aside = |ui: &mut Ui| {
         for (own, id) in [(true, "ib_cams.ring"), (false, "ib_cams.lanes")] {
-            let word = skin.say(id);
+            let word = say(skin, id);
             if name(ui.add(egui::Button::selectable(is_ring == own, &word)), true, &word).clicked() {
                 view.ring = own;
             }
         }
-        ui.checkbox(&mut view.snaps, skin.say("ib_cams.snap")).on_hover_text(skin.say("ib_cams.snap_words"));
-        let word = skin.say("ib_cams.whole_range");
+        ui.checkbox(&mut view.snaps, say(skin, "ib_cams.snap")).on_hover_text(say(skin, "ib_cams.snap_words"));
+        let word = say(skin, "ib_cams.whole_range");
         if !is_ring && icon_button(ui, stretch.is_some(), icons::CORNERS_OUT, &word).clicked() {
             view.stretch = None;
         }
     };
     let mut event = None;
     let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
-    card_with(ui, skin, "ib_cams.title", aside, |ui| {
-        let label = skin.words(&Text::new("ib_startup.program").with("program", chart.program.get()));
+    card_with(ui, skin, TEXTS.text("ib_cams.title"), aside, |ui| {
+        let label = skin.words(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
         let sends = encoder.record.last().filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
         let model = CamChart {
             label: &label,
@@ -77,7 +78,7 @@ pub(super) fn card_ui(
         if sends.is_some() {
             agreement(ui, skin, &encoder.preview);
         }
-        paragraph(ui, skin.caption(skin.say("ib_cams.chart_words")));
+        paragraph(ui, skin.caption(say(skin, "ib_cams.chart_words")));
     });
     let program = chart.program;
     match event {
@@ -101,13 +102,14 @@ fn agreement(ui: &mut Ui, skin: &Skin, preview: &Preview) {
     let Preview { same, other, last, .. } = preview;
     let Some(last) = last else {
         if *same > 0 {
-            let text = Text::new("ib_cams.agree").with("words", same);
+            let text = TEXTS.text("ib_cams.agree").with("words", same);
             paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.good));
         }
         return;
     };
     let bits = |outputs: u8| format!("{outputs:08b}");
-    let text = Text::new("ib_cams.differ")
+    let text = TEXTS
+        .text("ib_cams.differ")
         .with("words", same + other)
         .with("other", other)
         .with("position", last.position)

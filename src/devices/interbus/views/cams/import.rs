@@ -2,10 +2,11 @@
 
 use egui::{Event, RichText, Ui};
 
-use crate::app::{Action, Text};
+use crate::app::Action;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::{table_words, words};
-use crate::devices::interbus::state::{Action as Interbus, Encoder, Import};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, Import, TEXTS};
+use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, card, paragraph, primary};
 use crate::ui::{Skin, icons};
 
@@ -28,9 +29,10 @@ pub(super) fn pasted(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, import: &Import, actions: &mut Vec<Action>) {
     let Import { origin, table, .. } = import;
     let id = encoder.session.id;
-    card(ui, skin, "ib_table.title", |ui| {
+    card(ui, skin, TEXTS.text("ib_table.title"), |ui| {
         let programs = table.filled().len();
-        let text = Text::new("ib_table.read")
+        let text = TEXTS
+            .text("ib_table.read")
             .with_text("origin", origin.clone())
             .with("rows", table.rows.len())
             .with("programs", programs);
@@ -48,7 +50,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, import: &Impo
                 line(ui, icons::RULER, skin.palette.muted, words);
             }
             if table.problems.is_empty() && table.rounded().next().is_none() {
-                paragraph(ui, skin.label(skin.say("ib_table.exact")));
+                paragraph(ui, skin.label(say(skin, "ib_table.exact")));
             }
         });
         for filled in table.filled() {
@@ -60,15 +62,16 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, import: &Impo
         // A line that is left out would switch its cam off.
         let is_whole = table.problems.is_empty();
         if !is_whole {
-            paragraph(ui, skin.label(skin.say("ib_table.mend")));
+            paragraph(ui, skin.label(say(skin, "ib_table.mend")));
         }
         ui.add_space(skin.space.inside);
         ui.horizontal(|ui| {
-            if primary(ui, skin, is_whole && !table.rows.is_empty(), icons::CHECK, &skin.say("ib_table.take")).clicked()
+            if primary(ui, skin, is_whole && !table.rows.is_empty(), icons::CHECK, &say(skin, "ib_table.take"))
+                .clicked()
             {
                 actions.push(Action::device(id, Interbus::TakeTable(true)));
             }
-            if button(ui, icons::X, &skin.say("ib_table.leave")).clicked() {
+            if button(ui, icons::X, &say(skin, "ib_table.leave")).clicked() {
                 actions.push(Action::device(id, Interbus::TakeTable(false)));
             }
         });

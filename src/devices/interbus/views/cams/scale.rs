@@ -4,7 +4,8 @@ use egui::Ui;
 
 use crate::app::{Action, Text};
 use crate::devices::interbus::profile::{Scale, Unit};
-use crate::devices::interbus::state::{Action as Interbus, Encoder, forms};
+use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, forms};
+use crate::devices::interbus::views::say;
 use crate::ui::Skin;
 use crate::ui::controls::{card, choice, entry, paragraph, problem, settled_entry};
 
@@ -18,12 +19,12 @@ pub(super) struct View {
 const NUMBER: f32 = 112.0;
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, "ib_scale.title", |ui| {
-        paragraph(ui, skin.label(skin.say("ib_scale.words")));
+    card(ui, skin, TEXTS.text("ib_scale.title"), |ui| {
+        paragraph(ui, skin.label(say(skin, "ib_scale.words")));
         let (scale, range) = (&encoder.scale, encoder.range());
         let id = encoder.session.id;
         let mut set = |scale: Scale| actions.push(Action::device(id, Interbus::SetScale(scale)));
-        let word = skin.say("ib_scale.unit");
+        let word = say(skin, "ib_scale.unit");
         let mut unit = scale.unit();
         entry(ui, skin, &word, |ui| {
             let units = [
@@ -31,15 +32,18 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
                 (Unit::Degrees, "ib_scale.degrees"),
                 (Unit::Millimetres, "ib_scale.millimetres"),
             ];
-            if choice(ui, &word, &mut unit, units.map(|(unit, id)| (unit, skin.say(id)))) {
+            if choice(ui, &word, &mut unit, units.map(|(unit, id)| (unit, say(skin, id)))) {
                 set(forms::usual_scale(unit, scale.zero(), range));
             }
         });
         if let Some(steps) = forms::steps_of(scale) {
-            let word = skin.say(match scale.unit() {
-                Unit::Degrees => "ib_scale.steps_in_turn",
-                _ => "ib_scale.steps_in_millimetre",
-            });
+            let word = say(
+                skin,
+                match scale.unit() {
+                    Unit::Degrees => "ib_scale.steps_in_turn",
+                    _ => "ib_scale.steps_in_millimetre",
+                },
+            );
             entry(ui, skin, &word, |ui| {
                 settled_entry(ui, &mut view.steps, &skin.plain(steps), NUMBER, &word, |text| {
                     set(forms::scale(scale.unit(), text, scale.zero())?);
@@ -48,7 +52,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut Vi
             });
             problem(ui, skin, view.steps.as_ref().and_then(|own| own.1.as_ref()));
         }
-        let word = skin.say("ib_scale.zero");
+        let word = say(skin, "ib_scale.zero");
         entry(ui, skin, &word, |ui| {
             settled_entry(ui, &mut view.zero, &scale.zero().to_string(), NUMBER, &word, |text| {
                 set(forms::with_zero(scale, text, range)?);

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::devices::interbus::state::TEXTS;
+use crate::devices::interbus::views::say;
+
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
@@ -44,13 +47,13 @@ pub(super) fn card_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, skin, "ib_cams.table", |ui| {
+    card(ui, skin, TEXTS.text("ib_cams.table"), |ui| {
         let wide = ui.available_width() > 680.0;
         ui.horizontal(|ui| {
             let heads =
                 [(CAM, "ib_cams.cam"), (NAME, "ib_cams.name"), (NUMBER, "ib_cams.start"), (NUMBER, "ib_cams.stop")];
             for (width, id) in heads {
-                cell(ui, width, |ui| ui.label(skin.caption(skin.say(id))));
+                cell(ui, width, |ui| ui.label(skin.caption(say(skin, id))));
             }
         });
         for lane in &chart.lanes {
@@ -62,7 +65,7 @@ pub(super) fn card_ui(
                 problem(ui, skin, draft.and_then(|draft| draft.as_ref()?.1.as_ref()));
             }
         }
-        paragraph(ui, skin.caption(skin.say("ib_cams.table_words")));
+        paragraph(ui, skin.caption(say(skin, "ib_cams.table_words")));
     });
 }
 
@@ -93,7 +96,7 @@ fn row(
     if name(response, true, &skin.words(&words::bare(cam))).clicked() {
         put(Edit::Switch { program, cam, on });
     }
-    let word = Text::new("ib_cams.name_of").with("cam", cam.get());
+    let word = TEXTS.text("ib_cams.name_of").with("cam", cam.get());
     let draft = view.drafts.entry((program, cam, Column::Name)).or_default();
     let shown = lane.name.as_deref().unwrap_or_default();
     cell(ui, NAME, |ui| {

@@ -2,18 +2,19 @@
 
 use egui::Ui;
 
-use crate::app::{Action, Text};
+use crate::app::Action;
 use crate::devices::interbus::protocol::{StartupMode, WindowShift};
-use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder};
+use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, TEXTS};
+use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{WordLayout, word_layout};
 use crate::ui::Skin;
 use crate::ui::controls::{card, choice, entry, paragraph};
 
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, skin, "ib_window.title", |ui| {
+    card(ui, skin, TEXTS.text("ib_window.title"), |ui| {
         let known = encoder.staged.wanted().and_then(|wanted| wanted.image.shift);
         let own = known.unwrap_or_default();
-        let word = skin.say("ib_cams.shift");
+        let word = say(skin, "ib_cams.shift");
         let mut wanted = own;
         entry(ui, skin, &word, |ui| {
             let shifts = (0..=25).filter_map(WindowShift::new).map(|own| (own, own.get().to_string()));
@@ -23,14 +24,14 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut
             }
             let before = encoder.shift();
             if let Some(before) = before.filter(|before| Some(*before) != known) {
-                let was = Text::new("ib_set.was").with("value", before.get());
+                let was = TEXTS.text("ib_set.was").with("value", before.get());
                 ui.label(egui::RichText::new(skin.words(&was)).color(skin.palette.staged));
             }
         });
-        let label = skin.say("ib_window.label");
+        let label = say(skin, "ib_window.label");
         let sends = encoder.record.last().filter(|own| matches!(own.mode, Some(StartupMode::Cams(_))));
         let shown = sends.filter(|_| encoder.shift() == Some(own)).map(|own| own.word);
         word_layout(ui, skin, &WordLayout { label: &label, shift: own, word: shown, range: encoder.range() });
-        paragraph(ui, skin.caption(skin.say("ib_window.words")));
+        paragraph(ui, skin.caption(say(skin, "ib_window.words")));
     });
 }

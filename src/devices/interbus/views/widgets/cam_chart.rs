@@ -8,6 +8,7 @@ use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 use crate::devices::interbus::state::cams::{self, Chart, Hold, Snap, View, words};
+use crate::devices::interbus::views::say;
 use crate::ui::Skin;
 use crate::ui::widgets::series;
 
@@ -227,7 +228,7 @@ impl CamChart<'_> {
                     Hold::Whole(_) => "cams.hint_whole",
                     Hold::New(_) => "cams.hint_new",
                 };
-                ui.label(skin.caption(skin.say(hint)));
+                ui.label(skin.caption(say(skin, hint)));
             }
         });
     }

@@ -16,9 +16,9 @@ use egui::{
 };
 
 use super::cam_chart::{self, CamChart, CamEvent, Drag, ink};
-use crate::app::Text;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Program, Value};
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::cams::{Chart, Hold, Lane, Snap, View, ticks, words};
 use crate::ui::Skin;
 use crate::ui::widgets::focus_ring;
@@ -163,7 +163,7 @@ impl Ring<'_> {
         let rect = Rect::from_center_size(place, Vec2::splat(GRIP.min(self.dial.pitch())));
         let sense = if self.model.movable { Sense::click_and_drag() } else { Sense::click() };
         let response = self.ui.interact(rect, self.base.with("edge").with(hold), sense);
-        let label = Text::new("cams.on_ring").with_text("edge", words::edge(lane, edge));
+        let label = TEXTS.text("cams.on_ring").with_text("edge", words::edge(lane, edge));
         let mut event = self.model.tell_edge(self.ui, self.skin, &response, hold, &label);
         let apart = self.snap().apart.unwrap_or(1.0);
         event = event.or(self.model.keys(self.ui, &response, hold, apart));

@@ -15,9 +15,10 @@ use egui::{
 
 use crate::app::Text;
 use crate::devices::interbus::protocol::{CamBit, CamOutput, Value, WindowShift};
+use crate::devices::interbus::state::TEXTS;
+use crate::devices::interbus::views::say;
 use crate::ui::Skin;
-use crate::ui::widgets::BitCell;
-use crate::ui::widgets::series;
+use crate::ui::widgets::{BitCell, series};
 
 /// A word.
 #[derive(Clone, Copy, Debug)]
@@ -109,12 +110,12 @@ impl WordLayout<'_> {
     /// What a group is, with where it stands in the word.
     fn name(&self, group: Group) -> Text {
         match group.kind {
-            Kind::Invalid => Text::new("cams.word_invalid"),
-            Kind::Zero => Text::new("cams.word_zero"),
-            Kind::Cams => Text::new("cams.word_cams"),
+            Kind::Invalid => TEXTS.text("cams.word_invalid"),
+            Kind::Zero => TEXTS.text("cams.word_zero"),
+            Kind::Cams => TEXTS.text("cams.word_cams"),
             Kind::Window => {
                 let (high, low) = self.window().unwrap_or_default();
-                Text::new("cams.word_window").with("high", high).with("low", low)
+                TEXTS.text("cams.word_window").with("high", high).with("low", low)
             }
         }
     }
@@ -122,12 +123,12 @@ impl WordLayout<'_> {
     /// What a bit is, in a sentence.
     fn says(&self, bit: u8) -> Text {
         let own = match self.bit(bit) {
-            CamBit::Invalid => Text::new("cams.word_invalid"),
-            CamBit::Zero => Text::new("cams.word_zero"),
-            CamBit::Position(number) => Text::new("cams.word_position").with("bit", number),
-            CamBit::Cam(number) => Text::new("cams.output_of").with("cam", number),
+            CamBit::Invalid => TEXTS.text("cams.word_invalid"),
+            CamBit::Zero => TEXTS.text("cams.word_zero"),
+            CamBit::Position(number) => TEXTS.text("cams.word_position").with("bit", number),
+            CamBit::Cam(number) => TEXTS.text("cams.output_of").with("cam", number),
         };
-        Text::new("cams.word_bit").with("bit", bit).with_text("what", own)
+        TEXTS.text("cams.word_bit").with("bit", bit).with_text("what", own)
     }
 
     fn is_set(&self, bit: u8) -> Option<bool> {
@@ -231,16 +232,16 @@ pub(crate) fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
         own.on_hover_text(words);
     }
     position(ui.painter(), skin, layout, &cells);
-    ui.add(egui::Label::new(skin.caption(skin.say("cams.word_of_position"))).wrap());
+    ui.add(egui::Label::new(skin.caption(say(skin, "cams.word_of_position"))).wrap());
 }
 
 /// A group with its place in the word and, where a word has come, its bits.
 fn tells(skin: &Skin, layout: &WordLayout<'_>, group: Group) -> String {
     let name = skin.words(&layout.name(group));
     let place = if group.high == group.low {
-        Text::new("cams.word_place").with("bit", group.high)
+        TEXTS.text("cams.word_place").with("bit", group.high)
     } else {
-        Text::new("cams.word_places").with("high", group.high).with("low", group.low)
+        TEXTS.text("cams.word_places").with("high", group.high).with("low", group.low)
     };
     let bits: Option<String> =
         (group.low..=group.high).rev().map(|bit| layout.is_set(bit).map(|set| if set { '1' } else { '0' })).collect();

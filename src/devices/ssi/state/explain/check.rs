@@ -5,6 +5,7 @@ use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
 use crate::devices::ssi::procedures::check::{Finding, Line, Step};
+use crate::devices::ssi::state::TEXTS;
 
 /// The lines of a check.
 pub fn check(lines: &[Line]) -> Vec<CheckLine> {
@@ -12,7 +13,7 @@ pub fn check(lines: &[Line]) -> Vec<CheckLine> {
 }
 
 fn step(step: Step) -> Text {
-    Text::new(match step {
+    TEXTS.text(match step {
         Step::Adapter => "ssi_check.adapter",
         Step::Supply => "ssi_check.supply",
         Step::Line => "check.line",
@@ -26,25 +27,29 @@ fn finding(finding: &Finding) -> Text {
     match finding {
         Finding::Adapter(name, firmware) => plain(format!("{name} {firmware}")),
         Finding::Clock { asked, got } if asked == got => {
-            Text::new("ssi_check.clock").with_number("khz", f64::from(*got) / 1000.0, 0)
+            TEXTS.text("ssi_check.clock").with_number("khz", f64::from(*got) / 1000.0, 0)
         }
-        Finding::Clock { asked, got } => Text::new("ssi_check.other_clock")
+        Finding::Clock { asked, got } => TEXTS
+            .text("ssi_check.other_clock")
             .with_number("asked", f64::from(*asked) / 1000.0, 0)
             .with_number("khz", f64::from(*got) / 1000.0, 0),
-        Finding::Supply { wished, measured, milliampere } => Text::new("ssi_check.supplies")
+        Finding::Supply { wished, measured, milliampere } => TEXTS
+            .text("ssi_check.supplies")
             .with_number("wished", f64::from(*wished) / 1000.0, 1)
             .with_number("volts", f64::from(*measured) / 1000.0, 2)
             .with("milliampere", milliampere),
-        Finding::SuppliedElsewhere => Text::new("ssi_check.elsewhere"),
+        Finding::SuppliedElsewhere => TEXTS.text("ssi_check.elsewhere"),
         Finding::Words { taken, different } => {
-            Text::new("ssi_check.words").with("taken", taken).with("different", different)
+            TEXTS.text("ssi_check.words").with("taken", taken).with("different", different)
         }
-        Finding::Said { what, count } => Text::new("ssi_check.said").with("count", count).with_text("what", said(what)),
-        Finding::Fits => Text::new("ssi_check.fits"),
-        Finding::Silent => Text::new("ssi_check.silent"),
+        Finding::Said { what, count } => {
+            TEXTS.text("ssi_check.said").with("count", count).with_text("what", said(what))
+        }
+        Finding::Fits => TEXTS.text("ssi_check.fits"),
+        Finding::Silent => TEXTS.text("ssi_check.silent"),
         Finding::Stands { position, steps } => {
-            Text::new("ssi_check.stands").with("position", position).with("steps", steps)
+            TEXTS.text("ssi_check.stands").with("position", position).with("steps", steps)
         }
-        Finding::Turns { most } => Text::new("ssi_check.turns").with("most", most),
+        Finding::Turns { most } => TEXTS.text("ssi_check.turns").with("most", most),
     }
 }

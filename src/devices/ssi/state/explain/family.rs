@@ -3,6 +3,7 @@
 use crate::app::Text;
 use crate::app::explain::{self as general, plain, syntax};
 use crate::devices::ssi::protocol::FamilyError;
+use crate::devices::ssi::state::TEXTS;
 use crate::store::StoreError;
 
 /// The first that fits counts.
@@ -23,7 +24,7 @@ const NOTES: &[&str] = &[
 
 /// A note or the source of a family.
 pub fn note(words: &str) -> Text {
-    NOTES.iter().find_map(|id| Text::recognised(id, words)).unwrap_or_else(|| plain(words))
+    NOTES.iter().find_map(|id| TEXTS.recognised(id, words)).unwrap_or_else(|| plain(words))
 }
 
 /// A family of the user's own that cannot be read or used.
@@ -31,7 +32,7 @@ pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<FamilyError>() {
         Some(FamilyError { file, line, column, what }) => {
-            Text::new("store.ssi_family").with("path", file).with_text("why", syntax(*line, *column, what))
+            TEXTS.text("store.ssi_family").with("path", file).with_text("why", syntax(*line, *column, what))
         }
         None => general::store(error),
     }

@@ -3,40 +3,7 @@
 use crate::app::Text;
 use crate::app::explain::{phrase, plain};
 use crate::devices::ssi::protocol::{FormatError, FrameTextError, LayoutError, SettingsError};
-
-/// What the floor below says of frames in phrases; the first that fits counts.
-pub(crate) const PHRASES: &[&str] = &[
-    "phrase.ssi_position",
-    "phrase.ssi_parity",
-    "phrase.ssi_error_bits",
-    "phrase.ssi_patterns",
-    "phrase.ssi_clocks",
-    "phrase.ssi_area",
-    "phrase.ssi_wide",
-    "phrase.ssi_between",
-    "phrase.ssi_overlap",
-    "phrase.ssi_behind",
-    "phrase.ssi_many",
-    "phrase.ssi_not_gray",
-    "phrase.ssi_inside_coded",
-    "phrase.ssi_inside_shifted",
-    "phrase.ssi_lost",
-    "phrase.ssi_repeat",
-    "phrase.ssi_pattern_bits",
-    "phrase.ssi_field_bits",
-    "phrase.ssi_single",
-    "phrase.ssi_revolutions",
-    "phrase.ssi_odd",
-    "phrase.ssi_digits",
-    "phrase.ssi_lc_form",
-    "phrase.ssi_lc_kind",
-    "phrase.ssi_lc_two",
-    "phrase.ssi_lc_none",
-    "phrase.ssi_lc_long",
-    "phrase.ssi_lc_gray_over",
-    "phrase.ssi_lc_between",
-    "phrase.ssi_lc_inverted",
-];
+use crate::devices::ssi::state::TEXTS;
 
 /// A frame that cannot work.
 pub fn layout(error: &LayoutError) -> Text {
@@ -64,27 +31,29 @@ pub(crate) fn cannot_work(error: &LayoutError) -> Text {
 pub fn settings(error: &SettingsError) -> Text {
     let why = match error {
         SettingsError::None { family, field } => {
-            Text::new("ssi.lacks").with("family", family).with_text("field", field_name(field))
+            TEXTS.text("ssi.lacks").with("family", family).with_text("field", field_name(field))
         }
         SettingsError::Both(one, other) => {
-            Text::new("ssi.both").with_text("one", field_name(one)).with_text("other", field_name(other))
+            TEXTS.text("ssi.both").with_text("one", field_name(one)).with_text("other", field_name(other))
         }
-        SettingsError::Limit { family, field, least, most, value } => Text::new("ssi.limit")
+        SettingsError::Limit { family, field, least, most, value } => TEXTS
+            .text("ssi.limit")
             .with("family", family)
             .with_text("field", field_name(field))
             .with("least", least)
             .with("most", most)
             .with("value", value),
-        SettingsError::Align { family, bits, align, possible } => Text::new("ssi.align_refused")
+        SettingsError::Align { family, bits, align, possible } => TEXTS
+            .text("ssi.align_refused")
             .with("family", family)
             .with("bits", bits)
             .with("align", align)
             .with("possible", possible),
         SettingsError::Errors { family, place, possible } => {
-            Text::new("ssi.errors_refused").with("family", family).with("place", place).with("possible", possible)
+            TEXTS.text("ssi.errors_refused").with("family", family).with("place", place).with("possible", possible)
         }
         SettingsError::Clocks { family, most, clocks } => {
-            Text::new("ssi.clocks_refused").with("family", family).with("most", most).with("clocks", clocks)
+            TEXTS.text("ssi.clocks_refused").with("family", family).with("most", most).with("clocks", clocks)
         }
         SettingsError::Layout(error) => return layout(error),
         other => phrase(&other.to_string()),
@@ -95,7 +64,7 @@ pub fn settings(error: &SettingsError) -> Text {
 /// A format string of LinuxCNC that is no frame, or a frame that has none.
 pub fn format(error: &FormatError) -> Text {
     match error {
-        FormatError::Cannot(what) => Text::new("ssi.lc_cannot").with_text("what", phrase(what)),
+        FormatError::Cannot(what) => TEXTS.text("ssi.lc_cannot").with_text("what", phrase(what)),
         FormatError::Layout(error) => layout(error),
         other => refused(phrase(&other.to_string())),
     }
@@ -104,15 +73,15 @@ pub fn format(error: &FormatError) -> Text {
 /// Why a text is no frame.
 pub fn frame_text(error: &FrameTextError) -> Text {
     match error {
-        FrameTextError::Form(text) => Text::new("ssi_trial.form").with("text", text),
+        FrameTextError::Form(text) => TEXTS.text("ssi_trial.form").with("text", text),
         FrameTextError::Bits { text, bits, clocks, .. } => {
-            Text::new("ssi_trial.bits").with("text", text).with("bits", bits).with("clocks", clocks)
+            TEXTS.text("ssi_trial.bits").with("text", text).with("bits", bits).with("clocks", clocks)
         }
     }
 }
 
 fn refused(why: Text) -> Text {
-    Text::new("ssi.refused").with_text("why", why)
+    TEXTS.text("ssi.refused").with_text("why", why)
 }
 
 /// What a family's description calls a setting.
@@ -139,5 +108,5 @@ fn field_name(field: &str) -> Text {
         "frame" => "ssi_field.frame",
         other => return plain(other),
     };
-    Text::new(id)
+    TEXTS.text(id)
 }

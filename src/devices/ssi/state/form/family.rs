@@ -3,6 +3,7 @@
 use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Align, Code, ErrorPlace, Family, Fraction, Frame, Range, Settings};
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::design::Designer;
 
 pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) -> Vec<Group> {
@@ -121,7 +122,7 @@ fn places(designer: &Designer, family: &Family) -> Vec<ErrorPlace> {
 }
 
 fn align_words(align: Align) -> Text {
-    Text::new(match align {
+    TEXTS.text(match align {
         Align::Left => "ssi_form.left",
         Align::Right24 => "ssi_form.right24",
         Align::Right25 => "ssi_form.right25",
@@ -131,7 +132,7 @@ fn align_words(align: Align) -> Text {
 }
 
 fn place_words(place: ErrorPlace) -> Text {
-    Text::new(match place {
+    TEXTS.text(match place {
         ErrorPlace::None => "ssi_form.errors_none",
         ErrorPlace::Fix => "ssi_form.errors_fix",
         ErrorPlace::Following => "ssi_form.errors_following",

@@ -1,8 +1,8 @@
 //! The rows of a frame that belongs to no family, or that its family does not send.
 
 use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
-use crate::app::Text;
 use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::design::{Designer, Edit};
 
 const KINDS: [RangeKind; 4] = [RangeKind::Bits, RangeKind::Steps, RangeKind::RoundAxis, RangeKind::Length];
@@ -33,9 +33,9 @@ fn frame(descriptor: &Descriptor) -> Vec<Row> {
     rows.push(Row::switch(Field::Inverted, "ssi_form.inverted", descriptor.inverted).hinted("ssi_form.inverted_hint"));
     let own = descriptor.parity.map(|parity| parity.even);
     let all = [
-        (None, Text::new("ssi_form.parity_none")),
-        (Some(true), Text::new("ssi_form.parity_even")),
-        (Some(false), Text::new("ssi_form.parity_odd")),
+        (None, TEXTS.text("ssi_form.parity_none")),
+        (Some(true), TEXTS.text("ssi_form.parity_even")),
+        (Some(false), TEXTS.text("ssi_form.parity_odd")),
     ];
     rows.push(Row::choice(Field::Parity, "ssi_form.parity", &all, &own));
     if let Some(parity) = descriptor.parity {
@@ -51,12 +51,12 @@ fn frame(descriptor: &Descriptor) -> Vec<Row> {
 }
 
 fn error(index: usize, bit: &ErrorBit) -> Group {
-    let all = [(Meaning::Invalid, Text::new("ssi_form.invalid")), (Meaning::Warning, Text::new("ssi_form.warning"))];
+    let all = [(Meaning::Invalid, TEXTS.text("ssi_form.invalid")), (Meaning::Warning, TEXTS.text("ssi_form.warning"))];
     let name = super::Entry::Words(bit.name.clone());
     Group {
         title: "ssi_form.error_bit",
         rows: vec![
-            Row { field: Field::ErrorName(index), name: Text::new("ssi_form.error_name"), entry: name, hint: None },
+            Row { field: Field::ErrorName(index), name: TEXTS.text("ssi_form.error_name"), entry: name, hint: None },
             Row::number(Field::ErrorClock(index), "ssi_form.error_clock", bit.clock, ""),
             Row::choice(Field::ErrorMeaning(index), "ssi_form.error_meaning", &all, &bit.meaning),
             Row::switch(Field::ErrorLow(index), "ssi_form.error_low", bit.active_low),

@@ -3,15 +3,16 @@
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Coded, Meaning, Role};
+use crate::devices::ssi::state::TEXTS;
 
 /// What a clock carries, in a sentence; the clock is in it.
 pub fn cell(strip: &Strip, clock: u8) -> Text {
     let index = usize::from(clock).checked_sub(1);
     let cell = index.and_then(|index| strip.cells().get(index));
-    let text = Text::new("ssi.strip_cell").with("clock", clock);
+    let text = TEXTS.text("ssi.strip_cell").with("clock", clock);
     let count = |id, bit: u8, kind: Kind| {
         let count: u8 = strip.fields().iter().filter(|field| field.kind == kind).map(Field::count).sum();
-        Text::new(id).with("bit", bit).with("count", count)
+        TEXTS.text(id).with("bit", bit).with("count", count)
     };
     text.with_text(
         "what",
@@ -21,15 +22,15 @@ pub fn cell(strip: &Strip, clock: u8) -> Text {
             Some(Role::Position(bit)) => count("ssi.strip_position_bit", bit, Kind::Position),
             Some(Role::Error(index)) => error(strip, index),
             Some(Role::Parity) => parity(strip),
-            Some(Role::Again(clock)) => Text::new("ssi.strip_again_bit").with("clock", clock),
-            Some(Role::Zero) | None => Text::new("ssi.strip_zero_bit"),
+            Some(Role::Again(clock)) => TEXTS.text("ssi.strip_again_bit").with("clock", clock),
+            Some(Role::Zero) | None => TEXTS.text("ssi.strip_zero_bit"),
         },
     )
 }
 
 /// What a field is, with its number of bits.
 pub fn field(strip: &Strip, field: &Field) -> Text {
-    let count = |id| Text::new(id).with("count", field.count());
+    let count = |id| TEXTS.text(id).with("count", field.count());
     match field.kind {
         Kind::Before => count("ssi.strip_before"),
         Kind::Between => count("ssi.strip_between"),
@@ -39,15 +40,15 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
         Kind::Turns => count("ssi.strip_turns"),
         Kind::Steps => count("ssi.strip_steps"),
         Kind::Position => count("ssi.strip_position"),
-        Kind::Error(index) => Text::new("ssi.strip_name").with("name", error_name(strip, index)),
-        Kind::Parity => Text::new("ssi.strip_parity"),
+        Kind::Error(index) => TEXTS.text("ssi.strip_name").with("name", error_name(strip, index)),
+        Kind::Parity => TEXTS.text("ssi.strip_parity"),
         Kind::Again => count("ssi.strip_again"),
     }
 }
 
 /// The same below the field itself, where zeros stand is to be seen.
 pub fn name(strip: &Strip, own: &Field) -> Text {
-    if own.is_zeros() { Text::new("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
+    if own.is_zeros() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }
 
 /// The same for narrow places: the short name with its number of bits.
@@ -57,7 +58,7 @@ pub fn short(strip: &Strip, field: &Field) -> Text {
         false if field.is_single() => "ssi.strip_name",
         false => "ssi.strip_short",
     };
-    Text::new(id).with("name", bare(strip, field)).with("count", field.count())
+    TEXTS.text(id).with("name", bare(strip, field)).with("count", field.count())
 }
 
 /// The short name of a field, which exports give it too.
@@ -76,15 +77,15 @@ pub fn bare(strip: &Strip, field: &Field) -> String {
 /// Where a field stands.
 pub fn clocks(field: &Field) -> Text {
     if field.first == field.last {
-        Text::new("ssi.strip_on_clock").with("clock", field.first)
+        TEXTS.text("ssi.strip_on_clock").with("clock", field.first)
     } else {
-        Text::new("ssi.strip_clocks").with("first", field.first).with("last", field.last)
+        TEXTS.text("ssi.strip_clocks").with("first", field.first).with("last", field.last)
     }
 }
 
 /// What a handle is called.
 pub fn handle(strip: &Strip, handle: Handle) -> Text {
-    Text::new(match handle {
+    TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_lead_end",
         Handle::Split => "ssi.strip_split",
         Handle::TurnsEnd => "ssi.strip_turns_end",
@@ -96,7 +97,7 @@ pub fn handle(strip: &Strip, handle: Handle) -> Text {
         Handle::GapEnd => "ssi.strip_gap_end",
         Handle::FrameEnd => "ssi.strip_frame_end",
         Handle::Position => "ssi.strip_whole",
-        Handle::Error(index) => return Text::new("ssi.strip_error_bit").with("name", error_name(strip, index)),
+        Handle::Error(index) => return TEXTS.text("ssi.strip_error_bit").with("name", error_name(strip, index)),
         Handle::Parity => "ssi.strip_parity_bit",
     })
 }
@@ -104,12 +105,12 @@ pub fn handle(strip: &Strip, handle: Handle) -> Text {
 /// Where a handle stands.
 pub fn value(strip: &Strip, handle: Handle) -> Text {
     let clock = strip.clock(handle).unwrap_or(0);
-    let at = |id| Text::new(id).with("clock", clock);
+    let at = |id| TEXTS.text(id).with("clock", clock);
     match handle {
         Handle::Error(index) => at("ssi.strip_bit_at").with_text("what", meaning(strip, index)),
         Handle::Parity => at("ssi.strip_on_clock"),
         Handle::Position => at("ssi.strip_from_clock"),
-        _ if clock == 0 => Text::new("ssi.strip_at_beginning"),
+        _ if clock == 0 => TEXTS.text("ssi.strip_at_beginning"),
         _ => at("ssi.strip_behind_clock"),
     }
 }
@@ -118,15 +119,15 @@ pub fn value(strip: &Strip, handle: Handle) -> Text {
 pub fn reach(strip: &Strip, handle: Handle, following: bool) -> Text {
     let (first, last) = strip.limits(handle, following);
     if first == last {
-        Text::new("ssi.strip_stuck")
+        TEXTS.text("ssi.strip_stuck")
     } else {
-        Text::new("ssi.strip_reach").with("first", first).with("last", last)
+        TEXTS.text("ssi.strip_reach").with("first", first).with("last", last)
     }
 }
 
 /// What moving a handle does.
 pub fn hint(handle: Handle) -> Text {
-    Text::new(match handle {
+    TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_move_lead_end",
         Handle::Split => "ssi.strip_move_split",
         Handle::TurnsEnd => "ssi.strip_move_turns_end",
@@ -147,7 +148,7 @@ fn error_name(strip: &Strip, index: usize) -> String {
 
 fn meaning(strip: &Strip, index: usize) -> Text {
     let bit = strip.layout().descriptor().errors.get(index);
-    Text::new(match bit.map(|bit| (bit.meaning, bit.cleared_by_transfer)) {
+    TEXTS.text(match bit.map(|bit| (bit.meaning, bit.cleared_by_transfer)) {
         Some((Meaning::Warning, _)) => "ssi.strip_means_warning",
         Some((Meaning::Invalid, true)) => "ssi.strip_means_was_invalid",
         Some((Meaning::Invalid, false)) | None => "ssi.strip_means_invalid",
@@ -157,12 +158,12 @@ fn meaning(strip: &Strip, index: usize) -> Text {
 fn error(strip: &Strip, index: usize) -> Text {
     let low = strip.layout().descriptor().errors.get(index).is_some_and(|bit| bit.active_low);
     let id = if low { "ssi.strip_error_low" } else { "ssi.strip_error" };
-    Text::new(id).with("name", error_name(strip, index)).with_text("what", meaning(strip, index))
+    TEXTS.text(id).with("name", error_name(strip, index)).with_text("what", meaning(strip, index))
 }
 
 fn parity(strip: &Strip) -> Text {
     let parity = strip.layout().descriptor().parity;
     let before = parity.map_or(0, |parity| parity.clock.saturating_sub(1));
     let even = parity.is_some_and(|parity| parity.even);
-    Text::new(if even { "ssi.strip_even" } else { "ssi.strip_odd" }).with("clock", before)
+    TEXTS.text(if even { "ssi.strip_even" } else { "ssi.strip_odd" }).with("clock", before)
 }

@@ -13,6 +13,8 @@ mod place;
 
 use std::sync::Arc;
 
+use crate::devices::ssi::state::TEXTS;
+
 use egui::accesskit::Role;
 use egui::{Color32, FontId, Galley, Painter, Rangef, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};
 
@@ -66,7 +68,7 @@ fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
         ui.painter().layout_no_wrap(skin.words(text), FontId::proportional(skin.sizes.caption), colour)
     };
     let (text, muted) = (Color32::from(skin.palette.text), Color32::from(skin.palette.muted));
-    let lines = ["ssi.timing_clock", "ssi.timing_data"].map(|id| caption(&Text::new(id), muted));
+    let lines = ["ssi.timing_clock", "ssi.timing_data"].map(|id| caption(&TEXTS.text(id), muted));
     let width = ui.available_width();
     let gutter = lines.iter().map(|line| line.size().x).fold(0.0, f32::max) + skin.space.between;
     let room = Rangef::new(gutter + BEFORE, (width - skin.space.inside).max(gutter + 2.0 * BEFORE));

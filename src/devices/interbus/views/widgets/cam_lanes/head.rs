@@ -5,8 +5,9 @@ use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, StrokeKind, Vec2, WidgetInfo, pos2};
 
 use super::Lanes;
-use crate::app::Text;
+use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::cams::{Lamp, Lane, words};
+use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, ink};
 use crate::ui::widgets::focus_ring;
 use crate::ui::{controls, icons};
@@ -37,7 +38,7 @@ impl Lanes<'_> {
         let square = Rect::from_center_size(pos2(head.left() + size / 2.0 + 1.0, head.center().y), Vec2::splat(size));
         let sense = if can { Sense::click() } else { Sense::hover() };
         let response = ui.interact(square, self.base.with("switch").with(lane.cam), sense);
-        let label = Text::new("cams.works_of").with_text("cam", words::bare(lane.cam));
+        let label = TEXTS.text("cams.works_of").with_text("cam", words::bare(lane.cam));
         let label = self.skin.words(&label);
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can, lane.on, label.clone()));
         let painter = ui.painter();
@@ -104,7 +105,7 @@ impl Lanes<'_> {
             ui.label(skin.words(&words::cam(lane)));
             ui.label(skin.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
             if lane.edited {
-                ui.label(egui::RichText::new(skin.say("cams.edited")).color(palette.staged));
+                ui.label(egui::RichText::new(say(skin, "cams.edited")).color(palette.staged));
             }
             for trouble in words::troubles(self.shown, lane) {
                 ui.label(egui::RichText::new(skin.words(&trouble)).color(palette.bad));
@@ -117,7 +118,7 @@ impl Lanes<'_> {
         let (skin, palette) = (self.skin, self.skin.palette);
         let rect = Rect::from_min_max(pos2(head.right() - LAMP, head.top()), head.max);
         let response = self.ui.interact(rect, self.base.with("lamp").with(lane.cam), Sense::hover());
-        let label = skin.words(&Text::new("cams.output_of").with("cam", lane.cam.get()));
+        let label = skin.words(&TEXTS.text("cams.output_of").with("cam", lane.cam.get()));
         let value = skin.words(&words::lamp(lamp));
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Image, true, label.clone());

@@ -8,8 +8,7 @@ use super::rows::Rows;
 use super::{Drag, View, tells};
 use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::strip::{self, Field, Handle, Kind};
-use crate::ui::widgets::BitCell;
-use crate::ui::widgets::{focus_ring, series};
+use crate::ui::widgets::{BitCell, focus_ring, series};
 use crate::ui::{Skin, controls};
 
 /// The colour of a field; none for zeros.
