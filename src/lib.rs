@@ -17,8 +17,7 @@ pub mod ui;
 pub mod app;
 pub mod cli;
 
-// a device's session, and what procedures share
-pub mod device;
+// a device's session
 pub mod worker;
 
 // wires, virtual devices, files

@@ -1,7 +1,7 @@
 //! A device check in words, for every kind of device.
 
 use super::Text;
-use crate::device::check::{Line, Verdict};
+use crate::analysis::check::{Line, Verdict};
 
 /// One line of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,10 +4,10 @@ use serde_json::{Value as Json, json};
 
 use super::output::{Lines, Output};
 use super::{Done, Failure, Result};
+use crate::analysis::check::Verdict;
 use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
-use crate::device::LineQuality;
-use crate::device::check::Verdict;
+use crate::link::LineQuality;
 
 /// Prints the lines; one that is bad makes the command fail.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::device::Replies;
+use crate::link::Replies;
 
 /// Before that nobody wonders.
 const WONDERS: Duration = Duration::from_secs(3);

@@ -1,5 +1,5 @@
 //! What is saved, what differs, and what a write would do: profiles, differences and plans. Pure; files are opened by
-//! `store`, devices are read and written by `device`.
+//! `store`, devices are read and written by their procedures.
 
 mod body;
 mod cause;
@@ -19,6 +19,7 @@ pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod unique_names;
+mod written;
 
 pub use body::{Body, Formats, Profile, ProfileBody, ProfileFormat};
 pub use cause::Cause;
@@ -31,3 +32,4 @@ pub use restore::{Restore, RestoreOptions};
 pub use rewrite::{Changed, divergence};
 pub use ron_text::{Entries, Unknown, Writer};
 pub use source::{Carried, Change, Step};
+pub use written::Written;

@@ -1,7 +1,7 @@
 //! The virtual devices: the other end of a wire, byte for byte or as voltages, with its faults. Deterministic: the same
 //! seed and the same calls at the same moments give the same bytes.
 //!
-//! Never in here: a clock, a thread, a socket or a port (time is handed in), nor anything of `device/` or `link/`; only
+//! Never in here: a clock, a thread, a socket or a port (time is handed in), nor anything of procedures or `link/`; only
 //! the tables of `protocol/` are shared with the host's side.
 
 mod at_adapter;

@@ -4,9 +4,9 @@ use egui::{RichText, Ui};
 
 use super::controls::paragraph;
 use super::{Skin, icons};
+use crate::analysis::check::Verdict;
 use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
-use crate::device::check::Verdict;
 
 /// Draws the lines of the last check, or what one would do.
 pub(crate) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {

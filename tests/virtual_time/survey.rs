@@ -1,6 +1,6 @@
 //! Everything there is to see of an encoder, in one job; and access codes that the user names later.
 
-use encoder_studio::device::check::Verdict;
+use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::check::{Finding, Line, Step};
 use encoder_studio::devices::hiperface::procedures::{Error, Sample, Survey};

@@ -4,8 +4,8 @@ use crate::biss_support::command;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
+use encoder_studio::analysis::check::Verdict;
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab};
-use encoder_studio::device::check::Verdict;
 use encoder_studio::devices::biss::jobs::Change;
 use encoder_studio::devices::biss::procedures::procedure::{Answer, Outcome, Task};
 use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, Op, PresetParts};

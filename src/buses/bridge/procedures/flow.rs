@@ -7,7 +7,7 @@ use super::drift::Drift;
 use super::{Adapter, AdapterError, Failure, other};
 use crate::analysis::Time;
 use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Reply, Request};
-use crate::device::line::LineError;
+use crate::link::line::LineError;
 use crate::units::Moment;
 
 /// What an adapter is to send by itself. What it clocks or samples how was said before.

@@ -15,7 +15,7 @@ use crate::bits::MaskedBytes;
 use crate::buses::bridge::protocol::{
     BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
-use crate::device::line::{Line, LineError, LineState};
+use crate::link::line::{Line, LineError, LineState};
 use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;

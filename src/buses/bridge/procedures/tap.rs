@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::flow::{Flow, Portion, Streamed};
 use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure, other};
 use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request};
-use crate::device::line::{Line, LineError, LineState};
+use crate::link::line::{Line, LineError, LineState};
 use crate::link::{Ctx, LinkError};
 use crate::units::{Moment, SupplyVoltage};
 

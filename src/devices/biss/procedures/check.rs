@@ -3,12 +3,12 @@
 
 use super::survey::{Bits, Status, survey};
 use super::{Error, Identity, Master, PositionReading, Survey, Way};
-use crate::device::check;
+use crate::analysis::check;
 use crate::devices::biss::protocol::{
     Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, Mismatch, Name, RegisterAddress, WiegandResult,
 };
 
-pub use crate::device::check::{Verdict, Wear};
+pub use crate::analysis::check::{Verdict, Wear};
 
 /// One line of the check.
 pub type Line = check::Line<Step, Finding>;

@@ -4,9 +4,9 @@ use std::fmt;
 
 use crate::buses::bridge::procedures::{AdapterError, Failure};
 use crate::buses::ubicom::protocol::ReplyError;
-use crate::device::line::LineError;
 use crate::devices::biss::protocol::{DeviceMode, FrameError, Identity, RegisterAddress};
 use crate::link::LinkError;
+use crate::link::line::LineError;
 
 /// What was asked of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

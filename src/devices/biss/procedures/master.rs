@@ -17,9 +17,9 @@ use super::error::{Asked, Damage};
 use super::position::PositionReading;
 use super::{Error, Station, Way};
 use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
-use crate::device::line::{Line, TRIES};
 use crate::devices::biss::protocol::{Description, RegisterAddress};
 use crate::link::Ctx;
+use crate::link::line::{Line, TRIES};
 use crate::units::Moment;
 
 /// So often a register is silent beside one that answers before it counts as missing: a bad line loses single answers.

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! read, write, position ── master: what is asked again ──┬─▶ master/ubicom: one exchange over the configuration pin
-//!                                                        └─▶ master/bus: one over an adapter (device/bridge)
+//!                                                        └─▶ master/bus: one over an adapter (buses/bridge)
 //! ```
 
 pub mod check;
@@ -22,7 +22,7 @@ mod survey;
 mod widths;
 pub mod write;
 
-pub use crate::device::line::Echo;
+pub use crate::link::line::Echo;
 pub use error::{Asked, Damage, Error};
 pub use flags::read_position;
 pub use frames::{Frame, FrameRun, NoReading, frames};

@@ -11,8 +11,8 @@ use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::flow::Flow;
 use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
 use crate::buses::ubicom::protocol::{FORMAT, REPLY_TIME_OUT};
-use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Layout, RegisterAddress};
+use crate::link::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 

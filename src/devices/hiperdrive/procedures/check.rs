@@ -7,14 +7,14 @@ use super::identify::{drive_status, identify, of, own};
 use super::limits::ends_by_itself;
 use super::network::network;
 use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
+use crate::analysis::check;
 use crate::buses::ethernet_ip::protocol::AddressSource;
-use crate::device::check;
 use crate::devices::hiperdrive::protocol::{
     AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, Reach, State, StatusBit, Topology, Travel,
     Variant,
 };
 
-pub use crate::device::check::Verdict;
+pub use crate::analysis::check::Verdict;
 
 /// One line of the check.
 pub type Line = check::Line<Step, Finding>;

@@ -6,9 +6,9 @@ use std::time::Duration;
 use crate::buses::ethernet_ip::protocol::{
     EncapsulationStatus, ExtendedStatusRow, GeneralStatus, PacketError, Service, extended_row,
 };
-use crate::device::line::LineError;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, Topology, ValueError};
 use crate::link::LinkError;
+use crate::link::line::LineError;
 
 /// What a device was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

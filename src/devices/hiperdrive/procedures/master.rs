@@ -18,11 +18,11 @@ use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
     Request,
 };
-use crate::device::line::{Line, TRIES};
 use crate::devices::hiperdrive::protocol::{
     Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError,
 };
 use crate::link::Ctx;
+use crate::link::line::{Line, TRIES};
 use crate::units::Moment;
 
 /// Behind bytes that are no frame: silence for so long, and what comes next is one again.

@@ -7,9 +7,9 @@ use std::hash::{BuildHasher, Hasher};
 use std::time::Duration;
 
 use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
-use crate::device::Replies;
-use crate::device::line::LineState;
 use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
+use crate::link::Replies;
+use crate::link::line::LineState;
 use crate::link::{Query, UrlError};
 use crate::units::Moment;
 

@@ -5,7 +5,7 @@
 
 use std::time::Duration;
 
-pub use crate::device::written::Written;
+pub use crate::profile::Written;
 
 use super::error::Asked;
 use super::identify::{drive_status, drive_text, of, own, topology};

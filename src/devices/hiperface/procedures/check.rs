@@ -7,10 +7,10 @@ use super::{
 };
 use crate::devices::hiperface::protocol::{DataFieldStatus, EncoderTypes, Position, StatusCode};
 
-pub use crate::device::check::Verdict;
+pub use crate::analysis::check::Verdict;
 
 /// One line of the check.
-pub type Line = crate::device::check::Line<Step, Finding>;
+pub type Line = crate::analysis::check::Line<Step, Finding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

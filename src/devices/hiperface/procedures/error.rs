@@ -1,8 +1,8 @@
 //! What can go wrong with an encoder, with the facts a person needs.
 
-use crate::device::line::LineError;
 use crate::devices::hiperface::protocol::{CodeNumber, Command, ReplyError, StatusCode};
 use crate::link::LinkError;
+use crate::link::line::LineError;
 
 /// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

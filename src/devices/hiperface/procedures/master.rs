@@ -10,9 +10,9 @@ use std::time::Duration;
 
 use super::error::Damage;
 use super::{Error, Station};
-use crate::device::line::{Line, TRIES};
 use crate::devices::hiperface::protocol::{Answer, Command, Reply, Request};
 use crate::link::Ctx;
+use crate::link::line::{Line, TRIES};
 use crate::units::Moment;
 pub(super) use exchange::{Answered, Trouble};
 

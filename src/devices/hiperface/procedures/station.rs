@@ -3,10 +3,10 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::device::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::devices::hiperface::protocol::{
     AccessCode, BAUDS, BROADCAST, CodeNumber, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
 };
+use crate::link::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::units::{Baud, CharacterFormat, Parity};
 

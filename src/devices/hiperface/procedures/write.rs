@@ -3,7 +3,7 @@
 //!
 //! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
 
-pub use crate::device::written::Written;
+pub use crate::profile::Written;
 
 use super::{
     Error, Identity, Master, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status,

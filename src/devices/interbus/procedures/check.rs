@@ -6,10 +6,10 @@ use std::time::Duration;
 use super::error::Implausible;
 use super::identify::read_survey;
 use super::{Error, Identity, Master, Survey};
-use crate::device::check;
+use crate::analysis::check;
 use crate::devices::interbus::protocol::{ErrorWord, ReadOut, Reply, StartupMode};
 
-pub use crate::device::check::{Verdict, Wear};
+pub use crate::analysis::check::{Verdict, Wear};
 
 /// One line of the check.
 pub type Line = check::Line<Step, Finding>;

@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::Standing;
-use crate::device::line::LineError;
 use crate::devices::interbus::protocol::{Command, ErrorWord, GearError, Refused, Reply, StartupMode};
 use crate::link::LinkError;
+use crate::link::line::LineError;
 
 /// What was asked of a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,9 +13,9 @@ use super::error::{Asked, Damage, Exception};
 use super::station::Station;
 use super::{Error, Known};
 use crate::bits::MaskedBytes;
-use crate::device::line::{Line, LineState};
 use crate::devices::interbus::protocol::WordOrder;
 use crate::link::Ctx;
+use crate::link::line::{Line, LineState};
 use crate::units::Moment;
 
 /// Tries before a gateway counts as gone, where it does not answer; each may take its whole time.

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::device::line::LineState;
 use crate::devices::interbus::protocol::{Command, Gear, StartupMode, WindowShift, WordOrder};
+use crate::link::line::LineState;
 use crate::link::{Query, UrlError};
 
 /// Link parameters that describe the gateway and the encoder's place behind it.

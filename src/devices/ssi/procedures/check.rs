@@ -4,10 +4,10 @@
 use std::collections::BTreeSet;
 
 use super::{Error, Identity, Master};
-use crate::device::check;
+use crate::analysis::check;
 use crate::devices::ssi::protocol::{Finding as Said, Flags, Layout, Meaning};
 
-pub use crate::device::check::Verdict;
+pub use crate::analysis::check::Verdict;
 
 /// Words that are taken.
 pub const WORDS: u64 = 50;

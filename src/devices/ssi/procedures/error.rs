@@ -1,8 +1,8 @@
 //! What can go wrong with the adapter before an encoder. Of the encoder itself only its words tell.
 
 use crate::buses::bridge::procedures::{AdapterError, Failure};
-use crate::device::line::LineError;
 use crate::link::LinkError;
+use crate::link::line::LineError;
 
 /// Why no words come.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

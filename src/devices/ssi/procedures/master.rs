@@ -11,8 +11,8 @@ use super::{Asking, Error, Station, Words};
 use crate::buses::bridge::procedures::flow::{Flow, Streamed};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
 use crate::buses::bridge::protocol::{Capabilities, Data, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags};
-use crate::device::line::Line;
 use crate::link::Ctx;
+use crate::link::line::Line;
 use crate::units::Moment;
 
 /// A wish to end is heard so often.

@@ -7,7 +7,7 @@ use crate::analysis::Time;
 use crate::buses::bridge::procedures::flow::Flow;
 use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
 use crate::buses::bridge::protocol::Hello;
-use crate::device::line::{LineState, MARGIN_ALLOWED, read_margin};
+use crate::link::line::{LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::units::SupplyVoltage;
 

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::app::{Action, explain};
-use crate::device::Echo;
+use crate::link::Echo;
 use crate::ui::controls::{LABELS, choice, entry, icon_button, name, paragraph, text_entry};
 use crate::ui::{Skin, icons};
 use crate::units::Parity;

@@ -6,11 +6,11 @@ use std::time::Duration;
 use super::{Attempt, Master, Taken, Trouble};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
 use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
-use crate::device::line::LineError;
 use crate::devices::biss::procedures::error::{Asked, Damage, Error};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::station::Bus;
 use crate::devices::biss::protocol::{FrameError, RegisterAddress};
+use crate::link::line::LineError;
 use crate::units::Moment;
 
 /// The encoder's number on a line with no other.

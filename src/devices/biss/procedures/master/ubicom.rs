@@ -9,11 +9,11 @@ use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };
-use crate::device::line::MOST_KEPT;
 use crate::devices::biss::procedures::error::Damage;
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::{Echo, Error};
 use crate::devices::biss::protocol::RegisterAddress;
+use crate::link::line::MOST_KEPT;
 use crate::units::Moment;
 
 /// Bytes of the longest frame: the reply to 03h.

@@ -2,209 +2,32 @@
 //! how often and how long one asks again. What the frames say is the business of each device's own folder; here no byte
 //! of them is looked at, but for an echo.
 
-use std::collections::VecDeque;
+mod echo;
+mod quality;
+mod state;
+
 use std::time::Duration;
 
+pub use echo::Echo;
+pub use quality::LineQuality;
+pub use state::LineState;
+pub(crate) use state::{MARGIN_ALLOWED, read_margin};
+
+use super::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::bits::MaskedBytes;
-use crate::link::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::units::Moment;
+use state::LONGEST_MARGIN;
 
 /// Tries before a reading command fails.
 pub(crate) const TRIES: u32 = 5;
 /// No new try when nothing sensible came back for so long: a command has to end within ten seconds.
 const PATIENCE: Duration = Duration::from_secs(8);
-/// No wire is slower than this.
-const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 /// A wish to end is heard at least so often.
 const SLICE: Duration = Duration::from_millis(50);
 /// A line on which bytes keep coming for so long has no silence.
 const NEVER_SILENT: Duration = Duration::from_secs(2);
 /// Bytes that are kept at most of what is no frame: a socket brings more noise than anybody can read.
 pub(crate) const MOST_KEPT: usize = 4096;
-
-/// Whether the adapter gives our own bytes back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Echo {
-    /// Not known yet: learned with the first exchange.
-    Unknown,
-    /// It does.
-    On,
-    /// It does not.
-    Off,
-}
-
-impl Echo {
-    /// The values of `echo=`.
-    pub(crate) const ALLOWED: &'static str = "auto, on or off";
-
-    /// A value of `echo=`.
-    pub(crate) fn read(text: &str) -> Option<Self> {
-        match text {
-            "auto" => Some(Echo::Unknown),
-            "on" => Some(Echo::On),
-            "off" => Some(Echo::Off),
-            _ => None,
-        }
-    }
-
-    /// What has come behind the echo of `sent`; `None` while it may still be the echo.
-    pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
-        match self {
-            Echo::Off => Some(line),
-            Echo::On => line.get(sent.len()..),
-            Echo::Unknown => match line.strip_prefix(sent) {
-                Some(reply) => Some(reply),
-                None if sent.starts_with(line) => None,
-                None => Some(line),
-            },
-        }
-    }
-
-    /// What the first exchange with a right answer has taught.
-    pub(crate) fn learn(&mut self, echo_heard: bool) {
-        if *self == Echo::Unknown {
-            *self = if echo_heard { Echo::On } else { Echo::Off };
-        }
-    }
-}
-
-/// The values of `margin=`.
-pub(crate) const MARGIN_ALLOWED: &str = "milliseconds from 0 to 2000";
-
-/// A value of `margin=`.
-pub(crate) fn read_margin(text: &str) -> Option<Duration> {
-    text.parse().ok().filter(|ms| *ms <= 2000).map(Duration::from_millis)
-}
-
-/// How good a line is, counted since the session began.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct LineQuality {
-    /// Requests that were sent, repeated ones included.
-    pub requests: u64,
-    /// Replies that could be understood.
-    pub replies: u64,
-    /// Requests that were sent again.
-    pub retries: u64,
-    /// Replies that were damaged, and requests that the device says were.
-    pub damaged: u64,
-    /// Requests to which nothing came back.
-    pub silent: u64,
-    /// Replies that came after their time.
-    pub late: u64,
-    /// How long the newest replies took, from the first byte of the request to that of the reply.
-    answers: VecDeque<Duration>,
-}
-
-impl LineQuality {
-    /// Answer times that are kept.
-    const ANSWERS: usize = 1000;
-
-    /// Something had to be asked again, or came too late.
-    pub fn is_troubled(&self) -> bool {
-        self.troubles() != [0; 4]
-    }
-
-    /// What changes when something goes wrong.
-    pub fn troubles(&self) -> [u64; 4] {
-        [self.retries, self.damaged, self.silent, self.late]
-    }
-
-    /// The time within which `percent` of the newest replies came; `None` where there were none.
-    pub fn answered_within(&self, percent: usize) -> Option<Duration> {
-        let mut times: Vec<Duration> = self.answers.iter().copied().collect();
-        times.sort_unstable();
-        let at = (times.len() * percent).div_ceil(100).saturating_sub(1);
-        times.get(at).copied()
-    }
-
-    fn answered_after(&mut self, time: Duration) {
-        if self.answers.len() == Self::ANSWERS {
-            self.answers.pop_front();
-        }
-        self.answers.push_back(time);
-    }
-}
-
-/// What is known about a line, from one job to the next.
-#[derive(Clone, Debug)]
-pub struct LineState {
-    /// How much longer than the protocol's worst case a reply may take: USB adapters and device servers deliver late.
-    pub margin: Duration,
-    /// Whether the adapter echoes.
-    pub echo: Echo,
-    /// Exchanges that failed and had to be repeated or given up, since the session began.
-    pub damaged: u64,
-    /// How good it is.
-    pub quality: LineQuality,
-    /// No request before this moment.
-    pub(crate) quiet_until: Moment,
-    /// Since when nothing sensible came back.
-    troubled_since: Option<Moment>,
-    /// When the first request was sent that has no reply yet.
-    outstanding_since: Option<Moment>,
-    /// When the last request was sent.
-    last_sent: Moment,
-}
-
-impl LineState {
-    /// A line that nobody has used.
-    pub(crate) fn new(margin: Duration) -> Self {
-        LineState {
-            margin,
-            echo: Echo::Unknown,
-            damaged: 0,
-            quality: LineQuality::default(),
-            quiet_until: Moment::START,
-            troubled_since: None,
-            outstanding_since: None,
-            last_sent: Moment::START,
-        }
-    }
-
-    /// The last exchange failed.
-    pub fn is_troubled(&self) -> bool {
-        self.troubled_since.is_some()
-    }
-
-    /// A job begins: it has its patience before it.
-    pub(crate) fn begin_job(&mut self) {
-        self.troubled_since = None;
-        self.outstanding_since = None;
-    }
-
-    /// A request leaves now.
-    pub(crate) fn sent(&mut self, at: Moment) {
-        self.outstanding_since.get_or_insert(at);
-        self.last_sent = at;
-        self.quality.requests += 1;
-    }
-
-    /// A reply that can be understood has come.
-    pub(crate) fn answered(&mut self) {
-        self.outstanding_since = None;
-        self.quality.replies += 1;
-    }
-
-    /// When that reply began.
-    pub(crate) fn answer_began(&mut self, at: Moment) {
-        self.quality.answered_after(at.since(self.last_sent));
-    }
-
-    /// What came makes sense: patience begins anew.
-    pub(crate) fn recovered(&mut self) {
-        self.troubled_since = None;
-    }
-
-    /// From now on replies may come that much later, and half as much again.
-    fn allow_for(&mut self, lateness: Duration) {
-        let margin = (self.margin + lateness).saturating_mul(3) / 2;
-        self.margin = margin.min(LONGEST_MARGIN).max(self.margin);
-        tracing::warn!(
-            "replies come later than expected: waiting {} ms longer; margin= in the link says so beforehand",
-            self.margin.as_millis()
-        );
-    }
-}
 
 /// Why something on a line ends early.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,47 @@
+//! The echo of a line on which an adapter gives back what the host sends.
+
+/// Whether the adapter gives our own bytes back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Echo {
+    /// Not known yet: learned with the first exchange.
+    Unknown,
+    /// It does.
+    On,
+    /// It does not.
+    Off,
+}
+
+impl Echo {
+    /// The values of `echo=`.
+    pub(crate) const ALLOWED: &'static str = "auto, on or off";
+
+    /// A value of `echo=`.
+    pub(crate) fn read(text: &str) -> Option<Self> {
+        match text {
+            "auto" => Some(Echo::Unknown),
+            "on" => Some(Echo::On),
+            "off" => Some(Echo::Off),
+            _ => None,
+        }
+    }
+
+    /// What has come behind the echo of `sent`; `None` while it may still be the echo.
+    pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
+        match self {
+            Echo::Off => Some(line),
+            Echo::On => line.get(sent.len()..),
+            Echo::Unknown => match line.strip_prefix(sent) {
+                Some(reply) => Some(reply),
+                None if sent.starts_with(line) => None,
+                None => Some(line),
+            },
+        }
+    }
+
+    /// What the first exchange with a right answer has taught.
+    pub(crate) fn learn(&mut self, echo_heard: bool) {
+        if *self == Echo::Unknown {
+            *self = if echo_heard { Echo::On } else { Echo::Off };
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! How good a line is: counts, and how long replies take.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// How good a line is, counted since the session began.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LineQuality {
+    /// Requests that were sent, repeated ones included.
+    pub requests: u64,
+    /// Replies that could be understood.
+    pub replies: u64,
+    /// Requests that were sent again.
+    pub retries: u64,
+    /// Replies that were damaged, and requests that the device says were.
+    pub damaged: u64,
+    /// Requests to which nothing came back.
+    pub silent: u64,
+    /// Replies that came after their time.
+    pub late: u64,
+    /// How long the newest replies took, from the first byte of the request to that of the reply.
+    answers: VecDeque<Duration>,
+}
+
+impl LineQuality {
+    /// Answer times that are kept.
+    const ANSWERS: usize = 1000;
+
+    /// Something had to be asked again, or came too late.
+    pub fn is_troubled(&self) -> bool {
+        self.troubles() != [0; 4]
+    }
+
+    /// What changes when something goes wrong.
+    pub fn troubles(&self) -> [u64; 4] {
+        [self.retries, self.damaged, self.silent, self.late]
+    }
+
+    /// The time within which `percent` of the newest replies came; `None` where there were none.
+    pub fn answered_within(&self, percent: usize) -> Option<Duration> {
+        let mut times: Vec<Duration> = self.answers.iter().copied().collect();
+        times.sort_unstable();
+        let at = (times.len() * percent).div_ceil(100).saturating_sub(1);
+        times.get(at).copied()
+    }
+
+    pub(super) fn answered_after(&mut self, time: Duration) {
+        if self.answers.len() == Self::ANSWERS {
+            self.answers.pop_front();
+        }
+        self.answers.push_back(time);
+    }
+}
