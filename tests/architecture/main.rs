@@ -59,6 +59,8 @@ fn sources() -> Vec<Source> {
             let inside = file.strip_prefix(&root).unwrap().to_str().unwrap();
             let (path, modules) = (format!("src/{inside}"), modules_of(inside));
             let place = Place::of(&modules).unwrap_or_else(|| panic!("{path} has no place: see ARCHITECTURE.md"));
+            let is_loose = matches!(place.owner, Owner::Device(_)) && place.layer == "kinds" && modules.len() > 2;
+            assert!(!is_loose, "{path} stands in no module of its device: see ARCHITECTURE.md");
             Source { path, modules, place, text: fs::read_to_string(&file).unwrap() }
         })
         .collect()

@@ -1,10 +1,6 @@
-//! Whose a module is, and how high it stands: the same for `src/<layer>/<device>` as for `src/devices/<device>/<module>`,
-//! so that no rule lapses while the one becomes the other.
+//! Whose a module is, and how high it stands: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
 
-const DEVICES: [&str; 5] = ["hiperface", "biss", "ssi", "interbus", "hiperdrive"];
-const BUSES: [&str; 3] = ["ubicom", "bridge", "ethernet_ip"];
-
-/// Layers and their floors. A device and a bus have the layers of the core, under names of their own.
+/// Layers and their floors.
 const LAYERS: [(&str, u8); 16] = [
     ("units", 1),
     ("bits", 1),
@@ -24,14 +20,19 @@ const LAYERS: [(&str, u8); 16] = [
     ("kinds", 6),
 ];
 
-/// Folders that are layers under another name: what a device calls them, and what the folder is called now.
-const NAMES: [(&str, &str); 6] = [
+/// Layers that the core does not have: it knows no bytes of a device, and nothing that is done with one.
+const NEVER_OF_THE_CORE: [&str; 2] = ["protocol", "procedures"];
+
+/// The modules of a device, a bus and Signals, and the layers that they are.
+const MODULES: [(&str, &str); 8] = [
+    ("protocol", "protocol"),
+    ("profile", "profile"),
+    ("sim", "sim"),
+    ("procedures", "procedures"),
     ("jobs", "worker"),
     ("state", "app"),
     ("views", "ui"),
     ("commands", "cli"),
-    ("device", "procedures"),
-    ("signal", "analysis"),
 ];
 
 /// Whose a module is.
@@ -60,13 +61,14 @@ impl Place {
             ["devices" | "buses"] => place(Owner::Core, "lib"),
             ["signals"] => place(Owner::Signals, "lib"),
             ["devices", name] => place(Owner::Device((*name).to_owned()), "kinds"),
-            ["devices", name, module, ..] => place(Owner::Device((*name).to_owned()), layer(module).unwrap_or("kinds")),
+            // What is no module of a device is a type that `mod.rs` hands on.
+            ["devices", name, module, ..] => {
+                place(Owner::Device((*name).to_owned()), layer_of_module(module).unwrap_or("kinds"))
+            }
             ["buses", name] => place(Owner::Bus((*name).to_owned()), "lib"),
-            ["buses", name, module, ..] => place(Owner::Bus((*name).to_owned()), layer(module)?),
-            ["signals", module, ..] => place(Owner::Signals, layer(module)?),
-            ["app", "explain", name, ..] if DEVICES.contains(name) => place(Owner::Device((*name).to_owned()), "app"),
-            [first, second, ..] => place(owner_of(second), layer(first)?),
-            [first] => place(Owner::Core, layer(first)?),
+            ["buses", name, module, ..] => place(Owner::Bus((*name).to_owned()), layer_of_module(module)?),
+            ["signals", module, ..] => place(Owner::Signals, layer_of_module(module)?),
+            [first, ..] => place(Owner::Core, layer_of_the_core(first)?),
         }
     }
 
@@ -75,19 +77,13 @@ impl Place {
     }
 }
 
-/// Of a folder within a layer.
-fn owner_of(name: &str) -> Owner {
-    match name {
-        _ if DEVICES.contains(&name) => Owner::Device(name.to_owned()),
-        _ if BUSES.contains(&name) => Owner::Bus(name.to_owned()),
-        "signals" => Owner::Signals,
-        _ => Owner::Core,
-    }
+fn layer_of_the_core(name: &str) -> Option<&'static str> {
+    let layer = LAYERS.iter().map(|(layer, _)| *layer).find(|layer| *layer == name)?;
+    (!NEVER_OF_THE_CORE.contains(&layer)).then_some(layer)
 }
 
-fn layer(name: &str) -> Option<&'static str> {
-    let name = NAMES.iter().find(|(own, _)| *own == name).map_or(name, |(_, layer)| layer);
-    LAYERS.iter().map(|(layer, _)| *layer).find(|layer| *layer == name)
+fn layer_of_module(name: &str) -> Option<&'static str> {
+    MODULES.iter().find(|(module, _)| *module == name).map(|(_, layer)| *layer)
 }
 
 /// The modules of a file's path under `src`: `app/hiperface/mod.rs` is `app`, `hiperface`.
@@ -100,26 +96,36 @@ pub(crate) fn modules_of(path: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_module_is_the_same_before_and_after_it_is_moved() {
+fn a_module_has_one_owner_and_one_layer() {
+    let place = |path| Place::of(&modules_of(path));
+    let device = |name: &str, layer| Some(Place { owner: Owner::Device(name.to_owned()), layer });
+    let bus = |name: &str, layer| Some(Place { owner: Owner::Bus(name.to_owned()), layer });
+    let core = |layer| Some(Place { owner: Owner::Core, layer });
     let cases = [
-        ("protocol/hiperface/crc.rs", "devices/hiperface/protocol/crc.rs", "protocol"),
-        ("profile/biss/mod.rs", "devices/biss/profile/mod.rs", "profile"),
-        ("sim/ssi/encoder.rs", "devices/ssi/sim/encoder.rs", "sim"),
-        ("device/interbus/master.rs", "devices/interbus/procedures/master.rs", "procedures"),
-        ("worker/hiperdrive/motion.rs", "devices/hiperdrive/jobs/motion.rs", "worker"),
-        ("app/biss/memory.rs", "devices/biss/state/memory.rs", "app"),
-        ("app/explain/biss/write.rs", "devices/biss/state/explain/write.rs", "app"),
-        ("ui/ssi/frame.rs", "devices/ssi/views/frame.rs", "ui"),
-        ("cli/hiperface/act.rs", "devices/hiperface/commands/act.rs", "cli"),
-        ("protocol/ubicom/message.rs", "buses/ubicom/protocol/message.rs", "protocol"),
-        ("cli/ethernet_ip/cip.rs", "buses/ethernet_ip/commands/cip.rs", "cli"),
-        ("app/signals/live.rs", "signals/state/live.rs", "app"),
+        ("devices/hiperface/protocol/crc.rs", device("hiperface", "protocol")),
+        ("devices/biss/profile/mod.rs", device("biss", "profile")),
+        ("devices/ssi/sim/encoder.rs", device("ssi", "sim")),
+        ("devices/interbus/procedures/master.rs", device("interbus", "procedures")),
+        ("devices/hiperdrive/jobs/motion.rs", device("hiperdrive", "worker")),
+        ("devices/biss/state/explain/write.rs", device("biss", "app")),
+        ("devices/ssi/views/frame.rs", device("ssi", "ui")),
+        ("devices/hiperface/commands/act.rs", device("hiperface", "cli")),
+        ("devices/hiperface/mod.rs", device("hiperface", "kinds")),
+        ("buses/ubicom/protocol/message.rs", bus("ubicom", "protocol")),
+        ("buses/ethernet_ip/commands/cip.rs", bus("ethernet_ip", "cli")),
+        ("signals/state/live.rs", Some(Place { owner: Owner::Signals, layer: "app" })),
+        ("worker/commit.rs", core("worker")),
+        ("link/line/echo.rs", core("link")),
+        ("analysis/check.rs", core("analysis")),
+        // Protocols and procedures are a device's or a bus's, and a folder without a layer has no place.
+        ("protocol/hiperface/crc.rs", None),
+        ("procedures/echo.rs", None),
+        ("device/line.rs", None),
+        ("nowhere/a.rs", None),
+        ("buses/bridge/worker/a.rs", None),
+        ("signals/app/a.rs", None),
     ];
-    for (before, after, layer) in cases {
-        let places = [before, after].map(|path| Place::of(&modules_of(path)).unwrap());
-        assert_eq!(places[0], places[1], "{before}");
-        assert!(places[0].owner != Owner::Core && places[0].layer == layer, "{before}: {places:?}");
+    for (path, expected) in cases {
+        assert_eq!(place(path), expected, "{path}");
     }
-    assert_eq!(Place::of(&modules_of("worker/commit.rs")).unwrap(), Place { owner: Owner::Core, layer: "worker" });
-    assert_eq!(Place::of(&modules_of("nowhere/a.rs")), None);
 }
