@@ -1,11 +1,12 @@
 //! What a person, a view or a finished task asks of the studio.
 
 use std::any::Any;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::devices::DeviceCommand;
 use super::diverged::{Diverged, Resolve};
+use super::file_question::FileQuestion;
 use super::keep::{SettingsRead, SettingsWritten};
 use super::leaving::Leaver;
 use super::payload::Payload;
@@ -20,7 +21,6 @@ use crate::devices::biss::protocol::Descriptions;
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::ssi::protocol::Families;
-use crate::devices::ssi::state as ssi;
 use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
 use crate::signals::state as signals;
@@ -304,115 +304,4 @@ pub enum Desk {
     Device(SessionId),
     /// The Signals tab's.
     Signals,
-}
-
-/// A file that the user is asked for. The window asks, with a dialog of the system or a path to type.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FileQuestion {
-    /// Which profile to open.
-    Open,
-    /// Which capture to open.
-    OpenCapture,
-    /// Which recorded trace to connect to.
-    Recording,
-    /// Where to save; with a name to begin with.
-    Save {
-        /// Whose profile it is.
-        session: SessionId,
-        /// A name to begin with.
-        suggested: PathBuf,
-    },
-    /// Which file of SSI frames to look into.
-    OpenFrames {
-        /// For whom.
-        session: SessionId,
-    },
-    /// Where to write a layout for other programs.
-    Export {
-        /// Whose layout it is.
-        session: SessionId,
-        /// As what.
-        format: ssi::Format,
-        /// A name to begin with.
-        suggested: PathBuf,
-    },
-    /// Where to write the frames that were read.
-    Frames {
-        /// Whose they are.
-        session: SessionId,
-        /// A name to begin with.
-        suggested: PathBuf,
-    },
-    /// Which table of cams to open.
-    OpenCams {
-        /// For whom.
-        session: SessionId,
-    },
-    /// Where to write the cams as a table.
-    Cams {
-        /// Whose they are.
-        session: SessionId,
-        /// With a decimal comma instead of a point.
-        decimal_comma: bool,
-        /// A name to begin with.
-        suggested: PathBuf,
-    },
-    /// Where to write the report of the set-up of an axis.
-    AxisReport {
-        /// Whose it is.
-        session: SessionId,
-        /// A name to begin with.
-        suggested: PathBuf,
-    },
-    /// Where to write a table of samples.
-    Table {
-        /// Whose they are.
-        desk: Desk,
-        /// Only what is visible.
-        visible: bool,
-        /// A name to begin with.
-        suggested: PathBuf,
-    },
-    /// Where to save a picture.
-    Picture {
-        /// The picture.
-        picture: Picture,
-        /// A name to begin with.
-        suggested: PathBuf,
-    },
-}
-
-impl FileQuestion {
-    /// How the names of such files end.
-    pub fn endings(&self) -> &'static [&'static str] {
-        match self {
-            FileQuestion::Open | FileQuestion::Save { .. } => &["ron"],
-            FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
-            FileQuestion::Recording => &["trace", "txt"],
-            FileQuestion::Table { .. } | FileQuestion::Cams { .. } => &["csv"],
-            FileQuestion::Picture { .. } => &["png"],
-            FileQuestion::OpenFrames { .. } => &["txt", "csv"],
-            FileQuestion::OpenCams { .. } => &["csv", "txt", "tsv"],
-            FileQuestion::Frames { .. } | FileQuestion::AxisReport { .. } => &["txt"],
-            FileQuestion::Export { format, .. } => format.endings(),
-        }
-    }
-
-    /// A name to begin with, where a file is to be written.
-    pub fn suggested(&self) -> Option<&Path> {
-        match self {
-            FileQuestion::Open
-            | FileQuestion::OpenCapture
-            | FileQuestion::Recording
-            | FileQuestion::OpenFrames { .. }
-            | FileQuestion::OpenCams { .. } => None,
-            FileQuestion::Save { suggested, .. }
-            | FileQuestion::Export { suggested, .. }
-            | FileQuestion::Frames { suggested, .. }
-            | FileQuestion::Cams { suggested, .. }
-            | FileQuestion::AxisReport { suggested, .. }
-            | FileQuestion::Table { suggested, .. }
-            | FileQuestion::Picture { suggested, .. } => Some(suggested),
-        }
-    }
 }

@@ -2,15 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Desk, Done, FileQuestion};
+use super::action::{Action, Desk, Done};
 use super::closing::MUCH;
+use super::file_question::FileQuestion;
 use super::question::{Question, Then};
 use super::recorder::{self, Exported, Recorder};
 use super::studio::{SessionId, Studio};
 use super::{Picture, Severity, Text, connect, explain};
-use crate::devices::hiperdrive::state as hiperdrive;
-use crate::devices::interbus::state as interbus;
-use crate::devices::ssi::state as ssi;
 use crate::link::{LinkUrl, Scheme};
 use crate::signals::state as signals;
 use crate::store::{FileError, Folders};
@@ -59,20 +57,9 @@ impl Studio {
             FileQuestion::OpenCapture => self.act(Action::Signals(signals::Action::Open(path))),
             FileQuestion::Recording => self.act(Action::Connect(connect::Action::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
-            FileQuestion::OpenFrames { session } => self.act(Action::device(session, ssi::Action::FindIn(path))),
-            FileQuestion::Frames { session, .. } => self.act(Action::device(session, ssi::Action::SaveFrames(path))),
-            FileQuestion::Export { session, format, .. } => {
-                self.act(Action::device(session, ssi::Action::Export(format, path)));
-            }
-            FileQuestion::OpenCams { session } => {
-                self.act(Action::device(session, interbus::Action::OpenTable(path)));
-            }
-            FileQuestion::Cams { session, decimal_comma, .. } => {
-                self.act(Action::device(session, interbus::Action::SaveTable { path, decimal_comma }));
-            }
-            FileQuestion::AxisReport { session, .. } => {
-                let save = hiperdrive::axis::Action::SaveReport(path, self.settings.language);
-                self.act(Action::device(session, hiperdrive::Action::Axis(save)));
+            FileQuestion::OfDevice(file) => {
+                let action = file.chosen(path, self.settings.language);
+                self.act(Action::Device(file.session(), action));
             }
             FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {

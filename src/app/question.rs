@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::Text;
-use super::action::{Desk, FileQuestion};
+use super::action::Desk;
+use super::file_question::FileQuestion;
 use super::session::{Saving, without_codes};
 use super::studio::SessionId;
 use crate::devices::hiperface::procedures::find::FindOptions;

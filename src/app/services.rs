@@ -6,8 +6,9 @@ use std::sync::Arc;
 use jiff::Zoned;
 
 use super::Text;
-use super::action::{Action, Done, FileQuestion};
+use super::action::{Action, Done};
 use super::brakes::Brakes;
+use super::file_question::FileQuestion;
 use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
 use super::openers::Openers;

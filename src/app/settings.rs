@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Language;
+use super::drives::{LocksAlone, RememberedDrives};
 use super::tab::Tab;
-use crate::devices::hiperdrive::state::{LocksAlone, Remembered};
 
 /// Dark or light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -36,7 +36,7 @@ pub struct Settings {
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
     /// What is remembered of drives, by the device that they are behind.
-    drives: BTreeMap<String, Remembered>,
+    drives: BTreeMap<String, RememberedDrives>,
 }
 
 impl Default for Settings {
@@ -90,7 +90,7 @@ impl Settings {
             tab: entry!(tab: Tab, usual.tab),
             size: entry!(size: Option<(u32, u32)>, usual.size),
             drives: entry!(
-                drives: BTreeMap<String, Remembered>,
+                drives: BTreeMap<String, RememberedDrives>,
                 // Limits that nobody has confirmed stay so, whatever else is broken.
                 entry!(drives: BTreeMap<String, LocksAlone>, BTreeMap::new())
                     .into_iter()
@@ -117,7 +117,7 @@ impl Settings {
 
     /// What drives have changed in `ours` since `known`.
     pub(super) fn change_drives(&mut self, known: &Settings, ours: &Settings) {
-        let none = Remembered::default();
+        let none = RememberedDrives::default();
         for (device, own) in &ours.drives {
             let before = known.drives.get(device).unwrap_or(&none);
             if own != before || !known.drives.contains_key(device) {
@@ -138,12 +138,12 @@ impl Settings {
     }
 
     /// What is remembered of the drives behind a device.
-    pub(crate) fn drives(&self, device: &str) -> Remembered {
+    pub(crate) fn drives(&self, device: &str) -> RememberedDrives {
         self.drives.get(device).cloned().unwrap_or_default()
     }
 
     /// What is to be remembered of them.
-    pub(crate) fn remember_drives(&mut self, device: String, what: Remembered) {
+    pub(crate) fn remember_drives(&mut self, device: String, what: RememberedDrives) {
         self.drives.insert(device, what);
     }
 

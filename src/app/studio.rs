@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::action::{Action, AnyOpened, Done, FileQuestion, Waited};
+use super::action::{Action, AnyOpened, Done, Waited};
 use super::connect::Connect;
 use super::devices::{AnyDevice, Shown};
 use super::diverged::Diverged;
 use super::documents::{is_capture, read_document};
+use super::file_question::FileQuestion;
 use super::keep::Keeper;
 use super::question::{Question, Then};
 use super::services::{Services, World};

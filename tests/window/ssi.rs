@@ -175,7 +175,7 @@ fn every_export_is_written() {
     for format in Format::ALL {
         act(&mut desk, Ssi::AskExport(format));
         let question = desk.studio.take_file_question().unwrap();
-        assert!(matches!(question, FileQuestion::Export { .. }));
+        assert!(matches!(question, FileQuestion::OfDevice(_)));
         let path = desk.outside.path(&format!("export.{}", question.endings()[0]));
         let _ = std::fs::remove_file(&path);
         desk.act(Action::Chosen(question, path.clone()));

@@ -1,8 +1,8 @@
 //! The connection dialog, carried out.
 
 use super::{Action, Connect, list_ports};
+use crate::app::FileQuestion;
 use crate::app::Text;
-use crate::app::action::FileQuestion;
 use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 

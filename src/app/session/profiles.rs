@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::{Guard, ProfileFile, Saving, SessionState, Source};
-use crate::app::action::{Done, FileQuestion};
+use crate::app::FileQuestion;
+use crate::app::action::Done;
 use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
 use crate::app::{Action, Severity, Text, explain};

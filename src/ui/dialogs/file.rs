@@ -23,7 +23,7 @@ const TOO_FAST: Duration = Duration::from_millis(250);
 
 /// Asks the question. The answer comes as an action; where the system has no dialogs, [`file_ui`] asks.
 pub(in crate::ui) fn ask(question: FileQuestion, skin: &Skin, mailbox: Mailbox) {
-    let filter = skin.say(kind(&question));
+    let filter = skin.words(&kind(&question));
     if !has_dialogs() {
         mailbox.send(Action::TypePath(question));
         return;
@@ -66,17 +66,28 @@ fn has_dialogs() -> bool {
     !cfg!(target_os = "linux") || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
 }
 
-/// What the system's dialog calls such files.
-fn kind(question: &FileQuestion) -> &'static str {
+/// Returns what the system's dialog calls such files.
+fn kind(question: &FileQuestion) -> Text {
     match question {
-        FileQuestion::Open | FileQuestion::Save { .. } => "file.profiles",
-        FileQuestion::OpenCapture => "file.captures",
-        FileQuestion::Recording => "file.recordings",
-        FileQuestion::OpenFrames { .. } | FileQuestion::Frames { .. } => "file.frames",
-        FileQuestion::Export { format, .. } => format.word(),
-        FileQuestion::Table { .. } | FileQuestion::OpenCams { .. } | FileQuestion::Cams { .. } => "file.tables",
-        FileQuestion::AxisReport { .. } => "file.reports",
-        FileQuestion::Picture { .. } => "file.pictures",
+        FileQuestion::Open | FileQuestion::Save { .. } => Text::new("file.profiles"),
+        FileQuestion::OpenCapture => Text::new("file.captures"),
+        FileQuestion::Recording => Text::new("file.recordings"),
+        FileQuestion::OfDevice(file) => file.kind().clone(),
+        FileQuestion::Table { .. } => Text::new("file.tables"),
+        FileQuestion::Picture { .. } => Text::new("file.pictures"),
+    }
+}
+
+/// Returns what the dialog is for.
+fn title(question: &FileQuestion) -> Text {
+    match question {
+        FileQuestion::Open => Text::new("file.open_title"),
+        FileQuestion::OpenCapture => Text::new("file.capture_title"),
+        FileQuestion::Recording => Text::new("file.recording_title"),
+        FileQuestion::Save { .. } => Text::new("file.save_title"),
+        FileQuestion::OfDevice(file) => file.title().clone(),
+        FileQuestion::Table { .. } => Text::new("file.table_title"),
+        FileQuestion::Picture { .. } => Text::new("file.picture_title"),
     }
 }
 
@@ -92,23 +103,14 @@ impl FileView {
 
 /// Draws the dialog in which a path is typed. True: it is done with.
 pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileView, actions: &mut Vec<Action>) -> bool {
-    let (title, confirm, icon) = match view.question {
-        FileQuestion::Open => ("file.open_title", "file.open", icons::FOLDER_OPEN),
-        FileQuestion::OpenCapture => ("file.capture_title", "file.open", icons::FOLDER_OPEN),
-        FileQuestion::Recording => ("file.recording_title", "file.choose", icons::FOLDER_OPEN),
-        FileQuestion::Save { .. } => ("file.save_title", "file.save", icons::FLOPPY_DISK),
-        FileQuestion::OpenFrames { .. } => ("file.open_frames_title", "file.open", icons::FOLDER_OPEN),
-        FileQuestion::Frames { .. } => ("file.frames_title", "file.save", icons::FLOPPY_DISK),
-        FileQuestion::OpenCams { .. } => ("file.open_cams_title", "file.open", icons::FOLDER_OPEN),
-        FileQuestion::Cams { .. } => ("file.cams_title", "file.save", icons::FLOPPY_DISK),
-        FileQuestion::Export { .. } => ("file.export_title", "file.save", icons::FLOPPY_DISK),
-        FileQuestion::AxisReport { .. } => ("file.report_title", "file.save", icons::FLOPPY_DISK),
-        FileQuestion::Table { .. } => ("file.table_title", "file.save", icons::FLOPPY_DISK),
-        FileQuestion::Picture { .. } => ("file.picture_title", "file.save", icons::FLOPPY_DISK),
+    let (confirm, icon) = match view.question {
+        FileQuestion::Recording => ("file.choose", icons::FOLDER_OPEN),
+        _ if view.question.suggested().is_none() => ("file.open", icons::FOLDER_OPEN),
+        _ => ("file.save", icons::FLOPPY_DISK),
     };
     let mut done = false;
     modal(ctx, skin, "file", 520.0, |ui| {
-        ui.label(skin.heading(skin.say(title)));
+        ui.label(skin.heading(skin.words(&title(&view.question))));
         ui.add_space(skin.space.between);
         let response = text_entry(ui, &mut view.path, ui.available_width(), &skin.say("file.path"), "");
         if std::mem::take(&mut view.fresh) {

@@ -41,8 +41,6 @@ pub(crate) use discovery::ask_all;
 pub use discovery::{Discovery, FoundDevice};
 pub use moves::Moves;
 pub use record::Record;
-pub(crate) use remembered::LocksAlone;
-pub use remembered::Remembered;
 pub use review::{Review, ReviewState};
 pub use rows::Row;
 pub use ruler::{Beyond, Measure, Ruler};

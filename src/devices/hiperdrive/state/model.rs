@@ -8,7 +8,7 @@ use crate::app::action::Opened;
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::Saved;
-use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, MotionControl, Tab};
+use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Marks, MotionControl, RememberedDrives, Tab};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::profile::{Body, ProfileError};
 
@@ -133,5 +133,25 @@ impl MotionControl for Unit {
 
     fn is_in_control(&self) -> bool {
         self.moves.is_open()
+    }
+
+    fn remembered_as(&self) -> Option<String> {
+        Unit::remembered_as(self)
+    }
+
+    fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives> {
+        Unit::exchange_remembered(self, kept)
+    }
+
+    fn lock_by(&mut self, found: &RememberedDrives) {
+        Unit::lock_by(self, found);
+    }
+
+    fn marks(&self) -> Marks {
+        self.marks
+    }
+
+    fn set_marks(&mut self, marks: Marks) {
+        self.marks = marks;
     }
 }

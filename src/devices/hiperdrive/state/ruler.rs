@@ -1,22 +1,7 @@
 //! Steps as the drive counts them, and what a person measures in: turns, degrees, millimetres of a spindle.
 
-use serde::{Deserialize, Serialize};
-
+pub use crate::app::Measure;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
-
-/// What positions are shown and typed in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Measure {
-    /// As they are sent.
-    #[default]
-    Steps,
-    /// Turns of the shaft.
-    Turns,
-    /// Its angle, also beyond a turn.
-    Degrees,
-    /// On a spindle whose pitch somebody has typed.
-    Millimetres,
-}
 
 /// How far a step is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,21 +26,6 @@ pub enum Beyond {
     /// Millimetres without a pitch.
     #[error("the spindle's pitch is not known")]
     NoPitch,
-}
-
-impl Measure {
-    /// All of them.
-    pub const ALL: [Measure; 4] = [Measure::Steps, Measure::Turns, Measure::Degrees, Measure::Millimetres];
-
-    /// The name of its unit in the table of texts.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Measure::Steps => "unit.steps",
-            Measure::Turns => "unit.turns",
-            Measure::Degrees => "unit.degrees",
-            Measure::Millimetres => "unit.millimetres",
-        }
-    }
 }
 
 impl Ruler {

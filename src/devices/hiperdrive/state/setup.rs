@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use super::axis::{Action, Ask, Axis, Button, Device, Seen, Step, report};
 use super::review::ReviewState;
 use super::unit::Unit;
-use crate::app::action::{Action as StudioAction, Done, FileQuestion};
+use crate::app::action::{Action as StudioAction, Done};
 use crate::app::services::Services;
 use crate::app::session::{Phase, Source, WithMemory};
+use crate::app::{DeviceFile, FileQuestion};
 use crate::app::{Language, Severity, Text};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Wish};
@@ -137,7 +138,10 @@ impl Unit {
                 let file = self.session.suggested_file();
                 let stem = file.file_stem().map_or_else(String::new, |own| own.to_string_lossy().into_owned());
                 let suggested = PathBuf::from(format!("{stem}-axis-{}.txt", drive.get()));
-                services.file_question = Some(FileQuestion::AxisReport { session: self.session.id, suggested });
+                let words = (TEXTS.text("file.report_title"), TEXTS.text("file.reports"));
+                let save = |path, language| super::Action::Axis(Action::SaveReport(path, language));
+                let file = DeviceFile::to_write(self.session.id, words, &["txt"], suggested, save);
+                services.file_question = Some(FileQuestion::OfDevice(file));
             }
             Action::SaveReport(path, language) => {
                 let Some(text) = self.axis_report(language) else { return };

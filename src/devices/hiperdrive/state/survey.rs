@@ -1,11 +1,11 @@
 //! What was read of a device: it is taken over with a survey, as drives say it, and where somebody else has changed it since.
 
 use super::record::Record;
-use super::remembered::Marks;
 use super::ruler::Measure;
 use super::staged::is_editable;
 use super::unit::Unit;
 use super::unsaved::Unsaved;
+use crate::app::Marks;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved};
 use crate::app::{Severity, Text};

@@ -3,10 +3,10 @@
 use super::action::Action;
 use super::encoder::Encoder;
 use super::staged::Edit;
-use crate::app::action::FileQuestion;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
 use crate::app::{DeviceCommand, Severity, Text};
+use crate::app::{DeviceFile, FileQuestion};
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::protocol::ProgramNumber;
@@ -27,15 +27,19 @@ impl Encoder {
             Action::LeadBack => self.submit(InterbusJob::LeadBack, services),
             Action::AskTable(program) => {
                 self.table_program = program;
-                services.file_question = Some(FileQuestion::OpenCams { session: self.session.id });
+                let words = (TEXTS.text("file.open_cams_title"), TEXTS.text("file.tables"));
+                let file = DeviceFile::to_read(self.session.id, words, &["csv", "txt", "tsv"], Action::OpenTable);
+                services.file_question = Some(FileQuestion::OfDevice(file));
             }
             Action::OpenTable(path) => self.open_table(path, services),
             Action::PasteTable(program, text) => self.read_table(TEXTS.text("ib_table.pasted"), text, program),
             Action::TakeTable(take) => self.take_table(take),
             Action::AskSaveTable { decimal_comma } => {
                 let suggested = self.session.suggested_file().with_extension("csv");
-                services.file_question =
-                    Some(FileQuestion::Cams { session: self.session.id, decimal_comma, suggested });
+                let words = (TEXTS.text("file.cams_title"), TEXTS.text("file.tables"));
+                let save = move |path, _| Action::SaveTable { path, decimal_comma };
+                let file = DeviceFile::to_write(self.session.id, words, &["csv"], suggested, save);
+                services.file_question = Some(FileQuestion::OfDevice(file));
             }
             Action::SaveTable { path, decimal_comma } => self.save_table(path, decimal_comma, services),
             Action::SetScale(scale) => {

@@ -8,11 +8,12 @@ use super::design::Edit;
 use super::encoder::Encoder;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
-use crate::app::action::{Action as StudioAction, Done as StudioDone, FileQuestion};
+use crate::app::action::{Action as StudioAction, Done as StudioDone};
 use crate::app::documents::{document_of, only_looked_at};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, OnLine, Source};
 use crate::app::{ActContext, DeviceCommand, Severity, Text, explain};
+use crate::app::{DeviceFile, FileQuestion};
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{find, frame_bits};
 use crate::devices::ssi::state::TEXTS;
@@ -60,7 +61,9 @@ impl Encoder {
             }
             Action::Find => self.find_live(services),
             Action::AskFrames => {
-                services.file_question = Some(FileQuestion::OpenFrames { session: self.session.id });
+                let words = (TEXTS.text("file.open_frames_title"), TEXTS.text("file.frames"));
+                let file = DeviceFile::to_read(self.session.id, words, &["txt", "csv"], Action::FindIn);
+                services.file_question = Some(FileQuestion::OfDevice(file));
             }
             Action::FindIn(path) => self.find_in(path, services),
             Action::ForgetSearch => self.hunt = Hunt::Nothing,
@@ -68,7 +71,10 @@ impl Encoder {
             Action::ForgetErrors => self.record.forget_tally(),
             Action::AskExport(format) => {
                 let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
-                services.file_question = Some(FileQuestion::Export { session: self.session.id, format, suggested });
+                let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
+                let export = move |path, _| Action::Export(format, path);
+                let file = DeviceFile::to_write(self.session.id, words, format.endings(), suggested, export);
+                services.file_question = Some(FileQuestion::OfDevice(file));
             }
             Action::Export(format, path) => match self.designer.export(format) {
                 Ok(text) => self.write_text(path, text, services),
@@ -76,7 +82,10 @@ impl Encoder {
             },
             Action::AskSaveFrames => {
                 let suggested = self.suggested("txt");
-                services.file_question = Some(FileQuestion::Frames { session: self.session.id, suggested });
+                let words = (TEXTS.text("file.frames_title"), TEXTS.text("file.frames"));
+                let save = |path, _| Action::SaveFrames(path);
+                let file = DeviceFile::to_write(self.session.id, words, &["txt"], suggested, save);
+                services.file_question = Some(FileQuestion::OfDevice(file));
             }
             Action::SaveFrames(path) => {
                 let clocks = self.clocks();

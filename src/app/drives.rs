@@ -1,0 +1,179 @@
+//! What the settings remember of drives beside what they keep themselves: the spindles behind them, what their positions are
+//! shown in, limits that nobody has looked at since their scaling was changed, and what was not saved.
+//!
+//! A drive may be open in another session or another window too. What is typed in one of them does not change another; limits
+//! that are marked as unconfirmed in one of them lock all of them, and are confirmed in each.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+/// What positions are shown and typed in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Measure {
+    /// As they are sent.
+    #[default]
+    Steps,
+    /// Turns of the shaft.
+    Turns,
+    /// Its angle, also beyond a turn.
+    Degrees,
+    /// On a spindle whose pitch somebody has typed.
+    Millimetres,
+}
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Measure; 4] = [Measure::Steps, Measure::Turns, Measure::Degrees, Measure::Millimetres];
+
+    /// The name of its unit in the table of texts.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Measure::Steps => "unit.steps",
+            Measure::Turns => "unit.turns",
+            Measure::Degrees => "unit.degrees",
+            Measure::Millimetres => "unit.millimetres",
+        }
+    }
+}
+
+/// What is remembered of the drives behind one device.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RememberedDrives {
+    /// Nanometres a turn, by the numbers of the drives.
+    pub pitches: BTreeMap<u8, u64>,
+    /// What positions are shown in.
+    pub measure: Measure,
+    /// Drives whose limits nobody has confirmed.
+    unconfirmed: Vec<u8>,
+    /// How often each drive was marked so: tells a mark from the one before.
+    marks: BTreeMap<u8, u64>,
+    /// What was saved of what was written since, by the parameters' own numbers.
+    pub unsaved: BTreeMap<u16, i64>,
+}
+
+/// What can be read of a drive's entry whose other parts are broken.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct LocksAlone {
+    unconfirmed: Vec<u8>,
+    marks: BTreeMap<u8, u64>,
+}
+
+/// Whether the settings were read since control was taken: another window may have marked limits in them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Marks {
+    /// Not yet, or too long ago.
+    Unread,
+    /// They are being read.
+    Reading,
+    /// Yes.
+    Read,
+}
+
+impl From<LocksAlone> for RememberedDrives {
+    fn from(LocksAlone { unconfirmed, marks }: LocksAlone) -> Self {
+        RememberedDrives { unconfirmed, marks, ..RememberedDrives::default() }
+    }
+}
+
+impl RememberedDrives {
+    /// Drives of which no limits are unconfirmed.
+    pub fn confirmed(pitches: BTreeMap<u8, u64>, measure: Measure, unsaved: BTreeMap<u16, i64>) -> Self {
+        RememberedDrives { pitches, measure, unsaved, ..RememberedDrives::default() }
+    }
+
+    pub(crate) fn marks(&self, drive: u8) -> u64 {
+        self.marks.get(&drive).copied().unwrap_or_default()
+    }
+
+    pub(crate) fn is_unconfirmed(&self, drive: u8) -> bool {
+        self.unconfirmed.contains(&drive)
+    }
+
+    pub(crate) fn set_unconfirmed(&mut self, drive: u8, unconfirmed: bool) {
+        self.unconfirmed.retain(|own| *own != drive);
+        if unconfirmed {
+            self.unconfirmed.push(drive);
+            self.unconfirmed.sort_unstable();
+        }
+    }
+
+    pub(crate) fn mark(&mut self, drive: u8, times: u64) {
+        self.set_unconfirmed(drive, true);
+        self.marks.insert(drive, self.marks(drive).wrapping_add(times));
+    }
+
+    /// Drives that were marked since `before`: a mark of the same number is the same, which may be confirmed here and not yet
+    /// on disk. A program that does not count leaves out the numbers.
+    pub(crate) fn marked_since(&self, before: &RememberedDrives) -> Vec<u8> {
+        let is_new = |drive: &u8| {
+            let number = self.marks(*drive);
+            number != before.marks(*drive) || number == 0 && !before.is_unconfirmed(*drive)
+        };
+        self.unconfirmed.iter().copied().filter(is_new).collect()
+    }
+
+    /// The same with what `ours` has changed since `known`. Limits stay unconfirmed that were marked here meanwhile, whatever
+    /// `ours` has confirmed.
+    #[must_use]
+    pub(crate) fn with_changes(mut self, known: &RememberedDrives, ours: &RememberedDrives) -> Self {
+        let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
+            maps.into_iter().flat_map(BTreeMap::keys).copied().collect()
+        };
+        change(&mut self.pitches, &known.pitches, &ours.pitches);
+        change(&mut self.unsaved, &known.unsaved, &ours.unsaved);
+        if ours.measure != known.measure {
+            self.measure = ours.measure;
+        }
+        let locked = known.unconfirmed.iter().chain(&ours.unconfirmed).copied();
+        for drive in drives([&known.marks, &ours.marks]).into_iter().chain(locked).collect::<BTreeSet<_>>() {
+            let marked_here = ours.marks(drive).wrapping_sub(known.marks(drive));
+            let is_marked = ours.is_unconfirmed(drive) && (marked_here > 0 || !known.is_unconfirmed(drive));
+            let is_confirmed = known.is_unconfirmed(drive) && !ours.is_unconfirmed(drive);
+            let is_same = self.marks(drive) == known.marks(drive);
+            if is_marked {
+                self.mark(drive, marked_here);
+            } else if is_confirmed && is_same {
+                self.set_unconfirmed(drive, false);
+            }
+        }
+        self
+    }
+}
+
+/// What `ours` has changed since `known`, key by key.
+fn change<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMap<K, V>, ours: &BTreeMap<K, V>) {
+    for key in known.keys().chain(ours.keys()) {
+        match (known.get(key), ours.get(key)) {
+            (before, now) if before == now => {}
+            (_, Some(value)) => drop(own.insert(*key, *value)),
+            (_, None) => drop(own.remove(key)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Issue 21.11: what was confirmed here locks again by another's mark, and not by the one that was confirmed.
+    #[test]
+    fn a_mark_of_the_same_number_is_the_same() {
+        let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();
+        let cases: [(&str, &str, &[u8]); 7] = [
+            ("unconfirmed: [1], marks: {1: 1}", "", &[1]),
+            ("unconfirmed: [1], marks: {1: 1}", "unconfirmed: [1], marks: {1: 1}", &[]),
+            ("unconfirmed: [1], marks: {1: 1}", "marks: {1: 1}", &[]),
+            ("unconfirmed: [1], marks: {1: 2}", "marks: {1: 1}", &[1]),
+            // By a program that does not count.
+            ("unconfirmed: [1]", "", &[1]),
+            ("unconfirmed: [1]", "marks: {1: 1}", &[1]),
+            ("marks: {1: 2}", "marks: {1: 1}", &[]),
+        ];
+        for (found, before, marked) in cases {
+            assert_eq!(of(found).marked_since(&of(before)), marked, "{found}, {before}");
+        }
+    }
+}

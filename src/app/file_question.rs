@@ -1,0 +1,143 @@
+//! Files that the user is asked for.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::action::Desk;
+use super::payload::Payload;
+use super::studio::SessionId;
+use super::{DeviceAction, Language, Picture, Text};
+
+/// A file that the user is asked for. The window asks, with a dialog of the system or a path to type.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileQuestion {
+    /// Which profile to open.
+    Open,
+    /// Which capture to open.
+    OpenCapture,
+    /// Which recorded trace to connect to.
+    Recording,
+    /// Where to save; with a name to begin with.
+    Save {
+        /// Whose profile it is.
+        session: SessionId,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
+    /// A file that one kind of device reads or writes.
+    OfDevice(DeviceFile),
+    /// Where to write a table of samples.
+    Table {
+        /// Whose they are.
+        desk: Desk,
+        /// Only what is visible.
+        visible: bool,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
+    /// Where to save a picture.
+    Picture {
+        /// The picture.
+        picture: Picture,
+        /// A name to begin with.
+        suggested: PathBuf,
+    },
+}
+
+/// A file that one kind of device reads or writes, and the action that follows when one was chosen.
+#[derive(Clone)]
+pub struct DeviceFile {
+    session: SessionId,
+    title: Text,
+    kind: Text,
+    endings: &'static [&'static str],
+    suggested: Option<PathBuf>,
+    then: Arc<dyn Fn(PathBuf, Language) -> Payload + Send + Sync>,
+}
+
+impl DeviceFile {
+    /// A file to read: `title` is what the dialog is for, `kind` what such files are called, with the endings of their
+    /// names.
+    pub fn to_read<A: DeviceAction>(
+        session: SessionId,
+        (title, kind): (Text, Text),
+        endings: &'static [&'static str],
+        then: impl Fn(PathBuf) -> A + Send + Sync + 'static,
+    ) -> Self {
+        let then = move |path, _| Payload::of(then(path));
+        DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
+    }
+
+    /// A file to write, with a name to begin with; what is written may be in the language of the window.
+    pub fn to_write<A: DeviceAction>(
+        session: SessionId,
+        (title, kind): (Text, Text),
+        endings: &'static [&'static str],
+        suggested: PathBuf,
+        then: impl Fn(PathBuf, Language) -> A + Send + Sync + 'static,
+    ) -> Self {
+        let then = move |path, language| Payload::of(then(path, language));
+        DeviceFile { session, title, kind, endings, suggested: Some(suggested), then: Arc::new(then) }
+    }
+
+    /// Returns the session whose file it is.
+    pub(super) fn session(&self) -> SessionId {
+        self.session
+    }
+
+    /// Returns what the dialog is for.
+    pub fn title(&self) -> &Text {
+        &self.title
+    }
+
+    /// Returns what such files are called.
+    pub fn kind(&self) -> &Text {
+        &self.kind
+    }
+
+    /// Returns the action that follows on the choice of a file.
+    pub(super) fn chosen(&self, path: PathBuf, language: Language) -> Payload {
+        (self.then)(path, language)
+    }
+}
+
+impl PartialEq for DeviceFile {
+    fn eq(&self, other: &Self) -> bool {
+        let facts = |own: &Self| (own.session, own.endings, own.title.clone(), own.kind.clone(), own.suggested.clone());
+        facts(self) == facts(other) && Arc::ptr_eq(&self.then, &other.then)
+    }
+}
+
+impl Eq for DeviceFile {}
+
+impl fmt::Debug for DeviceFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DeviceFile").field("title", &self.title).field("suggested", &self.suggested).finish()
+    }
+}
+
+impl FileQuestion {
+    /// How the names of such files end.
+    pub fn endings(&self) -> &'static [&'static str] {
+        match self {
+            FileQuestion::Open | FileQuestion::Save { .. } => &["ron"],
+            FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
+            FileQuestion::Recording => &["trace", "txt"],
+            FileQuestion::Table { .. } => &["csv"],
+            FileQuestion::Picture { .. } => &["png"],
+            FileQuestion::OfDevice(file) => file.endings,
+        }
+    }
+
+    /// A name to begin with, where a file is to be written.
+    pub fn suggested(&self) -> Option<&Path> {
+        match self {
+            FileQuestion::Open | FileQuestion::OpenCapture | FileQuestion::Recording => None,
+            FileQuestion::Save { suggested, .. }
+            | FileQuestion::Table { suggested, .. }
+            | FileQuestion::Picture { suggested, .. } => Some(suggested),
+            FileQuestion::OfDevice(file) => file.suggested.as_deref(),
+        }
+    }
+}
