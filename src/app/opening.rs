@@ -4,6 +4,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::devices::device_at_link;
+use super::given::Opener;
 use super::leaving::same_wire;
 use super::question::{Question, Then};
 use super::services::{JobEnd, Services, World};
@@ -218,9 +219,9 @@ fn open<D: Kind>(
 ) -> Result<Box<Opened<D>>, Box<OpenFailed>> {
     let began = (world.now)();
     let mut session = world
-        .openers
-        .get::<D>()
-        .map_or_else(|| D::open(url, world.store.clone()), |open| open(url, world.store.clone()))
+        .given
+        .get::<Opener<D>>()
+        .map_or_else(|| D::open(url, world.store.clone()), |opener| opener.open(url, world.store.clone()))
         .map_err(|error| Box::new(OpenFailed::Link(error)))?;
     prepare(&mut session);
     let (is_virtual, aside) = (session.is_virtual(), D::aside(&session));

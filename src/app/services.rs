@@ -9,13 +9,12 @@ use super::Text;
 use super::action::{Action, Done};
 use super::brakes::Brakes;
 use super::file_question::FileQuestion;
+use super::given::Given;
 use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
-use super::openers::Openers;
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
-use crate::devices::hiperdrive::procedures::{Error as DriveError, Found};
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes};
+use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::state::explain as hiperface_words;
 use crate::devices::ssi::protocol::Families;
 use crate::link::{LinkError, PortInfo};
@@ -28,16 +27,12 @@ use crate::worker::JobId;
 pub struct World {
     /// Backups, logbook, drafts, settings.
     pub store: Store,
-    /// What opens links in place of a kind's own way.
-    pub openers: Openers,
-    /// Asks who is there in this network.
-    pub discover: Arc<dyn Fn() -> Result<Vec<Found>, DriveError> + Send + Sync>,
+    /// What kinds of device are given from outside.
+    pub given: Given,
     /// The formats of profiles that can be read.
     pub formats: Formats,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
-    /// Access codes that the user gave at the start; sessions begin with them.
-    pub codes: Vec<(CodeNumber, AccessCode)>,
     /// Where paths begin that a person gives.
     pub folders: Folders,
     /// The time of day.
@@ -51,11 +46,9 @@ impl World {
     pub fn real(store: Store, formats: Formats) -> Self {
         World {
             store,
-            openers: Openers::default(),
-            discover: Arc::new(crate::devices::hiperdrive::state::ask_all),
+            given: Given::default(),
             formats,
             ports: Arc::new(crate::link::ports),
-            codes: Vec::new(),
             folders: Folders::of_user(),
             now: Arc::new(Zoned::now),
             patience: Patience::default(),

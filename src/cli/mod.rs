@@ -25,7 +25,8 @@ use output::Output;
 
 pub use commands::Commands;
 
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
+use crate::app::Given;
+use crate::devices::hiperface::procedures::AccessCodes;
 use crate::link::LinkUrl;
 use crate::profile::Formats;
 
@@ -66,8 +67,8 @@ pub struct Window {
     pub link: Option<LinkUrl>,
     /// A profile to open.
     pub profile: Option<PathBuf>,
-    /// Access codes that the user knows.
-    pub codes: Vec<(CodeNumber, AccessCode)>,
+    /// What the options give to kinds of device.
+    pub given: Given,
 }
 
 /// Runs the command that the arguments of this process name; without one the window is asked for. Profiles are read in these
@@ -107,8 +108,8 @@ fn window(common: Common, profile: Option<PathBuf>) -> Asked {
     }
     match runner::codes(&common) {
         Ok(codes) => {
-            let codes = codes.into_iter().map(|code| (code.number, code.code)).collect();
-            Asked::Window(Window { link: common.link, profile, codes })
+            let codes: AccessCodes = codes.into_iter().map(|code| (code.number, code.code)).collect();
+            Asked::Window(Window { link: common.link, profile, given: Given::default().with(codes) })
         }
         Err(failure) => Asked::Command(end(Err(failure))),
     }

@@ -29,7 +29,7 @@ pub fn run(start: Start, formats: Formats, tabs: TabViews) -> Result<(), String>
             context.request_repaint();
         }
     });
-    let mut studio = Studio::new(World { codes: start.codes, ..World::real(store, formats) }, wake);
+    let mut studio = Studio::new(World { given: start.given, ..World::real(store, formats) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
     end::prepare(&studio);

@@ -2,7 +2,7 @@
 
 use crate::hiperdrive::command;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::Openers;
+use encoder_studio::app::Opener;
 use std::net::Ipv4Addr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -108,7 +108,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
     let outside = Outside::new("");
     let is_bad = bad.clone();
     let world = World {
-        openers: Openers::default().with(move |url, store| {
+        given: outside.world().given.with(Opener::new(move |url, store| {
             let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
             let target = Target::new(&Config::from_pairs(&[]).unwrap());
             let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
@@ -118,7 +118,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
             let station = Station::from_query(&url.query, None, Duration::from_millis(20))?;
             let way = Way { wire, port: Some(port), station, target: Some(target) };
             Ok(Session::to_target(way, clock, store))
-        }),
+        })),
         ..outside.world()
     };
     let mut desk = Desk { studio: Studio::new(world, Arc::new(|| {})), outside };

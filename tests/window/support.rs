@@ -1,7 +1,7 @@
 //! A desk for the window's state: a studio in a world of the test's own, with two cables and a link that hangs for ever.
 
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::Openers;
+use encoder_studio::app::{Given, Opener};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,6 +15,7 @@ use encoder_studio::devices::biss::jobs as biss;
 use encoder_studio::devices::biss::procedures::Way;
 use encoder_studio::devices::hiperdrive::jobs as hiperdrive;
 use encoder_studio::devices::hiperdrive::procedures::Found;
+use encoder_studio::devices::hiperdrive::state::Discover;
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
@@ -102,22 +103,22 @@ impl Outside {
         let (wires, opens, found) = (self.wires.clone(), self.opens.clone(), self.found.clone());
         let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
         World {
-            openers: Openers::default()
-                .with(move |url, store| {
+            given: Given::default()
+                .with(Opener::new(move |url, store| {
                     let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
                     let way = if url.scheme == Scheme::Bridge { Way::Adapter } else { Way::ConfigPin };
                     let station =
                         encoder_studio::devices::biss::procedures::Station::from_query(&url.query, way, MARGIN)?;
                     let link = Box::new(TestLink::plug_into(wire)?);
                     Ok(Session::over(link, wire.clock(), station, store, None))
-                })
-                .with(move |url, store| {
+                }))
+                .with(Opener::new(move |url, store| {
                     let Some(wire) = gates.get(&url.target) else { return interbus::open(url, store) };
                     let station =
                         encoder_studio::devices::interbus::procedures::Station::from_query(&url.query, MARGIN)?;
                     Ok(Session::to_gateway(Box::new(TestLink::plug_into(wire)?), wire.clock(), station, store, None))
-                })
-                .with(move |url, store| {
+                }))
+                .with(Opener::new(move |url, store| {
                     if url.scheme == Scheme::Sim {
                         return crate::unhurried::open(url, store);
                     }
@@ -127,8 +128,8 @@ impl Outside {
                     let link = Box::new(TestLink::plug_into(wire)?);
                     let way = hiperdrive::Way { wire: link, port: None, station, target: None };
                     Ok(Session::to_target(way, wire.clock(), store))
-                })
-                .with(move |url, store| {
+                }))
+                .with(Opener::new(move |url, store| {
                     if url.to_string() == HANGING {
                         loop {
                             std::thread::park();
@@ -145,9 +146,9 @@ impl Outside {
                     link.set_format(station.format)?;
                     let is_virtual = url.scheme == Scheme::Sim;
                     Ok(Session::new(Box::new(link), wire.clock(), station, store, EncoderTypes::built_in(), is_virtual))
-                }),
+                }))
+                .with(Discover::new(move || Ok(found.clone()))),
             ports: Arc::new(|| Ok(Vec::new())),
-            discover: Arc::new(move || Ok(found.clone())),
             patience: self.patience,
             folders: Folders::at(&self.path("work"), &self.path("home")),
             ..World::real(self.store(), FORMATS)

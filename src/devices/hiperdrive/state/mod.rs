@@ -37,8 +37,7 @@ pub use texts::TEXTS;
 
 pub use action::{Action, Motor};
 pub use connect_form::{HiperdriveForm, HiperdriveWay, VirtualHub};
-pub(crate) use discovery::ask_all;
-pub use discovery::{Discovery, FoundDevice};
+pub use discovery::{Discover, Discovery, FoundDevice};
 pub use moves::Moves;
 pub use record::Record;
 pub use review::{Review, ReviewState};

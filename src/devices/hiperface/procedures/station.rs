@@ -37,6 +37,26 @@ impl Codes {
     }
 }
 
+/// Access codes that a person gave at the start, with their numbers; sessions begin with them. The later one of a number
+/// counts.
+#[derive(Clone, Debug, Default)]
+pub struct AccessCodes(Vec<(CodeNumber, AccessCode)>);
+
+impl AccessCodes {
+    /// Puts them into the codes of a session.
+    pub fn set_in(&self, codes: &mut Codes) {
+        for (number, code) in &self.0 {
+            codes.set(*number, *code);
+        }
+    }
+}
+
+impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
+    fn from_iter<I: IntoIterator<Item = (CodeNumber, AccessCode)>>(codes: I) -> Self {
+        AccessCodes(codes.into_iter().collect())
+    }
+}
+
 /// What a session knows about its line and the encoder at its end.
 #[derive(Clone, Debug)]
 pub struct Station {
@@ -209,6 +229,20 @@ mod tests {
         assert_eq!(station.line.echo, Echo::Unknown);
         assert_eq!(station.line.margin, Duration::from_millis(50));
         assert_eq!(station.codes.get(CodeNumber::ZERO), AccessCode::FACTORY);
+    }
+
+    #[test]
+    fn codes_that_were_given_are_never_printed() {
+        let number = |number| CodeNumber::new(number).unwrap();
+        let given: AccessCodes =
+            [(number(2), AccessCode::new(0x9D)), (number(2), AccessCode::new(0xA7))].into_iter().collect();
+        let mut codes = Codes::default();
+        given.set_in(&mut codes);
+        assert_eq!((codes.get(number(2)).byte(), codes.get(number(1)).byte()), (0xA7, 0x55));
+        let text = format!("{given:?} {given:#?}");
+        for code in ["9D", "9d", "157", "A7", "a7", "167"] {
+            assert!(!text.contains(code), "{text}");
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::app::services::{Services, World};
 use crate::app::session::Saved;
 use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Prepare, SineCosineSource, Tab};
 use crate::devices::hiperface::jobs::Hiperface;
+use crate::devices::hiperface::procedures::AccessCodes;
 use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
@@ -18,12 +19,8 @@ impl DeviceModel for Encoder {
     type Done = Infallible;
 
     fn prepare(&self, world: &World) -> Prepare<Hiperface> {
-        let codes = world.codes.clone();
-        Box::new(move |session| {
-            for (number, code) in codes {
-                session.codes_mut().set(number, code);
-            }
-        })
+        let codes = world.given.get::<AccessCodes>().cloned().unwrap_or_default();
+        Box::new(move |session| codes.set_in(session.codes_mut()))
     }
 
     fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {

@@ -1,0 +1,80 @@
+//! Values that one kind of device is given from outside: options of a person at the start, or what a test puts in the place
+//! of the real thing. The core hands them on and knows none of them.
+
+use std::any::{Any, TypeId};
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::Arc;
+
+use crate::link::LinkUrl;
+use crate::store::Store;
+use crate::worker::{Device, OpenError, Session};
+
+/// Values that kinds of device are given from outside, at most one of each type.
+#[derive(Clone, Default)]
+pub struct Given(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
+
+impl Given {
+    /// Adds a value, in the place of another one of its type.
+    #[must_use]
+    pub fn with<T: Send + Sync + 'static>(mut self, value: T) -> Self {
+        self.0.insert(TypeId::of::<T>(), Arc::new(value));
+        self
+    }
+
+    /// Returns the value of a type.
+    pub fn get<T: Send + Sync + 'static>(&self) -> Option<&T> {
+        self.0.get(&TypeId::of::<T>())?.downcast_ref()
+    }
+}
+
+/// Their number only: a value may be a secret.
+impl fmt::Debug for Given {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Given({})", self.0.len())
+    }
+}
+
+type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
+
+/// What opens links to a kind of device in place of the kind's own way. Given by tests only.
+pub struct Opener<D: Device>(Box<Open<D>>);
+
+impl<D: Device> Opener<D> {
+    /// Opens links so.
+    pub fn new(open: impl Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync + 'static) -> Self {
+        Opener(Box::new(open))
+    }
+
+    /// Opens a link.
+    ///
+    /// # Errors
+    /// See [`OpenError`].
+    pub(super) fn open(&self, url: &LinkUrl, store: Store) -> Result<Session<D>, OpenError> {
+        (self.0)(url, store)
+    }
+}
+
+impl<D: Device> fmt::Debug for Opener<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Opener")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, PartialEq)]
+    struct Secret(u8);
+
+    #[test]
+    fn one_value_of_a_type_is_kept_and_none_is_printed() {
+        let given = Given::default().with(Secret(0x9D)).with(String::from("first")).with(String::from("second"));
+        assert_eq!(given.get::<Secret>(), Some(&Secret(0x9D)));
+        assert_eq!(given.get::<String>().map(String::as_str), Some("second"));
+        assert_eq!(given.get::<u8>(), None);
+        assert_eq!(format!("{given:?}"), "Given(2)");
+        assert_eq!(given.clone().get::<Secret>(), Some(&Secret(0x9D)), "a copy of the world has them too");
+    }
+}
