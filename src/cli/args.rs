@@ -5,7 +5,6 @@ mod build;
 mod decode;
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 
@@ -13,8 +12,9 @@ pub(crate) use act::Do;
 pub(super) use build::{Arguments, Called, parse_arguments};
 pub(crate) use decode::{Decode, Direction, DirectionOption};
 
-use super::commands::OwnOptions;
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
+use super::Failure;
+use super::commands::{Commands, OwnOptions};
+use crate::app::Given;
 use crate::link::LinkUrl;
 
 /// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
@@ -38,10 +38,6 @@ pub(crate) struct Common {
     /// Print JSON.
     #[arg(long, global = true)]
     pub(super) json: bool,
-    /// An access code other than 55h, of a device that has them, as N=HEX; repeatable. Also in ENCODER_STUDIO_CODES="0=66,2=1A".
-    #[arg(long = "code", global = true, value_name = "N=HEX")]
-    // Taken as text: a message about a wrong argument repeats it, and this may be a code.
-    pub(super) codes: Vec<String>,
     /// On a serial line with one master: no drive or controller is connected to it or powered. Without this it is asked on
     /// a terminal; find needs it elsewhere.
     #[arg(long, global = true)]
@@ -49,6 +45,18 @@ pub(crate) struct Common {
     /// Record every frame into a file that replay: plays back; access codes are masked.
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) own: OwnOptions,
+    /// The kinds of device that have options among these; parsing puts them here.
+    #[arg(skip = Commands::NONE)]
+    pub(super) commands: Commands,
+}
+
+impl Common {
+    /// What the options that kinds of device add give to them.
+    pub(super) fn given(&self) -> Result<Given, Failure> {
+        self.commands.devices().iter().try_fold(Given::default(), |given, device| device.given(&self.own, given))
+    }
 }
 
 #[derive(Subcommand)]
@@ -243,33 +251,6 @@ pub(crate) struct Simulate {
     pub(super) settings: Vec<String>,
     #[command(flatten)]
     pub(crate) own: OwnOptions,
-}
-
-/// An access code with its number.
-#[derive(Clone, Copy)]
-pub(crate) struct Code {
-    pub(crate) number: CodeNumber,
-    pub(crate) code: AccessCode,
-}
-
-impl FromStr for Code {
-    type Err = String;
-
-    /// The message never repeats the text: it may be a code.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let form = || "an access code is given as N=HEX with N from 0 to 3, as in 2=1A".to_owned();
-        let (number, code) = text.split_once('=').ok_or_else(form)?;
-        let number = number.trim().parse().ok().and_then(CodeNumber::new).ok_or_else(form)?;
-        Ok(Code { number, code: parse_code(code).ok_or_else(form)? })
-    }
-}
-
-/// An access code: one or two hex digits, with or without `0x` or a final `h`.
-pub(crate) fn parse_code(text: &str) -> Option<AccessCode> {
-    match crate::bits::parse_hex(text.trim()).ok()?.as_slice() {
-        [byte] => Some(AccessCode::new(*byte)),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simul
 use super::output::Output;
 use super::simulate::Simulated;
 use super::{Failure, Result};
-use crate::app::Text;
+use crate::app::{Given, Text};
 use crate::profile::{Body, Comparison, ProfileError};
 
 /// The commands that a kind of device may take part in.
@@ -89,6 +89,19 @@ pub(crate) trait DeviceCommands: Sync {
         Vec::new()
     }
 
+    /// Options that the kind adds to every command and to the window. An option that several kinds add is the same option.
+    fn common_options(&self) -> Vec<Arg> {
+        Vec::new()
+    }
+
+    /// Adds what those options give to the kind, and what the environment does in their place.
+    ///
+    /// # Errors
+    /// One of them means nothing.
+    fn given(&self, _options: &OwnOptions, given: Given) -> Result<Given> {
+        Ok(given)
+    }
+
     /// The actions of `do`, with their help. An action that several kinds have is the same word.
     fn actions(&self) -> Vec<PossibleValue> {
         Vec::new()
@@ -104,7 +117,8 @@ pub(crate) trait DeviceCommands: Sync {
         Vec::new()
     }
 
-    /// Why an option of this kind is refused for another one, where there is more to say than that.
+    /// Why an option of this kind is refused for another one, where there is more to say than that; `None` of any other
+    /// option.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
     }
@@ -226,6 +240,9 @@ impl std::fmt::Debug for Commands {
 }
 
 impl Commands {
+    /// The core alone.
+    pub(super) const NONE: Commands = Commands::new(&[], &[], &[]);
+
     pub(crate) const fn new(
         devices: &'static [&'static dyn DeviceCommands],
         protocols: &'static [&'static dyn ProtocolDecoder],
@@ -240,6 +257,26 @@ impl Commands {
 
     pub(super) fn protocols(self) -> &'static [&'static dyn ProtocolDecoder] {
         self.protocols
+    }
+
+    /// The options that kinds of device add to every command and to the window.
+    pub(super) fn common_options(self) -> impl Iterator<Item = Arg> {
+        self.devices.iter().flat_map(|device| device.common_options())
+    }
+
+    /// Why an option of every command is refused for a kind of device that does not have it, in words.
+    pub(super) fn refusal(self, option: &str, chosen: &str) -> String {
+        let own = self.devices.iter().find_map(|device| device.refused_option(option));
+        own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
+    }
+
+    /// An option of every command that was given, and that the chosen kind of device does not have, in words.
+    pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &OwnOptions) -> Option<String> {
+        let own = chosen.common_options();
+        let foreign = self.common_options().find(|option| {
+            given.has(option.get_id().as_str()) && own.iter().all(|other| other.get_id() != option.get_id())
+        })?;
+        Some(self.refusal(&format!("--{}", foreign.get_long().unwrap_or_default()), chosen.name()))
     }
 
     /// The commands that are not in the core.

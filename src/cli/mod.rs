@@ -26,7 +26,6 @@ use output::Output;
 pub use commands::Commands;
 
 use crate::app::Given;
-use crate::devices::hiperface::procedures::AccessCodes;
 use crate::link::LinkUrl;
 use crate::profile::Formats;
 
@@ -106,11 +105,8 @@ fn window(common: Common, profile: Option<PathBuf>) -> Asked {
     if common.json || common.trace.is_some() {
         return Asked::Command(end(Err(usage("--json and --trace need a command; encoder-studio help lists them"))));
     }
-    match runner::codes(&common) {
-        Ok(codes) => {
-            let codes: AccessCodes = codes.into_iter().map(|code| (code.number, code.code)).collect();
-            Asked::Window(Window { link: common.link, profile, given: Given::default().with(codes) })
-        }
+    match common.given() {
+        Ok(given) => Asked::Window(Window { link: common.link, profile, given }),
         Err(failure) => Asked::Command(end(Err(failure))),
     }
 }

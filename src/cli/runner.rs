@@ -10,12 +10,13 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::RecvTimeoutError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::args::{Code, Common};
+use super::args::Common;
+use super::commands::DeviceCommands;
 use super::consent::{answer, can_ask};
 use super::output::say;
 use super::patience::{Pace, Patience};
 use super::{Failure, Result};
-use crate::app::{Text, explain};
+use crate::app::{Given, Text, explain};
 use crate::link::{LinkError, LinkUrl, write_entry, write_header};
 use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
@@ -26,8 +27,8 @@ pub(crate) trait Runs: Device {
     type Kept;
     /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
     const HAS_ONE_MASTER: bool = false;
-    /// It asks for access codes.
-    const HAS_CODES: bool;
+    /// Its kind on the command line.
+    const COMMANDS: &'static dyn DeviceCommands;
 
     /// Whether another master may be on the line behind a link, so that this is asked before the first byte.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
@@ -47,8 +48,8 @@ pub(crate) trait Runs: Device {
         explain::open(error)
     }
 
-    /// Makes a session ready, with the access codes of the command line.
-    fn begin(session: &mut Session<Self>, codes: Vec<Code>) -> Self::Kept
+    /// Makes a session ready, with what the options of every command give.
+    fn begin(session: &mut Session<Self>, given: &Given) -> Self::Kept
     where
         Self: Sized;
 
@@ -122,22 +123,22 @@ impl<D: Runs> Runner<D> {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
         };
-        let codes = codes(common)?;
-        if !D::HAS_CODES && !common.codes.is_empty() {
-            return Err(Failure::Usage("--code is for devices with access codes; this one has none".to_owned()));
+        let given = common.given()?;
+        if let Some(why) = common.commands.foreign_common_option(D::COMMANDS, &common.own) {
+            return Err(Failure::Usage(why));
         }
         if D::may_have_other_master(url) {
             ask_for_other_master(common)?;
         }
         if common.only_master && !D::HAS_ONE_MASTER {
-            return Err(Failure::Usage("--only-master is for hiperface, whose lines have one master".to_owned()));
+            return Err(Failure::Usage(common.commands.refusal("--only-master", D::COMMANDS.name())));
         }
         let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
         let mut session = D::open(url, store).map_err(|error| match error {
             OpenError::Url(_) | OpenError::Sim(_) => Failure::Usage(explain::open(&error).terminal()),
             error => failed(&D::open_error(&error)),
         })?;
-        let kept = D::begin(&mut session, codes);
+        let kept = D::begin(&mut session, &given);
         if let Some(path) = &common.trace {
             record(&mut session, path)?;
         }
@@ -284,20 +285,6 @@ fn ask_for_other_master(common: &Common) -> Result<()> {
         return Ok(());
     }
     Err(failed(&Text::new("session.maybe_drive")))
-}
-
-/// Codes of the environment, then those of the command line.
-pub(super) fn codes(common: &Common) -> Result<Vec<Code>> {
-    let mut codes = Vec::new();
-    if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {
-        for code in text.split(',').filter(|code| !code.trim().is_empty()) {
-            codes.push(code.trim().parse().map_err(|why| Failure::Usage(format!("ENCODER_STUDIO_CODES: {why}")))?);
-        }
-    }
-    for code in &common.codes {
-        codes.push(code.parse().map_err(|why| Failure::Usage(format!("--code: {why}")))?);
-    }
-    Ok(codes)
 }
 
 fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {

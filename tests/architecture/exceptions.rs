@@ -15,8 +15,6 @@ pub(crate) const KNOWS_A_DEVICE: &[&str] = &[
     "src/app/services.rs",
     "src/app/studio.rs",
     "src/app/tab.rs",
-    "src/cli/args.rs",
-    "src/cli/mod.rs",
     "src/sim/at_adapter.rs",
 ];
 

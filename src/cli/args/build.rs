@@ -37,6 +37,7 @@ pub(in crate::cli) fn parse_arguments(
 
 fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Error> {
     let Front { common, profile } = Front::from_arg_matches(matches)?;
+    let common = Common { commands, ..common };
     let own = matches.subcommand().and_then(|(name, own)| {
         let command = commands.own().find(|command| command.command().get_name() == name)?;
         Some(Called::Own(command, own.clone()))
@@ -51,7 +52,12 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
 
 /// The whole command line.
 pub(super) fn command(commands: Commands) -> clap::Command {
-    let shared = Command::augment_subcommands(Front::command()).after_help(summary(commands));
+    let front = commands.common_options().fold(Front::command(), |front, option| {
+        // Several kinds of device may have it.
+        let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());
+        if is_new { front.arg(option.display_order(BEHIND_THE_SHARED)) } else { front }
+    });
+    let shared = Command::augment_subcommands(front).after_help(summary(commands));
     let extended = CommandId::ALL
         .into_iter()
         .fold(shared, |all, id| all.mut_subcommand(id.name(), |command| extended(command, id, commands)));

@@ -1,7 +1,8 @@
 //! Running jobs on a BiSS encoder, and what they give beside their results.
 
-use crate::app::Text;
-use crate::cli::args::Code;
+use super::BissCommands;
+use crate::app::{Given, Text};
+use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::cli::{Failure, Result};
@@ -20,14 +21,13 @@ pub(super) type Runner = runner::Runner<Biss>;
 impl Runs for Biss {
     /// How the encoder is reached.
     type Kept = Way;
-    const HAS_CODES: bool = false;
+    const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
     fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
         open(url, store)
     }
 
-    /// Access codes of the environment are for other devices.
-    fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Way {
+    fn begin(session: &mut Session<Self>, _given: &Given) -> Way {
         session.station().way
     }
 

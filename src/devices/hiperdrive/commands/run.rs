@@ -3,10 +3,11 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use super::HiperdriveCommands;
 use super::args::OfDrive;
-use crate::app::Text;
+use crate::app::{Given, Text};
 use crate::cli::Result;
-use crate::cli::args::Code;
+use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::patience::Pace;
 use crate::cli::runner::{self, Runs, unexpected};
@@ -32,14 +33,13 @@ pub(super) type Runner = runner::Runner<Hiperdrive>;
 
 impl Runs for Hiperdrive {
     type Kept = Motion;
-    const HAS_CODES: bool = false;
+    const COMMANDS: &'static dyn DeviceCommands = &HiperdriveCommands;
 
     fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
         open(url, store)
     }
 
-    /// Access codes of the environment are for other devices.
-    fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Motion {
+    fn begin(session: &mut Session<Self>, _given: &Given) -> Motion {
         session.motion()
     }
 

@@ -3,9 +3,10 @@
 use serde_json::json;
 
 use super::args::{DoOptions, HiperfaceAction};
+use super::codes::parse_code;
 use super::inspect::codes_text;
 use super::write::{change_and_show, settings};
-use crate::cli::args::{Common, Do, parse_code};
+use crate::cli::args::{Common, Do};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
 use crate::cli::runner::unexpected;

@@ -2,6 +2,7 @@
 
 mod act;
 mod args;
+mod codes;
 mod decode;
 mod inspect;
 mod profiles;
@@ -13,8 +14,10 @@ use clap::Arg;
 use clap::builder::PossibleValue;
 
 use self::args::{DoOptions, FindOptions, HiperfaceAction};
+use self::codes::CodeOption;
+use crate::app::Given;
 use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
-use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
+use crate::cli::commands::{CommandId, DeviceCommands, OwnOptions, options_of, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -61,6 +64,23 @@ impl DeviceCommands for HiperfaceCommands {
             CommandId::Do => options_of::<DoOptions>(),
             _ => Vec::new(),
         }
+    }
+
+    fn common_options(&self) -> Vec<Arg> {
+        options_of::<CodeOption>()
+    }
+
+    fn given(&self, options: &OwnOptions, given: Given) -> Result<Given> {
+        Ok(given.with(codes::given(&options.read()?)?))
+    }
+
+    fn refused_option(&self, option: &str) -> Option<String> {
+        let why = match option {
+            "--code" => "is for devices with access codes; this one has none",
+            "--only-master" => "is for hiperface, whose lines have one master",
+            _ => return None,
+        };
+        Some(format!("{option} {why}"))
     }
 
     fn actions(&self) -> Vec<PossibleValue> {

@@ -1,10 +1,12 @@
 //! Running jobs on a HIPERFACE encoder: the access codes of the command line, and the codes that the encoder announces.
 
-use crate::app::Text;
-use crate::cli::args::Code;
+use super::HiperfaceCommands;
+use crate::app::{Given, Text};
+use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs};
 use crate::devices::hiperface::jobs::{Doing, Hiperface, JobError, Remark, may_have_other_master, open};
+use crate::devices::hiperface::procedures::AccessCodes;
 use crate::devices::hiperface::protocol::StatusCode;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
@@ -19,7 +21,7 @@ impl Runs for Hiperface {
     /// How the line is set: for `identify`.
     type Kept = CharacterFormat;
     const HAS_ONE_MASTER: bool = true;
-    const HAS_CODES: bool = true;
+    const COMMANDS: &'static dyn DeviceCommands = &HiperfaceCommands;
 
     fn may_have_other_master(url: &LinkUrl) -> bool {
         may_have_other_master(url)
@@ -33,9 +35,9 @@ impl Runs for Hiperface {
         words::open(error)
     }
 
-    fn begin(session: &mut Session<Self>, codes: Vec<Code>) -> CharacterFormat {
-        for Code { number, code } in codes {
-            session.codes_mut().set(number, code);
+    fn begin(session: &mut Session<Self>, given: &Given) -> CharacterFormat {
+        if let Some(codes) = given.get::<AccessCodes>() {
+            codes.set_in(session.codes_mut());
         }
         session.station().format
     }

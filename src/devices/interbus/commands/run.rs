@@ -1,8 +1,9 @@
 //! Running jobs on an INTERBUS encoder.
 
-use crate::app::Text;
+use super::InterbusCommands;
+use crate::app::{Given, Text};
 use crate::cli::Result;
-use crate::cli::args::Code;
+use crate::cli::commands::DeviceCommands;
 use crate::cli::runner::{self, Runs, failed, unexpected};
 use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark, open};
 use crate::devices::interbus::procedures::{Identity, Survey};
@@ -17,14 +18,13 @@ pub(super) type Runner = runner::Runner<Interbus>;
 
 impl Runs for Interbus {
     type Kept = ();
-    const HAS_CODES: bool = false;
+    const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;
 
     fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
         open(url, store)
     }
 
-    /// Access codes of the environment are for other devices.
-    fn begin(_session: &mut Session<Self>, _codes: Vec<Code>) {}
+    fn begin(_session: &mut Session<Self>, _given: &Given) {}
 
     /// Steps of the handshake are for the window; a recording has their bytes.
     fn say(_remark: &Remark) {}

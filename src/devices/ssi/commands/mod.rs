@@ -54,7 +54,8 @@ impl DeviceCommands for SsiCommands {
     }
 
     fn refused_option(&self, option: &str) -> Option<String> {
-        Some(format!("{option} is for {KIND} devices; others tell that themselves"))
+        let is_own = option == "--layout";
+        is_own.then(|| format!("{option} is for {KIND} devices; others tell that themselves"))
     }
 
     fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {

@@ -2,10 +2,12 @@
 
 use std::convert::Infallible;
 
+use super::SsiCommands;
 use super::layout::Chosen;
-use crate::app::Text;
+use crate::app::{Given, Text};
 use crate::cli::Result;
-use crate::cli::args::{Code, Common};
+use crate::cli::args::Common;
+use crate::cli::commands::DeviceCommands;
 use crate::cli::output::Output;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::devices::ssi::jobs::{Doing, JobError, Ssi, SsiJob, SsiOutput, open};
@@ -22,14 +24,13 @@ pub(super) type Runner = runner::Runner<Ssi>;
 impl Runs for Ssi {
     /// How words are taken where nothing else says so: as the link does.
     type Kept = Asking;
-    const HAS_CODES: bool = false;
+    const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
     fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
         open(url, store)
     }
 
-    /// Access codes of the environment are for other devices.
-    fn begin(session: &mut Session<Self>, _codes: Vec<Code>) -> Asking {
+    fn begin(session: &mut Session<Self>, _given: &Given) -> Asking {
         session.station().asking
     }
 

@@ -1,0 +1,64 @@
+//! Access codes on the command line: `--code` of every command and of the window, and the environment before it. No message
+//! repeats what may be a code.
+
+use std::str::FromStr;
+
+use clap::Args;
+
+use crate::cli::{Failure, Result};
+use crate::devices::hiperface::procedures::AccessCodes;
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
+
+/// The option of every command.
+#[derive(Args)]
+pub(super) struct CodeOption {
+    /// An access code other than 55h, of a device that has them, as N=HEX; repeatable. Also in ENCODER_STUDIO_CODES="0=66,2=1A".
+    #[arg(long = "code", global = true, value_name = "N=HEX")]
+    // Taken as text: a message about a wrong argument repeats it, and this may be a code.
+    pub(super) codes: Vec<String>,
+}
+
+/// An access code with its number.
+#[derive(Clone, Copy)]
+struct Code {
+    number: CodeNumber,
+    code: AccessCode,
+}
+
+impl FromStr for Code {
+    type Err = String;
+
+    /// The message never repeats the text: it may be a code.
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let form = || "an access code is given as N=HEX with N from 0 to 3, as in 2=1A".to_owned();
+        let (number, code) = text.split_once('=').ok_or_else(form)?;
+        let number = number.trim().parse().ok().and_then(CodeNumber::new).ok_or_else(form)?;
+        Ok(Code { number, code: parse_code(code).ok_or_else(form)? })
+    }
+}
+
+/// An access code: one or two hex digits, with or without `0x` or a final `h`.
+pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
+    match crate::bits::parse_hex(text.trim()).ok()?.as_slice() {
+        [byte] => Some(AccessCode::new(*byte)),
+        _ => None,
+    }
+}
+
+/// Codes of the environment, then those of the command line.
+pub(super) fn given(option: &CodeOption) -> Result<AccessCodes> {
+    let mut codes = Vec::new();
+    if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {
+        for code in text.split(',').filter(|code| !code.trim().is_empty()) {
+            codes.push(read(code.trim(), "ENCODER_STUDIO_CODES")?);
+        }
+    }
+    for code in &option.codes {
+        codes.push(read(code, "--code")?);
+    }
+    Ok(codes.into_iter().map(|Code { number, code }| (number, code)).collect())
+}
+
+fn read(text: &str, from: &str) -> Result<Code> {
+    text.parse().map_err(|why| Failure::Usage(format!("{from}: {why}")))
+}
