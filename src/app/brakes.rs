@@ -6,16 +6,33 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::devices::hiperdrive::jobs::Motion;
 use crate::worker::Stopper;
+
+/// What stops the drives of a session when the program ends. A handle that is shared with the session: it works from any
+/// thread, whatever the session does and whether the window still draws or not.
+pub trait Brake: Send {
+    /// The program ends: asks for all drives to stop, to be switched off, and their connection to be closed. From then on
+    /// nothing moves any more, whatever else is asked. Does not wait, and may be called again.
+    fn leave(&self);
+
+    /// The device holds a connection that was opened here, over which drives move, and that has not been closed. After
+    /// [`leave`](Self::leave) this becomes false as soon as the drives are stopped and the connection is closed.
+    fn is_connected(&self) -> bool;
+
+    /// The session is gone: nothing else has a handle to its drives, so that nothing here can move them.
+    fn is_left_over(&self) -> bool;
+}
 
 /// All drives that can be moved from here. Clones share them.
 #[derive(Clone, Default)]
 pub struct Brakes(Arc<Shared>);
 
+/// A session with drives: what stops them, and what ends its jobs.
+type Session = (Box<dyn Brake>, Stopper);
+
 #[derive(Default)]
 struct Shared {
-    sessions: Mutex<Vec<(Motion, Stopper)>>,
+    sessions: Mutex<Vec<Session>>,
     /// Nothing moves any more.
     released: AtomicBool,
     /// The window closes.
@@ -30,22 +47,22 @@ impl Brakes {
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
     /// Drives of a session that begins.
-    pub(crate) fn add(&self, motion: Motion, stopper: Stopper) {
+    pub(crate) fn add(&self, brake: Box<dyn Brake>, stopper: Stopper) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_left_over());
         // Under the lock that `begin` takes as well: a session is left by the one or by the other.
         if self.has_begun() {
-            motion.leave();
+            brake.leave();
             stopper.stop();
         }
-        sessions.push((motion, stopper));
+        sessions.push((brake, stopper));
     }
 
     /// Stops all drives, switches them off and closes their connections. Nothing moves any more. Does not wait.
     pub fn begin(&self) {
         self.0.released.store(true, Ordering::SeqCst);
         let sessions = self.sessions();
-        sessions.iter().for_each(|(motion, _)| motion.leave());
+        sessions.iter().for_each(|(brake, _)| brake.leave());
         // Jobs end, and what waits wakes up.
         sessions.iter().for_each(|(_, stopper)| stopper.stop());
     }
@@ -57,7 +74,7 @@ impl Brakes {
 
     /// No drive is connected.
     pub fn is_done(&self) -> bool {
-        !self.sessions().iter().any(|(motion, _)| motion.is_connected())
+        !self.sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
     /// Waits until no drive is connected, for at most so long. Whether that is so.
@@ -75,7 +92,7 @@ impl Brakes {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }
 
-    fn sessions(&self) -> MutexGuard<'_, Vec<(Motion, Stopper)>> {
+    fn sessions(&self) -> MutexGuard<'_, Vec<Session>> {
         self.0.sessions.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -47,7 +47,7 @@ mod trace;
 pub(crate) mod track;
 
 pub use action::{Action, Desk, Done, ReviewAction};
-pub use brakes::Brakes;
+pub use brakes::{Brake, Brakes};
 pub(crate) use devices::{ActContext, DeviceMemory, DeviceModel, MotionControl, Prepare};
 pub use devices::{AnyDevice, DeviceCommand, OpenDevice};
 pub(crate) use drives::Marks;

@@ -3,7 +3,6 @@
 /// Outside a device, or in another one.
 pub(crate) const KNOWS_A_DEVICE: &[&str] = &[
     "src/app/action.rs",
-    "src/app/brakes.rs",
     "src/app/connect/mod.rs",
     "src/app/devices.rs",
     "src/app/documents.rs",

@@ -4,6 +4,7 @@
 mod act;
 mod action;
 pub mod axis;
+mod brake;
 mod connect_form;
 mod desk;
 mod discovery;

@@ -103,7 +103,7 @@ impl Unit {
         let motion = opened.aside.motion.clone();
         self.session.take_line(opened, services);
         if let Some(line) = self.session.line() {
-            services.brakes.add(motion, line.stopper());
+            services.brakes.add(Box::new(motion), line.stopper());
         }
         self.submit(HiperdriveJob::Hello, services);
     }

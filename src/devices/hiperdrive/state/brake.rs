@@ -1,0 +1,18 @@
+//! The drives of a session among those that stop when the program ends.
+
+use crate::app::Brake;
+use crate::devices::hiperdrive::jobs::Motion;
+
+impl Brake for Motion {
+    fn leave(&self) {
+        Motion::leave(self);
+    }
+
+    fn is_connected(&self) -> bool {
+        Motion::is_connected(self)
+    }
+
+    fn is_left_over(&self) -> bool {
+        Motion::is_left_over(self)
+    }
+}
