@@ -10,7 +10,6 @@ pub(crate) const KNOWS_A_DEVICE: &[&str] = &[
     "src/app/explain/detail/tests.rs",
     "src/app/opening.rs",
     "src/app/question.rs",
-    "src/app/recorded.rs",
     "src/app/services.rs",
     "src/app/studio.rs",
     "src/app/tab.rs",

@@ -16,6 +16,8 @@ mod memory;
 mod model;
 mod news;
 mod record;
+#[cfg(test)]
+mod recorded;
 mod review;
 mod table;
 mod texts;

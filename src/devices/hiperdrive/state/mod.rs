@@ -19,6 +19,8 @@ pub mod network;
 mod news;
 mod outside;
 mod record;
+#[cfg(test)]
+mod recorded;
 mod remembered;
 mod review;
 mod rows;

@@ -13,6 +13,8 @@ mod model;
 mod mounting;
 mod news;
 mod record;
+#[cfg(test)]
+mod recorded;
 mod rest;
 mod review;
 pub mod rules;

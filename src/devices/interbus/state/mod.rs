@@ -16,6 +16,8 @@ mod news;
 mod preview;
 pub mod reader;
 mod record;
+#[cfg(test)]
+mod recorded;
 mod review;
 pub mod said;
 pub mod staged;

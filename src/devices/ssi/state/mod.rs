@@ -14,6 +14,8 @@ mod form;
 mod model;
 mod news;
 mod record;
+#[cfg(test)]
+mod recorded;
 mod search;
 pub mod strip;
 mod texts;

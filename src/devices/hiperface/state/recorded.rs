@@ -1,0 +1,9 @@
+//! A draft as it stands in people's files: it is read, and written word for word the same.
+
+use crate::app::recorded::assert_recorded;
+use crate::devices::hiperface::jobs::Hiperface;
+
+#[test]
+fn a_draft_is_read_and_written_as_recorded() {
+    assert_recorded::<Hiperface>("hiperface", "[(0,2,60),(3,15,255)]");
+}

@@ -1,0 +1,9 @@
+//! A draft as it stands in people's files: it is read, and written word for word the same.
+
+use crate::app::recorded::assert_recorded;
+use crate::devices::ssi::jobs::Ssi;
+
+#[test]
+fn a_draft_is_read_and_written_as_recorded() {
+    assert_recorded::<Ssi>("ssi", "[\"(path:[Entry(\\\"clocks\\\")],from:Some(\\\"24\\\"))\"]");
+}
