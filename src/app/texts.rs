@@ -94,6 +94,15 @@ impl Text {
         self
     }
 
+    /// With another text in place of what stands for `{name}`; as it is where nothing does.
+    #[must_use]
+    pub(crate) fn replacing(mut self, name: &str, text: &Text) -> Self {
+        for (_, argument) in self.arguments.iter_mut().filter(|(own, _)| *own == name) {
+            *argument = Argument::Text(text.clone());
+        }
+        self
+    }
+
     /// With a name for `{name}` that stands in no table: as it is in English and in German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {

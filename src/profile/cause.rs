@@ -5,7 +5,10 @@ use std::error::Error;
 use std::fmt;
 
 /// Why a text is refused, in the type of the device that refuses it. It reads like that error, and is equal to one like it.
-pub struct Cause(Box<dyn Fact>);
+pub struct Cause {
+    fact: Box<dyn Fact>,
+    arguments: Vec<(&'static str, String)>,
+}
 
 trait Fact: Any + Error + Send + Sync {
     fn boxed(&self) -> Box<dyn Fact>;
@@ -26,37 +29,48 @@ impl<E: Error + Clone + Eq + Send + Sync + 'static> Fact for E {
 impl Cause {
     /// An error of a device.
     pub fn new<E: Error + Clone + Eq + Send + Sync + 'static>(error: E) -> Self {
-        Cause(Box::new(error))
+        Cause { fact: Box::new(error), arguments: Vec::new() }
+    }
+
+    /// With arguments of the error's words that are phrases themselves, by the names that they have in the table of texts.
+    #[must_use]
+    pub fn with_arguments(self, arguments: Vec<(&'static str, String)>) -> Self {
+        Cause { arguments, ..self }
+    }
+
+    /// Arguments of the error's words that are phrases themselves.
+    pub fn arguments(&self) -> &[(&'static str, String)] {
+        &self.arguments
     }
 
     /// The error, where it is of this type.
     pub fn get<E: Error + 'static>(&self) -> Option<&E> {
-        let any: &dyn Any = self.0.as_ref();
+        let any: &dyn Any = self.fact.as_ref();
         any.downcast_ref()
     }
 }
 
 impl Clone for Cause {
     fn clone(&self) -> Self {
-        Cause(self.0.boxed())
+        Cause { fact: self.fact.boxed(), arguments: self.arguments.clone() }
     }
 }
 
 impl fmt::Debug for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Debug::fmt(&self.0, f)
+        fmt::Debug::fmt(&self.fact, f)
     }
 }
 
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(&self.0, f)
+        fmt::Display::fmt(&self.fact, f)
     }
 }
 
 impl PartialEq for Cause {
     fn eq(&self, other: &Self) -> bool {
-        self.0.equals(other.0.as_ref())
+        self.fact.equals(other.fact.as_ref())
     }
 }
 
@@ -64,6 +78,6 @@ impl Eq for Cause {}
 
 impl Error for Cause {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
-        self.0.source()
+        self.fact.source()
     }
 }

@@ -2,11 +2,10 @@
 //! the system or a library says is quoted as it is.
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use super::{file, plain};
 use crate::app::{COMMON, Text};
-use crate::devices::ssi::state::explain as ssi;
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
 use crate::sim::ConfigError;
@@ -178,6 +177,11 @@ pub fn phrase(words: &str) -> Text {
     PHRASES.iter().find_map(|id| COMMON.recognised(id, words)).unwrap_or_else(|| plain(words))
 }
 
+/// A phrase of a lower layer, some arguments of which are phrases themselves.
+pub fn phrase_with(words: &str, arguments: &[(&'static str, String)]) -> Text {
+    arguments.iter().fold(phrase(words), |text, (name, words)| text.replacing(name, &phrase(words)))
+}
+
 /// A text that is no link, or a parameter that it does not take.
 pub fn url(error: &UrlError) -> Text {
     match error {
@@ -223,7 +227,7 @@ pub fn document(error: &ProfileError) -> Text {
             Text::new("detail.value").with("path", path).with_text("what", phrase(what))
         }
         ProfileError::Refused { path, cause } => {
-            let what = cause.get().map_or_else(|| phrase(&cause.to_string()), ssi::cannot_work);
+            let what = phrase_with(&cause.to_string(), cause.arguments());
             Text::new("detail.value").with("path", path).with_text("what", what)
         }
         // These have sentences of their own.

@@ -7,7 +7,9 @@ pub mod signal;
 use std::path::Path;
 
 pub(crate) use detail::syntax;
-pub use detail::{document, logbook_problem, phrase, recording, setting, url};
+#[cfg(test)]
+pub(crate) use detail::tests::check as in_both_languages;
+pub use detail::{document, logbook_problem, phrase, phrase_with, recording, setting, url};
 
 use super::Text;
 use super::action::OpenFailed;

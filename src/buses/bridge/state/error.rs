@@ -62,7 +62,11 @@ fn number(operation: Operation) -> String {
 mod tests {
     use super::*;
     use crate::app::Language::{English, German};
+    use crate::app::explain::{in_both_languages, setting};
     use crate::buses::bridge::protocol::BodyError;
+    use crate::buses::bridge::sim::Adapter;
+    use crate::link::Query;
+    use crate::sim::AT_ADAPTER;
 
     #[test]
     fn each_code_has_words_of_its_own() {
@@ -100,6 +104,18 @@ mod tests {
             let (english, german) = (adapter(&error).words(English), adapter(&error).words(German));
             assert!(english.contains(fact) && german.contains(fact), "{english} {german}");
             assert_ne!(english, german);
+        }
+    }
+
+    #[test]
+    fn a_wrong_setting_is_told_in_both_languages() {
+        let queries = "sed=1 seed=x firmware=1 serial=x rpm=x waver=x position=x temperature=x errors=x filter=x \
+                       cycles=x pulses=x calibration=x calibration-silent=x echo=x order=x line=x noise=x ssi=x \
+                       ssi-error=x ssi=afs60&ssi-error=x supply=x uart=x motor=x version=x";
+        for text in queries.split_whitespace() {
+            let query: Query = text.parse().unwrap();
+            let error = Adapter::from_pairs(query.pairs(), &AT_ADAPTER).err().unwrap();
+            in_both_languages(&setting(&error), &error);
         }
     }
 }

@@ -3,6 +3,8 @@
 mod check;
 mod damage;
 mod guide;
+#[cfg(test)]
+mod phrases;
 mod plan;
 mod write;
 

@@ -8,6 +8,8 @@ mod doing;
 mod frame;
 mod label;
 mod op;
+#[cfg(test)]
+mod phrases;
 mod types;
 mod words;
 

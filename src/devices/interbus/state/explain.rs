@@ -3,6 +3,8 @@
 mod check;
 mod gateway;
 mod item;
+#[cfg(test)]
+mod phrases;
 mod write;
 
 use crate::devices::interbus::state::TEXTS;

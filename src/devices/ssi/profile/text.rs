@@ -35,8 +35,10 @@ impl Profile for SsiProfile {
         let mut unknown = Kept::default();
         let path = entries.path_of("frame");
         let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
-        let layout = Layout::new(descriptor.clone())
-            .map_err(|cause| ProfileError::Refused { path, cause: Cause::new(cause) })?;
+        let layout = Layout::new(descriptor.clone()).map_err(|error| {
+            let arguments = error.phrases();
+            ProfileError::Refused { path, cause: Cause::new(error).with_arguments(arguments) }
+        })?;
         let direction = word(entries, "direction")?.unwrap_or_default();
         let preset = entries.optional("preset", NUMBER)?.unwrap_or(0);
         let last = layout.coding().last();

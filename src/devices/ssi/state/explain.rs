@@ -2,6 +2,8 @@
 
 mod check;
 mod family;
+#[cfg(test)]
+mod phrases;
 mod refused;
 
 use crate::app::Text;
@@ -15,7 +17,6 @@ use crate::devices::ssi::state::TEXTS;
 
 pub use check::check;
 pub use family::{note, store};
-pub(crate) use refused::cannot_work;
 pub use refused::{format, frame_text, layout, settings};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.

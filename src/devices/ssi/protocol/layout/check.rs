@@ -106,6 +106,18 @@ pub enum LayoutError {
     },
 }
 
+impl LayoutError {
+    /// Arguments of its words that are phrases themselves.
+    pub fn phrases(&self) -> Vec<(&'static str, String)> {
+        match self {
+            LayoutError::Overlap { first, second, .. } => vec![("first", first.clone()), ("second", second.clone())],
+            LayoutError::Behind { name, .. } => vec![("name", name.clone())],
+            LayoutError::Many { what, .. } => vec![("what", (*what).to_owned())],
+            _ => Vec::new(),
+        }
+    }
+}
+
 /// The clocks of a word and who has taken them.
 struct Clocks {
     clocks: u8,

@@ -1,30 +1,13 @@
 //! Why a layout cannot be: what the frame, its family or a format string says, in both languages.
 
 use crate::app::Text;
-use crate::app::explain::{phrase, plain};
+use crate::app::explain::{phrase, phrase_with, plain};
 use crate::devices::ssi::protocol::{FormatError, FrameTextError, LayoutError, SettingsError};
 use crate::devices::ssi::state::TEXTS;
 
 /// A frame that cannot work.
 pub fn layout(error: &LayoutError) -> Text {
-    refused(cannot_work(error))
-}
-
-/// Why a frame cannot work.
-pub(crate) fn cannot_work(error: &LayoutError) -> Text {
-    match error {
-        LayoutError::Overlap { clock, first, second } => Text::new("phrase.ssi_overlap")
-            .with("clock", clock)
-            .with_text("first", phrase(first))
-            .with_text("second", phrase(second)),
-        LayoutError::Behind { name, clock, clocks } => {
-            Text::new("phrase.ssi_behind").with_text("name", phrase(name)).with("clock", clock).with("clocks", clocks)
-        }
-        LayoutError::Many { what, limit, count } => {
-            Text::new("phrase.ssi_many").with("limit", limit).with_text("what", phrase(what)).with("count", count)
-        }
-        other => phrase(&other.to_string()),
-    }
+    refused(phrase_with(&error.to_string(), &error.phrases()))
 }
 
 /// Settings that a family does not have.

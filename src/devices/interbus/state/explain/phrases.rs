@@ -1,0 +1,34 @@
+//! What the lower layers of the device say, in both languages.
+
+use crate::app::explain::{document, in_both_languages};
+use crate::devices::interbus::profile::InterbusProfile;
+use crate::profile::{Document, Profile};
+
+#[test]
+fn a_wrong_profile_is_told_in_both_languages() {
+    let good = r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0,
+        zero_shift: 0), shift: 8, mounting: [(item: "preset")], programs: [(program: 1, mask: 1, cams: [(cam: 0,
+        start: 1, stop: 2)])])"#;
+    assert!(Document::parse(good, InterbusProfile::FORMATS).is_ok());
+    let cases = [
+        ("parameters:", "parametres:"),
+        ("3600", "-1"),
+        ("\"cw\"", "\"left\""),
+        ("shift: 8", "shift: 26"),
+        ("\"preset\"", "7"),
+        ("\"preset\"", "\"operating-time\""),
+        ("\"preset\"", "\"cam:9:0\""),
+        ("\"preset\"", "\"cam:1:8\""),
+        ("\"preset\"", "\"x\""),
+        ("program: 1", "program: 0"),
+        ("mask: 1", "mask: 256"),
+        ("cam: 0", "cam: 8"),
+        ("cams: [", "cams: [(cam: 0, start: 1, stop: 2), "),
+        ("programs: [", "programs: [(program: 1, mask: 1), "),
+        ("start: 1, ", ""),
+    ];
+    for (from, to) in cases {
+        let error = Document::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
+        in_both_languages(&document(&error), &error);
+    }
+}
