@@ -47,9 +47,9 @@ impl<K: Ord + Copy> Edits<K> {
         });
     }
 
-    /// Takes edits back, as one step that can be undone.
-    pub(crate) fn revert(&mut self, is_meant: impl Fn(K) -> bool) {
-        self.step(|edits| edits.retain(|at, _| !is_meant(*at)));
+    /// Takes edits back, as one step that can be undone. False where none is meant.
+    pub(crate) fn revert(&mut self, is_meant: impl Fn(K) -> bool) -> bool {
+        self.step(|edits| edits.retain(|at, _| !is_meant(*at)))
     }
 
     /// Forgets what is no edit any more: the device was read again, or a step was undone.
@@ -87,9 +87,9 @@ impl<K: Ord + Copy> Edits<K> {
         self.history.forget();
     }
 
-    fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, u8>)) {
+    fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, u8>)) -> bool {
         let mut after = self.edits.clone();
         change(&mut after);
-        self.history.step(&mut self.edits, after);
+        self.history.step(&mut self.edits, after)
     }
 }

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Severity, Tab};
+use encoder_studio::app::{Action, Recording, Severity, Tab};
 use encoder_studio::devices::biss::protocol::Role;
 use encoder_studio::devices::biss::state::{Action as Biss, Mark};
 use encoder_studio::devices::biss::state::{BissForm, BissWay};

@@ -4,7 +4,7 @@ use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::analysis::history::Flags;
-use encoder_studio::app::{Action, Severity, Studio, Tab};
+use encoder_studio::app::{Action, Recording, Severity, Studio, Tab};
 use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
 
 use crate::biss_support::is_read;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Severity, Tab, Theme};
+use encoder_studio::app::{Action, Recording, Severity, Tab, Theme};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};

@@ -2,7 +2,7 @@
 
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::{Action, JobEnd};
+use encoder_studio::app::{Action, JobEnd, PendingEdits};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 

@@ -4,7 +4,7 @@
 use encoder_studio::analysis::quality::Verdict;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Severity};
+use encoder_studio::app::{Action, PendingEdits, Severity};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::state::commutation::{
     Action as Assistant, Form, Kind, Slot, Source, Storage, Vector,

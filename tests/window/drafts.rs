@@ -4,7 +4,7 @@ use encoder_studio::app::DeviceCommand;
 use std::fs;
 
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Severity};
+use encoder_studio::app::{Action, PendingEdits, Severity};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::support::Desk;

@@ -6,7 +6,7 @@ use std::fs;
 use encoder_studio::app::diverged::Resolve;
 use encoder_studio::app::review::{Permit, Sheet, Stage};
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
+use encoder_studio::app::{Action, FileQuestion, Language, PendingEdits, Severity, Studio};
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 use encoder_studio::kinds::FORMATS;

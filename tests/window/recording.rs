@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::app::recorder::{self, Line, Recorder};
-use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Severity, Studio};
+use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Recording, Severity, Studio};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::losing::lost;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use encoder_studio::app::diverged::{Resolve, Side};
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, AnyDevice, FileQuestion, SessionId, Severity, Studio};
+use encoder_studio::app::{Action, AnyDevice, FileQuestion, PendingEdits, SessionId, Severity, Studio};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit as HiperdriveEdit};
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};

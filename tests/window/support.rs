@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, World, connect};
+use encoder_studio::app::{Action, Patience, Recording, ReviewAction, Severity, Studio, World, connect};
 use encoder_studio::devices::biss::jobs as biss;
 use encoder_studio::devices::biss::procedures::Way;
 use encoder_studio::devices::hiperdrive::jobs as hiperdrive;

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::{Action, Language, Tab};
+use encoder_studio::app::{Action, Language, PendingEdits, Tab};
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber};
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
 

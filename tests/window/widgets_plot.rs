@@ -6,7 +6,7 @@ use std::time::Duration;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
-use encoder_studio::app::{Action, FileQuestion};
+use encoder_studio::app::{Action, FileQuestion, Recording};
 use encoder_studio::app::{Desk as Of, Language, recorder};
 
 use crate::screen::Screen;

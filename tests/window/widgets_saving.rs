@@ -3,7 +3,7 @@
 use std::fs;
 
 use egui::{Key, Modifiers};
-use encoder_studio::app::{Action, Language};
+use encoder_studio::app::{Action, Language, PendingEdits};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::screen::Screen;

@@ -4,7 +4,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Language};
+use encoder_studio::app::{Action, Language, PendingEdits};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
 
 use crate::screen::Screen;

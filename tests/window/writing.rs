@@ -2,7 +2,7 @@
 
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Listed;
-use encoder_studio::app::{Action, Done, Language, Severity, Text};
+use encoder_studio::app::{Action, Done, Language, PendingEdits, Severity, Text};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};

@@ -8,13 +8,18 @@ use crate::app::documents::only_looked_at;
 use crate::app::recorder::Recorder;
 use crate::app::review::Sheet;
 use crate::app::services::{Services, World};
-use crate::app::session::{Drafted, Listed, OnLine, Saved};
+use crate::app::session::{Drafted, Kind, Listed, OnDesk, OnLine, Saved, WithMemory};
 use crate::app::studio::SessionId;
-use crate::app::{AnyDevice, DeviceAction, DeviceCommand, Marks, RememberedDrives, SineCosineSource, Tab, Text};
+use crate::app::{
+    AnyDevice, DeviceAction, DeviceCommand, EditStep, Marks, Recording, RememberedDrives, Severity, SineCosineSource,
+    Tab, Text,
+};
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker;
+
+type Job<T> = <<T as OnDesk>::Device as worker::Device>::Job;
 
 /// A device, or a profile of one, with everything that is known of it.
 pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
@@ -38,57 +43,71 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
     /// Does what this kind alone can be asked for.
     fn act(&mut self, action: Self::Action, context: &mut ActContext<'_>);
 
-    /// Does what every device can be asked for, opening a link and writing into another device aside.
-    fn command(&mut self, command: DeviceCommand, services: &mut Services);
-
     /// Handles the result of a task that this device started.
     fn done(&mut self, done: Self::Done, services: &mut Services);
 
-    /// Returns the profile as the user wants it, to be written into another device; `None` where there is none.
-    fn wanted_body(&self) -> Option<Body>;
+    /// Returns the job that reads the position once.
+    fn position_job(&self) -> Job<Self>;
 
-    /// Takes over a profile: opens the review of a write, or edits the layout to match it.
-    ///
-    /// # Errors
-    /// It is of another kind of device.
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
+    /// Returns what is recorded of it.
+    fn record(&self) -> &dyn Recording;
 
-    /// Returns the number of edits that are not written.
-    fn edits(&self) -> usize;
-
-    /// There are edits that are not written.
-    fn is_dirty(&self) -> bool;
-
-    /// There is an edit to take back.
-    fn can_undo(&self) -> bool;
-
-    /// There is an edit to do again.
-    fn can_redo(&self) -> bool;
-
-    /// Saves a profile.
-    fn save(&mut self, path: PathBuf, services: &mut Services);
-
-    /// A profile can be saved now.
-    fn is_savable(&self) -> bool;
-
-    /// Returns what was recorded of it.
-    fn recorder(&self) -> &Recorder;
-
-    /// Returns what was recorded of it, to be changed.
-    fn recorder_mut(&mut self) -> &mut Recorder;
+    /// Returns what is recorded of it, to be changed.
+    fn record_mut(&mut self) -> &mut dyn Recording;
 
     /// Returns all its recorders, that of what is shown first.
     fn recorders(&self) -> Vec<&Recorder> {
-        vec![self.recorder()]
+        vec![self.record().recorder()]
     }
 
     /// Returns all its recorders, to be changed.
     fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
-        vec![self.recorder_mut()]
+        vec![self.record_mut().recorder_mut()]
     }
 
-    /// Returns the number of samples that were taken and dropped before they were recorded.
-    fn dropped(&self) -> u64;
+    /// Does what every device can be asked for.
+    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
+        match command {
+            // The studio opens links, and knows other sessions.
+            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
+            DeviceCommand::Read => {
+                if !self.session().read_file_again(services) {
+                    self.read_device(services);
+                }
+            }
+            DeviceCommand::ReadPosition => self.submit(self.position_job(), services),
+            DeviceCommand::Poll(interval) => {
+                if let Some(begins) = self.session_mut().poll(interval) {
+                    self.record_mut().poll(interval, begins);
+                }
+            }
+            DeviceCommand::Undo => self.step(|edits| edits.undo()),
+            DeviceCommand::Redo => self.step(|edits| edits.redo()),
+            DeviceCommand::RevertAll => self.step(|edits| edits.revert()),
+            DeviceCommand::Review => {
+                self.with_memory(services, |memory, services| memory.review_edits(services));
+            }
+            DeviceCommand::AskSave => self.ask_where_to_save(services),
+            DeviceCommand::Restore(path) => {
+                self.with_memory(services, |memory, services| memory.read_backup(path, services));
+            }
+        }
+    }
+
+    /// Reads everything that there is to be seen of the device.
+    fn read_device(&mut self, services: &mut Services) {
+        self.submit(Self::Device::survey(), services);
+    }
+
+    /// Takes a step through the edits.
+    fn step(&mut self, step: EditStep) {
+        step(self.pending_mut());
+    }
+
+    /// Asks for the file of a profile.
+    fn ask_where_to_save(&mut self, services: &mut Services) {
+        self.session().ask_where_to_save(services);
+    }
 
     /// Its positions can come as a stream, thousands a second.
     fn streams(&self) -> bool {
@@ -109,13 +128,50 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
     fn take_link(&mut self, _url: &LinkUrl) {}
 
     /// Returns its memory; `None` for a kind into which nothing is written.
-    fn memory(&self) -> Option<&dyn DeviceMemory> {
-        None
-    }
+    fn memory(&self) -> Option<&dyn DeviceMemory>;
 
     /// Returns its memory, to be changed.
-    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
-        None
+    ///
+    /// # Errors
+    /// The reason why nothing is written into such a device.
+    fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text>;
+
+    /// Does something with the memory, or says why there is none.
+    fn with_memory<R>(
+        &mut self,
+        services: &mut Services,
+        act: impl FnOnce(&mut dyn DeviceMemory, &mut Services) -> R,
+    ) -> Option<R> {
+        match self.memory_mut() {
+            Ok(memory) => Some(act(memory, services)),
+            Err(why) => {
+                services.tell(Severity::Note, vec![why], Some(&self.session().name()));
+                None
+            }
+        }
+    }
+
+    /// Returns the profile as the user wants it, to be written into another device; `None` where there is none.
+    fn wanted_body(&self) -> Option<Body> {
+        self.memory()?.wanted_body()
+    }
+
+    /// Takes over a profile: opens the review of a write, or edits the layout to match it.
+    ///
+    /// # Errors
+    /// It is of another kind of device.
+    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        self.with_memory(services, |memory, services| memory.restore(body, services)).unwrap_or(Ok(()))
+    }
+
+    /// Saves a profile.
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        self.with_memory(services, |memory, services| memory.save(path, services));
+    }
+
+    /// A profile can be saved now.
+    fn is_savable(&self) -> bool {
+        self.memory().is_some_and(DeviceMemory::is_savable)
     }
 
     /// Returns its sine and cosine; `None` for a kind that gives none.
@@ -214,6 +270,9 @@ pub(crate) trait MotionControl {
 
 /// A memory that is written through a review, and saved and restored as a profile.
 pub(crate) trait DeviceMemory {
+    /// Reviews the write of the edits.
+    fn review_edits(&mut self, services: &mut Services);
+
     /// A review of a write is open.
     fn is_reviewing(&self) -> bool;
 
@@ -225,6 +284,24 @@ pub(crate) trait DeviceMemory {
 
     /// Closes the review; what is being written goes on.
     fn close_review(&mut self);
+
+    /// Returns the profile as the user wants it; `None` where this is a device.
+    fn wanted_body(&self) -> Option<Body>;
+
+    /// Reviews the restore of a profile.
+    ///
+    /// # Errors
+    /// It is of another kind of device.
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
+
+    /// Saves a profile.
+    fn save(&mut self, path: PathBuf, services: &mut Services);
+
+    /// A profile can be saved now.
+    fn is_savable(&self) -> bool;
+
+    /// Reads a backup, to be restored.
+    fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
     /// Takes the lists of backups and writes; those of another device than the one that is connected are dropped.
     fn listed(&mut self, of: &DeviceKey, listed: Listed);
@@ -240,6 +317,10 @@ pub(crate) trait DeviceMemory {
 }
 
 impl<T: Saved> DeviceMemory for T {
+    fn review_edits(&mut self, services: &mut Services) {
+        WithMemory::review_edits(self, services);
+    }
+
     fn is_reviewing(&self) -> bool {
         self.review().is_some()
     }
@@ -247,7 +328,7 @@ impl<T: Saved> DeviceMemory for T {
     fn sheet(&self) -> Option<Sheet> {
         let running = self.session().line().and_then(|line| line.running());
         let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
-        crate::app::session::WithMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
+        WithMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))
     }
 
     fn act_review(&mut self, action: ReviewAction, services: &mut Services) {
@@ -260,7 +341,27 @@ impl<T: Saved> DeviceMemory for T {
     }
 
     fn close_review(&mut self) {
-        crate::app::session::WithMemory::close_review(self);
+        WithMemory::close_review(self);
+    }
+
+    fn wanted_body(&self) -> Option<Body> {
+        Saved::wanted_body(self)
+    }
+
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        Saved::restore(self, body, services)
+    }
+
+    fn save(&mut self, path: PathBuf, services: &mut Services) {
+        Saved::save(self, path, services);
+    }
+
+    fn is_savable(&self) -> bool {
+        self.saves_what_was_read() || self.session().is_savable()
+    }
+
+    fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
+        Saved::read_backup(self, path, services);
     }
 
     fn listed(&mut self, of: &DeviceKey, listed: Listed) {

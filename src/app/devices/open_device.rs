@@ -187,19 +187,19 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn is_dirty(&self) -> bool {
-        DeviceModel::is_dirty(self)
+        self.pending().is_dirty()
     }
 
     fn edits(&self) -> usize {
-        DeviceModel::edits(self)
+        self.pending().count()
     }
 
     fn can_undo(&self) -> bool {
-        DeviceModel::can_undo(self)
+        self.pending().can_undo()
     }
 
     fn can_redo(&self) -> bool {
-        DeviceModel::can_redo(self)
+        self.pending().can_redo()
     }
 
     fn keeps_edits(&self) -> bool {
@@ -211,15 +211,15 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn dropped(&self) -> u64 {
-        DeviceModel::dropped(self)
+        self.record().dropped()
     }
 
     fn recorder(&self) -> &Recorder {
-        DeviceModel::recorder(self)
+        self.record().recorder()
     }
 
     fn recorder_mut(&mut self) -> &mut Recorder {
-        DeviceModel::recorder_mut(self)
+        self.record_mut().recorder_mut()
     }
 
     fn recorders(&self) -> Vec<&Recorder> {
@@ -243,7 +243,7 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
-        DeviceModel::memory_mut(self)
+        DeviceModel::memory_mut(self).ok()
     }
 
     fn motion(&self) -> Option<&dyn MotionControl> {

@@ -4,7 +4,7 @@
 use super::drafts::DRAFT_BACK;
 use super::{DraftDone, DraftEdits, DraftKey, Kind, OnDesk, Phase, ProfileFile, Saving, Source};
 use crate::app::services::Services;
-use crate::app::{Severity, Text, explain};
+use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::profile::Document;
 use crate::store::FileError;
 
@@ -29,8 +29,16 @@ pub(crate) trait Drafted: OnDesk {
     /// A profile was read again from its file; edits stay.
     fn take_document(&mut self, file: ProfileFile, document: Document);
 
+    /// Returns its edits, to be counted.
+    fn pending(&self) -> &dyn PendingEdits;
+
+    /// Returns its edits, to be undone.
+    fn pending_mut(&mut self) -> &mut dyn PendingEdits;
+
     /// All edits are taken back, as one step.
-    fn revert_edits(&mut self);
+    fn revert_edits(&mut self) {
+        self.pending_mut().revert();
+    }
 
     /// A profile of a connected device was written.
     fn written_beside(&mut self, _document: Document) {}

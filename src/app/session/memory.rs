@@ -43,6 +43,9 @@ pub(crate) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         self.review().map(|review| review.sheet_with(done, |prepared, op| self.op(prepared, op)))
     }
 
+    /// Returns the change that writes the edits; `None` where there are none.
+    fn edited_change(&self) -> Option<Change<Self>>;
+
     /// What is wanted was made for another device than this one.
     fn is_for_another(&self, change: &Change<Self>) -> bool;
 
@@ -91,6 +94,17 @@ pub(crate) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         let operations = ops.iter().map(|op| Self::Device::op(prepared, op).item);
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
         services.note(Severity::Note, vec![text], Some(&self.session().name()));
+    }
+
+    /// Makes the plan of the edits, to be looked at.
+    fn review_edits(&mut self, services: &mut Services) {
+        match self.edited_change() {
+            Some(change) => self.plan(change, services),
+            None => {
+                let text = Text::new("session.nothing_edited");
+                services.tell(Severity::Note, vec![text], Some(&self.session().name()));
+            }
+        }
     }
 
     /// Makes the plan of a change, to be looked at.

@@ -7,7 +7,7 @@ use super::encoder::Encoder;
 use super::words;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
-use crate::app::{ActContext, DeviceCommand, Severity, Text};
+use crate::app::{ActContext, PendingEdits, Severity, Text};
 use crate::devices::biss::jobs::{BissJob, Change};
 use crate::devices::biss::profile::{BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, Register, RegisterAddress};
@@ -59,31 +59,6 @@ impl Encoder {
                 }
             }
             Action::Save(path) => self.save(path, services),
-        }
-    }
-
-    /// Does what every device can be asked for.
-    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        match command {
-            // The studio opens links, and knows other sessions.
-            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
-            DeviceCommand::Review => self.review_edits(services),
-            DeviceCommand::Read => {
-                if !self.session.read_file_again(services) {
-                    self.submit(BissJob::Survey, services);
-                }
-            }
-            DeviceCommand::ReadPosition => self.submit(BissJob::Position, services),
-            DeviceCommand::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
-            DeviceCommand::Undo => self.memory.undo(),
-            DeviceCommand::Redo => self.memory.redo(),
-            DeviceCommand::RevertAll => self.memory.revert(),
-            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
-            DeviceCommand::Restore(path) => self.read_backup(path, services),
         }
     }
 
@@ -154,7 +129,7 @@ impl Encoder {
 
     /// A profile was read for a file.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
-        let edits = self.is_dirty().then(|| self.edits());
+        let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::saved_unsaved(&profile).into_iter().collect();
         self.session.write_read(Body::new(profile), edits, remarks, services);
     }

@@ -1,6 +1,7 @@
 //! Edits of an encoder's plain data, kept over a crash: global address and byte.
 
 use super::encoder::Encoder;
+use crate::app::PendingEdits;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::profile::BissProfile;
@@ -34,8 +35,12 @@ impl Drafted for Encoder {
         self.memory.take_draft(edits);
     }
 
-    fn revert_edits(&mut self) {
-        self.memory.revert();
+    fn pending(&self) -> &dyn PendingEdits {
+        &self.memory
+    }
+
+    fn pending_mut(&mut self) -> &mut dyn PendingEdits {
+        &mut self.memory
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {

@@ -13,7 +13,7 @@ use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
 use crate::app::studio::SessionId;
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::procedures::{Identity, Status, Survey};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
@@ -149,11 +149,6 @@ impl Encoder {
         Some([parsed(EdsBank::Common)?, parsed(EdsBank::Encoder)?])
     }
 
-    /// An adapter is in between, which can stream positions.
-    pub fn streams(&self) -> bool {
-        self.identity().is_some_and(|own| own.adapter.is_some())
-    }
-
     /// What an adapter streams now; `None` where it does not.
     pub fn streamed(&self) -> Option<&Streamed> {
         self.record.streamed().filter(|_| self.session.is_polling())
@@ -168,19 +163,6 @@ impl Encoder {
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
-    }
-
-    /// Bytes that are edited.
-    pub(crate) fn edits(&self) -> usize {
-        self.memory.edits().len()
-    }
-
-    pub(crate) fn can_undo(&self) -> bool {
-        self.memory.can_undo()
-    }
-
-    pub(crate) fn can_redo(&self) -> bool {
-        self.memory.can_redo()
     }
 
     /// There are edits that are not written.

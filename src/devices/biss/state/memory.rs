@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::app::PendingEdits;
 use crate::app::edits::Edits;
 use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddress};
 
@@ -110,11 +111,6 @@ impl Memory {
         self.edits.get(at).is_some()
     }
 
-    /// There is something to write.
-    pub fn is_dirty(&self) -> bool {
-        self.edits.is_dirty()
-    }
-
     /// Edits bytes from `start` on, as one step that can be undone.
     ///
     /// # Errors
@@ -134,37 +130,10 @@ impl Memory {
         Ok(())
     }
 
-    /// Takes all edits back, as one step that can be undone.
-    pub fn revert(&mut self) {
-        self.edits.revert(|_| true);
-    }
-
     /// Takes the edits of `count` bytes back.
     pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
         let range = start.global()..start.global().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
         self.edits.revert(|at| range.contains(&at.global()));
-    }
-
-    /// There is a step to undo.
-    pub fn can_undo(&self) -> bool {
-        self.edits.can_undo()
-    }
-
-    /// There is a step to do again.
-    pub fn can_redo(&self) -> bool {
-        self.edits.can_redo()
-    }
-
-    /// Undoes the last step.
-    pub fn undo(&mut self) {
-        self.edits.undo();
-        self.settle();
-    }
-
-    /// Does the last undone step again.
-    pub fn redo(&mut self) {
-        self.edits.redo();
-        self.settle();
     }
 
     /// The edits were written: what led to them cannot be undone any more.
@@ -209,6 +178,40 @@ impl Memory {
     fn settle(&mut self) {
         let read = &self.read;
         self.edits.settle(|at, byte| read.get(&at) != Some(&byte));
+    }
+}
+
+impl PendingEdits for Memory {
+    fn count(&self) -> usize {
+        self.edits().len()
+    }
+
+    fn is_dirty(&self) -> bool {
+        self.edits.is_dirty()
+    }
+
+    fn can_undo(&self) -> bool {
+        self.edits.can_undo()
+    }
+
+    fn can_redo(&self) -> bool {
+        self.edits.can_redo()
+    }
+
+    fn undo(&mut self) -> bool {
+        let done = self.edits.undo();
+        self.settle();
+        done
+    }
+
+    fn redo(&mut self) -> bool {
+        let done = self.edits.redo();
+        self.settle();
+        done
+    }
+
+    fn revert(&mut self) -> bool {
+        self.edits.revert(|_| true)
     }
 }
 

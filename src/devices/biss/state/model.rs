@@ -1,16 +1,13 @@
 //! A BiSS encoder among the devices of the studio.
 
 use std::convert::Infallible;
-use std::path::PathBuf;
 
 use super::{Action, Encoder};
 use crate::app::action::Opened;
-use crate::app::recorder::Recorder;
-use crate::app::services::Services;
-use crate::app::session::Saved;
-use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Tab};
-use crate::devices::biss::jobs::Biss;
-use crate::profile::{Body, ProfileError};
+use crate::app::services::{JobEnd, Services};
+use crate::app::session::OnLine;
+use crate::app::{ActContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
+use crate::devices::biss::jobs::{Biss, BissJob};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Biss;
@@ -18,74 +15,43 @@ impl DeviceModel for Encoder {
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
-        Encoder::connect(self, opened, services);
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.motor = opened.aside.clone();
+        self.session.take_line(opened, services);
+        self.wish_watched();
+        self.submit(BissJob::Survey, services);
     }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context);
     }
 
-    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        Encoder::command(self, command, services);
-    }
-
     fn done(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Saved::wanted_body(self)
+    fn position_job(&self) -> BissJob {
+        BissJob::Position
     }
 
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        Saved::restore(self, body, services)
+    fn record(&self) -> &dyn Recording {
+        &self.record
     }
 
-    fn edits(&self) -> usize {
-        Encoder::edits(self)
-    }
-
-    fn is_dirty(&self) -> bool {
-        Encoder::is_dirty(self)
-    }
-
-    fn can_undo(&self) -> bool {
-        Encoder::can_undo(self)
-    }
-
-    fn can_redo(&self) -> bool {
-        Encoder::can_redo(self)
-    }
-
-    fn save(&mut self, path: PathBuf, services: &mut Services) {
-        Saved::save(self, path, services);
-    }
-
-    fn is_savable(&self) -> bool {
-        self.saves_what_was_read() || self.session.is_savable()
-    }
-
-    fn recorder(&self) -> &Recorder {
-        self.record.recorder()
-    }
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        self.record.recorder_mut()
-    }
-
-    fn dropped(&self) -> u64 {
-        self.record.dropped()
+    fn record_mut(&mut self) -> &mut dyn Recording {
+        &mut self.record
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {
         Some(self)
     }
 
-    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
-        Some(self)
+    fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text> {
+        Ok(self)
     }
 
     fn streams(&self) -> bool {
-        Encoder::streams(self)
+        self.identity().is_some_and(|own| own.adapter.is_some())
     }
 }

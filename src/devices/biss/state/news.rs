@@ -3,7 +3,6 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::action::Opened;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory, first};
@@ -68,16 +67,6 @@ impl Kind for Biss {
 }
 
 impl Encoder {
-    /// The link is open: the encoder is read.
-    pub(crate) fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
-        self.record.begin(&opened.began);
-        self.motor = opened.aside.clone();
-        self.session.take_line(opened, services);
-        self.wish_watched();
-        self.submit(BissJob::Survey, services);
-    }
-
     /// Reads the next of the banks that were written.
     fn read_written(&mut self, services: &mut Services) {
         if let Some(bank) = self.read_after.pop_first() {

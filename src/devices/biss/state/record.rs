@@ -7,6 +7,7 @@ use crate::devices::biss::state::TEXTS;
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
+use crate::app::Recording;
 use crate::app::Text;
 use crate::app::explain::plain;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
@@ -68,27 +69,10 @@ impl Streamed {
 }
 
 impl Record {
-    /// Position, speed and acceleration as lines, and what is watched.
-    pub fn recorder(&self) -> &Recorder {
-        &self.track.recorder
-    }
-
-    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.track.recorder
-    }
-
     /// A session has begun; what was recorded before stays.
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.crc_errors, self.stream) = (None, 0, None);
         self.track.begin(began);
-    }
-
-    /// Positions are wished at this interval from now on.
-    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
-        if interval.is_none() {
-            self.stream = None;
-        }
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
@@ -219,11 +203,6 @@ impl Record {
         self.stream.as_ref()
     }
 
-    /// Samples that came too fast to be recorded, and frames that an adapter could not send.
-    pub fn dropped(&self) -> u64 {
-        self.track.dropped().saturating_add(self.lost)
-    }
-
     /// Positions that are recorded.
     pub fn positions(&self) -> u64 {
         self.track.positions()
@@ -233,6 +212,28 @@ impl Record {
     pub(super) fn forget(&mut self) {
         self.track.forget();
         (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
+    }
+}
+
+impl Recording for Record {
+    fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    // Frames that an adapter could not send count as well.
+    fn dropped(&self) -> u64 {
+        self.track.dropped().saturating_add(self.lost)
+    }
+
+    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+        if interval.is_none() {
+            self.stream = None;
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use super::guide::{End, Guide};
 use super::review::{Review, ReviewState, is_guided};
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Cut, Kind, Known, Saved, WithMemory, without_edits};
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{
     Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key,
 };
@@ -27,21 +27,6 @@ use crate::store::DeviceKey;
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
 
 impl Encoder {
-    pub(super) fn review_edits(&mut self, services: &mut Services) {
-        if !self.memory.is_dirty() {
-            let text = Text::new("session.nothing_edited");
-            services.tell(Severity::Note, vec![text], Some(&self.session.name()));
-            return;
-        }
-        let runs = self.memory.changes();
-        let edit = |(start, _, bytes): (_, _, Vec<u8>)| {
-            let range = RegisterRange::new(start, u8::try_from(bytes.len()).ok()?)?;
-            Some((range, bytes))
-        };
-        let edits = runs.into_iter().filter_map(edit).collect();
-        self.plan(Change::Write(edits), services);
-    }
-
     pub(crate) fn plan_restore(&mut self, profile: BissProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
@@ -104,6 +89,14 @@ impl WithMemory for Encoder {
 
     fn review_mut(&mut self) -> &mut Option<Review> {
         &mut self.review
+    }
+
+    fn edited_change(&self) -> Option<Change> {
+        let edit = |(start, _, bytes): (_, _, Vec<u8>)| {
+            let range = RegisterRange::new(start, u8::try_from(bytes.len()).ok()?)?;
+            Some((range, bytes))
+        };
+        self.memory.is_dirty().then(|| Change::Write(self.memory.changes().into_iter().filter_map(edit).collect()))
     }
 
     fn is_for_another(&self, change: &Change) -> bool {
@@ -197,7 +190,7 @@ impl Saved for Encoder {
             return Some(Err(missing));
         }
         let profile = profile_of(survey, data, survey.status.unsaved_mode());
-        let remarks = without_edits(self.edits()).into_iter().chain(words::saved_unsaved(&profile)).collect();
+        let remarks = without_edits(self.memory.count()).into_iter().chain(words::saved_unsaved(&profile)).collect();
         Some(Ok((Body::new(profile), remarks)))
     }
 

@@ -2,7 +2,7 @@
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::{Action, DeviceCommand, Text};
+use crate::app::{Action, DeviceCommand, PendingEdits, Text};
 use crate::devices::biss::protocol::{Access, Decoding, Name};
 use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{Action as Biss, Encoder, Group, Shown, TEXTS};

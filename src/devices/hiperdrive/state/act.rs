@@ -7,7 +7,7 @@ use super::unit::Unit;
 use super::words;
 use crate::app::services::Services;
 use crate::app::session::{Saved, WithMemory};
-use crate::app::{DeviceCommand, Severity, Text};
+use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperdrive::jobs::HiperdriveJob;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Wish};
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
@@ -50,42 +50,6 @@ impl Unit {
             Action::Drive(motor) => self.drive_by(motor, services),
             Action::Axis(action) => self.act_axis(action, services),
             Action::Save(path) => self.save(path, services),
-        }
-    }
-
-    /// Does what every device can be asked for.
-    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        match command {
-            // The studio opens links, and knows other sessions.
-            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
-            DeviceCommand::Read => {
-                if !self.session.read_file_again(services) {
-                    self.submit(HiperdriveJob::Survey, services);
-                }
-            }
-            DeviceCommand::ReadPosition => {
-                self.submit(HiperdriveJob::Position(self.drive()), services);
-            }
-            DeviceCommand::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
-            DeviceCommand::Undo => {
-                self.staged.undo();
-                self.refusal = None;
-            }
-            DeviceCommand::Redo => {
-                self.staged.redo();
-                self.refusal = None;
-            }
-            DeviceCommand::RevertAll => {
-                self.staged.revert();
-                self.refusal = None;
-            }
-            DeviceCommand::Review => self.review_edits(services),
-            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
-            DeviceCommand::Restore(path) => self.read_backup(path, services),
         }
     }
 
@@ -158,7 +122,7 @@ impl Unit {
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.notice_scales(&profile.image);
         self.staged.refresh_some(&profile.image);
-        let edits = self.is_dirty().then(|| self.edits());
+        let edits = self.is_dirty().then(|| self.staged.count());
         self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 }

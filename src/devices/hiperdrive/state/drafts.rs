@@ -2,6 +2,7 @@
 
 use super::staged::Kept;
 use super::unit::Unit;
+use crate::app::PendingEdits;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
@@ -35,8 +36,12 @@ impl Drafted for Unit {
         self.staged.take_draft(edits);
     }
 
-    fn revert_edits(&mut self) {
-        self.staged.revert();
+    fn pending(&self) -> &dyn PendingEdits {
+        &self.staged
+    }
+
+    fn pending_mut(&mut self) -> &mut dyn PendingEdits {
+        &mut self.staged
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {

@@ -1,16 +1,18 @@
 //! HIPERDRIVE drives behind an adapter or a hub among the devices of the studio.
 
 use std::convert::Infallible;
-use std::path::PathBuf;
 
 use super::{Action, Unit};
 use crate::app::action::Opened;
+use crate::app::line::Line;
 use crate::app::recorder::Recorder;
-use crate::app::services::Services;
-use crate::app::session::Saved;
-use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Marks, MotionControl, RememberedDrives, Tab};
-use crate::devices::hiperdrive::jobs::Hiperdrive;
-use crate::profile::{Body, ProfileError};
+use crate::app::services::{JobEnd, Services};
+use crate::app::session::OnLine;
+use crate::app::{
+    ActContext, DeviceMemory, DeviceModel, EditStep, Marks, MotionControl, Recording, RememberedDrives, Tab, Text,
+};
+use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
+use crate::devices::hiperdrive::protocol::DriveNumber;
 
 impl DeviceModel for Unit {
     const TAB: Tab = Tab::Hiperdrive;
@@ -18,87 +20,76 @@ impl DeviceModel for Unit {
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
-        Unit::connect(self, opened, services);
+        OnLine::let_go(self, JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.records.values_mut().for_each(|record| record.begin(&opened.began));
+        self.began = Some(opened.began.clone());
+        self.moves.begin(opened.aside.motion.clone());
+        self.target = opened.aside.target.clone();
+        // What was read over a link before says nothing any more.
+        (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
+        let motion = opened.aside.motion.clone();
+        self.session.take_line(opened, services);
+        if let Some(line) = self.session.line() {
+            services.brakes.add(Box::new(motion), line.stopper());
+        }
+        // The device is asked who it is, then for all it has: nothing is set, and nothing moves.
+        self.submit(HiperdriveJob::Hello, services);
     }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Unit::act(self, action, context.services);
     }
 
-    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        Unit::command(self, command, services);
-    }
-
     fn done(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Saved::wanted_body(self)
+    fn position_job(&self) -> HiperdriveJob {
+        HiperdriveJob::Position(self.drive())
     }
 
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        Saved::restore(self, body, services)
+    fn record(&self) -> &dyn Recording {
+        &self.record
     }
 
-    fn edits(&self) -> usize {
-        Unit::edits(self)
+    fn record_mut(&mut self) -> &mut dyn Recording {
+        &mut self.record
     }
 
-    fn is_dirty(&self) -> bool {
-        Unit::is_dirty(self)
-    }
-
-    fn can_undo(&self) -> bool {
-        Unit::can_undo(self)
-    }
-
-    fn can_redo(&self) -> bool {
-        Unit::can_redo(self)
-    }
-
-    fn save(&mut self, path: PathBuf, services: &mut Services) {
-        Saved::save(self, path, services);
-    }
-
-    fn is_savable(&self) -> bool {
-        self.saves_what_was_read() || self.session.is_savable()
-    }
-
-    fn recorder(&self) -> &Recorder {
-        self.record.recorder()
-    }
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        self.record.recorder_mut()
-    }
-
-    fn dropped(&self) -> u64 {
-        self.record.dropped()
+    fn step(&mut self, step: EditStep) {
+        step(&mut self.staged);
+        self.refusal = None;
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {
         Some(self)
     }
 
-    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
-        Some(self)
+    fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text> {
+        Ok(self)
     }
 
     fn recorders(&self) -> Vec<&Recorder> {
-        Unit::recorders(self).collect()
+        std::iter::once(&self.record).chain(self.records.values()).map(Recording::recorder).collect()
     }
 
     fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
-        Unit::recorders_mut(self).collect()
+        std::iter::once(&mut self.record).chain(self.records.values_mut()).map(Recording::recorder_mut).collect()
     }
 
     fn is_active(&self) -> bool {
-        Unit::is_active(self)
+        self.session.is_active() || self.is_moving()
     }
 
     fn stop(&mut self, services: &mut Services) {
-        Unit::stop(self, services);
+        self.moves.stop();
+        let pace = self.session.line.as_ref().and_then(Line::polling).filter(|_| self.moves.is_open());
+        self.session.stop(services);
+        // Whoever has the control goes on seeing the drives.
+        if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
+            line.poll(Some(pace));
+        }
     }
 
     fn motion(&self) -> Option<&dyn MotionControl> {

@@ -6,11 +6,10 @@ use super::drafts::Edits;
 use super::job;
 use super::review::ReviewState;
 use super::unit::Unit;
-use crate::app::action::Opened;
 use crate::app::review::told;
-use crate::app::services::{JobEnd, Services};
+use crate::app::services::Services;
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
-use crate::app::{Severity, Text};
+use crate::app::{Recording, Severity, Text};
 use crate::devices::hiperdrive::jobs::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
@@ -35,9 +34,9 @@ const fn has_failed(state: State) -> bool {
 /// What is kept of a session beside its thread.
 pub struct Aside {
     /// Moves its drives.
-    motion: Motion,
+    pub(super) motion: Motion,
     /// The virtual device.
-    target: Option<Target>,
+    pub(super) target: Option<Target>,
 }
 
 impl Kind for Hiperdrive {
@@ -90,24 +89,6 @@ impl Kind for Hiperdrive {
 }
 
 impl Unit {
-    /// The link is open: the device is asked who it is, then for all it has. Nothing is set, and nothing moves.
-    pub(crate) fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
-        self.record.begin(&opened.began);
-        self.records.values_mut().for_each(|record| record.begin(&opened.began));
-        self.began = Some(opened.began.clone());
-        self.moves.begin(opened.aside.motion.clone());
-        self.target = opened.aside.target.clone();
-        // What was read over a link before says nothing any more.
-        (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
-        let motion = opened.aside.motion.clone();
-        self.session.take_line(opened, services);
-        if let Some(line) = self.session.line() {
-            services.brakes.add(Box::new(motion), line.stopper());
-        }
-        self.submit(HiperdriveJob::Hello, services);
-    }
-
     /// What is to be asked as soon as the line is free: why a drive has failed, and where the one is that is shown.
     fn ask_on(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {

@@ -8,6 +8,7 @@ use jiff::Zoned;
 
 use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
+use crate::app::Recording;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::devices::hiperdrive::procedures::Reading;
@@ -30,24 +31,10 @@ pub struct Record {
 }
 
 impl Record {
-    /// Position, speed and target as lines.
-    pub fn recorder(&self) -> &Recorder {
-        &self.track.recorder
-    }
-
-    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.track.recorder
-    }
-
     /// A session has begun; what was recorded before stays.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin(began);
-    }
-
-    /// Readings are wished at this interval from now on.
-    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
     }
 
     /// So many readings were dropped before those that come next.
@@ -84,11 +71,6 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Readings that came too fast to be recorded.
-    pub fn dropped(&self) -> u64 {
-        self.track.dropped()
-    }
-
     /// Samples are missing before those that come next: another drive was shown.
     pub(super) fn gap(&mut self) {
         self.last = None;
@@ -99,6 +81,24 @@ impl Record {
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;
+    }
+}
+
+impl Recording for Record {
+    fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    fn dropped(&self) -> u64 {
+        self.track.dropped()
+    }
+
+    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
     }
 }
 

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 pub use edit::{Edit, EditError, LimitsStay};
 pub use mark::Mark;
 
+use crate::app::PendingEdits;
 use crate::app::history::History;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
@@ -170,11 +171,6 @@ impl Staged {
         Image { values: self.differences().into_iter().filter_map(wanted).collect() }
     }
 
-    /// There is something to write, into the device or into the profile.
-    pub fn is_dirty(&self) -> bool {
-        self.base != self.wanted
-    }
-
     /// Changes something, as one step that can be undone. Whether anything is other than before.
     ///
     /// # Errors
@@ -191,33 +187,6 @@ impl Staged {
     pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
         edit::edited((base, wanted), edit, self.ground, &self.families)
-    }
-
-    /// Takes all edits back, as one step that can be undone.
-    pub fn revert(&mut self) {
-        if let Some(base) = self.base.clone() {
-            self.step(base);
-        }
-    }
-
-    /// There is a step to undo.
-    pub fn can_undo(&self) -> bool {
-        self.history.can_undo()
-    }
-
-    /// There is a step to do again.
-    pub fn can_redo(&self) -> bool {
-        self.history.can_redo()
-    }
-
-    /// Undoes the last step. False when there is none.
-    pub fn undo(&mut self) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
-    }
-
-    /// Does the last undone step again. False when there is none.
-    pub fn redo(&mut self) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
     }
 
     fn step(&mut self, after: Image) -> bool {
@@ -256,6 +225,36 @@ impl Staged {
             }
         }
         self.step(wanted);
+    }
+}
+
+impl PendingEdits for Staged {
+    fn count(&self) -> usize {
+        self.differences().len()
+    }
+
+    fn is_dirty(&self) -> bool {
+        self.base != self.wanted
+    }
+
+    fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+
+    fn undo(&mut self) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
+    }
+
+    fn redo(&mut self) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
+    }
+
+    fn revert(&mut self) -> bool {
+        self.base.clone().is_some_and(|base| self.step(base))
     }
 }
 

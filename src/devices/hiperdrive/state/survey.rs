@@ -8,7 +8,7 @@ use super::unsaved::Unsaved;
 use crate::app::Marks;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved};
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Recording, Severity, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, LimitsSeen, Reading, Survey};
 use crate::devices::hiperdrive::profile::Image;

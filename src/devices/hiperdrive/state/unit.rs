@@ -13,14 +13,12 @@ use super::review::Review;
 use super::ruler::{Measure, Ruler};
 use super::staged::{Mark, Staged};
 use super::unsaved::Unsaved;
-use crate::app::Marks;
-use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::line::Line;
-use crate::app::recorder::Recorder;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
 use crate::app::studio::SessionId;
+use crate::app::{Marks, PendingEdits, Recording, Text};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperdrive::procedures::{
     DriveIdentity, DriveLimits, DriveStatus, Identity, Network, Reading, Status, Survey,
@@ -208,15 +206,6 @@ impl Unit {
         record
     }
 
-    /// The recorders of all drives, that of the one that is shown first.
-    pub(crate) fn recorders(&self) -> impl Iterator<Item = &Recorder> {
-        std::iter::once(&self.record).chain(self.records.values()).map(Record::recorder)
-    }
-
-    pub(crate) fn recorders_mut(&mut self) -> impl Iterator<Item = &mut Recorder> {
-        std::iter::once(&mut self.record).chain(self.records.values_mut()).map(Record::recorder_mut)
-    }
-
     /// Who a drive is; `None` before it was read.
     pub fn drive_identity(&self, drive: DriveNumber) -> Option<&DriveIdentity> {
         self.identity()?.drive(drive)
@@ -335,37 +324,8 @@ impl Unit {
         self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
     }
 
-    /// Things that are edited.
-    pub(crate) fn edits(&self) -> usize {
-        self.staged.differences().len()
-    }
-
-    pub(crate) fn can_undo(&self) -> bool {
-        self.staged.can_undo()
-    }
-
-    pub(crate) fn can_redo(&self) -> bool {
-        self.staged.can_redo()
-    }
-
     /// There are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
-    }
-
-    /// There is something to stop.
-    pub fn is_active(&self) -> bool {
-        self.session.is_active() || self.is_moving()
-    }
-
-    /// Ends what runs, and every motion first.
-    pub(crate) fn stop(&mut self, services: &mut Services) {
-        self.moves.stop();
-        let pace = self.session.line.as_ref().and_then(Line::polling).filter(|_| self.moves.is_open());
-        self.session.stop(services);
-        // Whoever has the control goes on seeing the drives.
-        if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
-            line.poll(Some(pace));
-        }
     }
 }

@@ -6,7 +6,7 @@ use super::words;
 use crate::app::review::OpWords;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
 use crate::devices::hiperdrive::profile::{
     HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types,
@@ -16,15 +16,6 @@ use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 
 impl Unit {
-    pub(super) fn review_edits(&mut self, services: &mut Services) {
-        let edited = self.staged.edited();
-        if edited.values.is_empty() {
-            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
-            return;
-        }
-        self.plan(Change::Write(Box::new(edited)), services);
-    }
-
     pub(crate) fn plan_restore(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
@@ -42,6 +33,11 @@ impl WithMemory for Unit {
 
     fn op(&self, prepared: &Prepared, op: &Op) -> OpWords {
         op_words(prepared, op, |drive| self.pitch(drive))
+    }
+
+    fn edited_change(&self) -> Option<Change> {
+        let edited = self.staged.edited();
+        (!edited.values.is_empty()).then(|| Change::Write(Box::new(edited)))
     }
 
     fn is_for_another(&self, change: &Change) -> bool {
@@ -118,7 +114,7 @@ impl Saved for Unit {
         let kept = survey.identity.kept().filter_map(|number| Some((number, base.get(number)?)));
         let image = Image { values: kept.collect() };
         let profile = HiperdriveProfile::of(survey.identity.profile(), image);
-        let remarks = without_edits(self.edits()).into_iter().collect();
+        let remarks = without_edits(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(profile), remarks)))
     }
 

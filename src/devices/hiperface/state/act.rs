@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::action::Action;
 use super::encoder::Encoder;
 use super::write::with_options;
+use crate::app::Text;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
-use crate::app::{DeviceCommand, Text};
 use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::profile::Item;
@@ -56,34 +56,6 @@ impl Encoder {
         }
     }
 
-    /// Does what every device can be asked for.
-    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        match command {
-            // The studio opens links, and knows other sessions.
-            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
-            DeviceCommand::Read => self.read_again(services),
-            DeviceCommand::ReadPosition => {
-                let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
-                self.submit(HiperfaceJob::Position(geometry), services);
-            }
-            DeviceCommand::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
-            DeviceCommand::Undo => {
-                self.staged.undo();
-            }
-            DeviceCommand::Redo => {
-                self.staged.redo();
-            }
-            DeviceCommand::RevertAll => self.staged.revert(),
-            DeviceCommand::Review => self.review_edits(services),
-            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
-            DeviceCommand::Restore(path) => self.read_backup(path, services),
-        }
-    }
-
     /// Watches a value beside the position, or no more.
     fn watch(&mut self, what: Watch, on: bool) {
         let mut watched = self.record.watched();
@@ -110,12 +82,6 @@ impl Encoder {
     fn submit_to_settings(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
         if self.try_submit(job, services) {
             self.settings_then = then;
-        }
-    }
-
-    fn read_again(&mut self, services: &mut Services) {
-        if !self.session.read_file_again(services) {
-            self.read_encoder(services);
         }
     }
 

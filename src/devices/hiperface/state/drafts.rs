@@ -1,6 +1,7 @@
 //! Edits of an encoder's memory, kept over a crash: field, address, byte.
 
 use super::encoder::Encoder;
+use crate::app::PendingEdits;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Session};
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::profile::HiperfaceProfile;
@@ -35,8 +36,12 @@ impl Drafted for Encoder {
         self.staged.take_draft(edits);
     }
 
-    fn revert_edits(&mut self) {
-        self.staged.revert();
+    fn pending(&self) -> &dyn PendingEdits {
+        &self.staged
+    }
+
+    fn pending_mut(&mut self) -> &mut dyn PendingEdits {
+        &mut self.staged
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {

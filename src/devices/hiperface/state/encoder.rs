@@ -11,7 +11,7 @@ use super::{Staged, rules};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
 use crate::app::studio::SessionId;
-use crate::app::{Severity, Text, explain};
+use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField, check};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Item};
@@ -141,19 +141,6 @@ impl Encoder {
     /// There are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
-    }
-
-    /// Bytes that are edited.
-    pub(crate) fn edits(&self) -> usize {
-        self.staged.edits().count()
-    }
-
-    pub(crate) fn can_undo(&self) -> bool {
-        self.staged.can_undo()
-    }
-
-    pub(crate) fn can_redo(&self) -> bool {
-        self.staged.can_redo()
     }
 
     /// One of its data fields, as the encoder has it.

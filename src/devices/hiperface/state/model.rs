@@ -1,17 +1,14 @@
 //! A HIPERFACE encoder among the devices of the studio.
 
 use std::convert::Infallible;
-use std::path::PathBuf;
 
 use super::{Action, Encoder};
 use crate::app::action::Opened;
-use crate::app::recorder::Recorder;
-use crate::app::services::{Services, World};
-use crate::app::session::Saved;
-use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Prepare, SineCosineSource, Tab};
-use crate::devices::hiperface::jobs::Hiperface;
+use crate::app::services::{JobEnd, Services, World};
+use crate::app::session::OnLine;
+use crate::app::{ActContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
+use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
 use crate::devices::hiperface::procedures::AccessCodes;
-use crate::profile::{Body, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Hiperface;
@@ -24,71 +21,46 @@ impl DeviceModel for Encoder {
     }
 
     fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
-        Encoder::connect(self, opened, services);
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.session.take_line(opened, services);
+        self.wish_watched();
+        self.codes_due.clear();
+        self.tried_code = None;
+        self.read_encoder(services);
     }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 
-    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        Encoder::command(self, command, services);
-    }
-
     fn done(&mut self, done: Infallible, _services: &mut Services) {
         match done {}
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Saved::wanted_body(self)
+    fn position_job(&self) -> HiperfaceJob {
+        let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
+        HiperfaceJob::Position(geometry)
     }
 
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        Saved::restore(self, body, services)
+    fn record(&self) -> &dyn Recording {
+        &self.record
     }
 
-    fn edits(&self) -> usize {
-        Encoder::edits(self)
+    fn record_mut(&mut self) -> &mut dyn Recording {
+        &mut self.record
     }
 
-    fn is_dirty(&self) -> bool {
-        Encoder::is_dirty(self)
-    }
-
-    fn can_undo(&self) -> bool {
-        Encoder::can_undo(self)
-    }
-
-    fn can_redo(&self) -> bool {
-        Encoder::can_redo(self)
-    }
-
-    fn save(&mut self, path: PathBuf, services: &mut Services) {
-        Saved::save(self, path, services);
-    }
-
-    fn is_savable(&self) -> bool {
-        self.saves_what_was_read() || self.session.is_savable()
-    }
-
-    fn recorder(&self) -> &Recorder {
-        self.record.recorder()
-    }
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        self.record.recorder_mut()
-    }
-
-    fn dropped(&self) -> u64 {
-        self.record.dropped()
+    fn read_device(&mut self, services: &mut Services) {
+        self.read_encoder(services);
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {
         Some(self)
     }
 
-    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
-        Some(self)
+    fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text> {
+        Ok(self)
     }
 
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {

@@ -4,11 +4,11 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::words;
-use crate::app::action::{OpenFailed, Opened};
+use crate::app::action::OpenFailed;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperface::jobs::{
     Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
 };
@@ -73,17 +73,6 @@ impl Kind for Hiperface {
 }
 
 impl Encoder {
-    /// The link is open: the encoder is read.
-    pub(crate) fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
-        self.record.begin(&opened.began);
-        self.session.take_line(opened, services);
-        self.wish_watched();
-        self.codes_due.clear();
-        self.tried_code = None;
-        self.read_encoder(services);
-    }
-
     /// Reads the encoder. After connecting, who is there comes before the access codes: they are for one encoder and no
     /// other.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
@@ -167,7 +156,7 @@ impl Encoder {
     }
 
     fn saved(&mut self, saved: SavedProfile, services: &mut Services) {
-        let edits = self.is_dirty().then(|| self.edits());
+        let edits = self.is_dirty().then(|| self.staged.count());
         let locked = saved.locked.iter();
         let remarks = locked
             .map(|(field, number)| Text::new("session.saved_locked").with("field", field).with("number", number))

@@ -8,6 +8,7 @@ use crate::devices::hiperface::state::TEXTS;
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
+use crate::app::Recording;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
@@ -23,24 +24,10 @@ pub struct Record {
 }
 
 impl Record {
-    /// Position, speed and acceleration as lines, and what is watched.
-    pub fn recorder(&self) -> &Recorder {
-        &self.track.recorder
-    }
-
-    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.track.recorder
-    }
-
     /// A session has begun; what was recorded before stays.
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.refused) = (None, false);
         self.track.begin(began);
-    }
-
-    /// Positions are wished at this interval from now on.
-    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
@@ -87,11 +74,6 @@ impl Record {
         self.refused
     }
 
-    /// Samples that came too fast to be recorded.
-    pub fn dropped(&self) -> u64 {
-        self.track.dropped()
-    }
-
     /// Positions that are recorded.
     pub fn positions(&self) -> u64 {
         self.track.positions()
@@ -101,6 +83,24 @@ impl Record {
     pub(super) fn forget(&mut self) {
         self.track.forget();
         (self.last, self.refused) = (None, false);
+    }
+}
+
+impl Recording for Record {
+    fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    fn dropped(&self) -> u64 {
+        self.track.dropped()
+    }
+
+    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
     }
 }
 

@@ -5,6 +5,7 @@
 //! has now; every other byte follows the encoder. Those of a field that cannot be read, because its access code is not
 //! known any more, wait until it can.
 
+use crate::app::PendingEdits;
 use crate::app::edits::Edits;
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
@@ -91,11 +92,6 @@ impl Staged {
         self.edits.get((field, address)).is_some()
     }
 
-    /// There is something to write.
-    pub fn is_dirty(&self) -> bool {
-        self.edits.is_dirty()
-    }
-
     /// Runs of edited bytes.
     pub fn changes(&self) -> Vec<FieldRange> {
         let mut runs: Vec<FieldRange> = Vec::new();
@@ -135,38 +131,9 @@ impl Staged {
         Ok(())
     }
 
-    /// Takes all edits back, as one step that can be undone.
-    pub fn revert(&mut self) {
-        self.edits.revert(|_| true);
-    }
-
     /// Takes the edits of one range back.
     pub fn revert_range(&mut self, range: FieldRange) {
         self.edits.revert(|(field, address)| range.contains(field, address));
-    }
-
-    /// There is a step to undo.
-    pub fn can_undo(&self) -> bool {
-        self.edits.can_undo()
-    }
-
-    /// There is a step to do again.
-    pub fn can_redo(&self) -> bool {
-        self.edits.can_redo()
-    }
-
-    /// Undoes the last step. False when there is none.
-    pub fn undo(&mut self) -> bool {
-        let done = self.edits.undo();
-        self.forget_the_impossible();
-        done
-    }
-
-    /// Does the last undone step again. False when there is none.
-    pub fn redo(&mut self) -> bool {
-        let done = self.edits.redo();
-        self.forget_the_impossible();
-        done
     }
 
     /// The edits, for a draft on disk.
@@ -192,6 +159,40 @@ impl Staged {
     fn forget_the_impossible(&mut self) {
         let device = &self.device;
         self.edits.settle(|at, byte| is_edit(device, at, byte));
+    }
+}
+
+impl PendingEdits for Staged {
+    fn count(&self) -> usize {
+        self.edits().count()
+    }
+
+    fn is_dirty(&self) -> bool {
+        self.edits.is_dirty()
+    }
+
+    fn can_undo(&self) -> bool {
+        self.edits.can_undo()
+    }
+
+    fn can_redo(&self) -> bool {
+        self.edits.can_redo()
+    }
+
+    fn undo(&mut self) -> bool {
+        let done = self.edits.undo();
+        self.forget_the_impossible();
+        done
+    }
+
+    fn redo(&mut self) -> bool {
+        let done = self.edits.redo();
+        self.forget_the_impossible();
+        done
+    }
+
+    fn revert(&mut self) -> bool {
+        self.edits.revert(|_| true)
     }
 }
 

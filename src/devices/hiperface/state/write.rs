@@ -6,23 +6,14 @@ use super::rules;
 use crate::app::review::Permit;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, OnLine, Saved, WithMemory, without_edits};
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Commit, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
 use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
-use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Recorded, RestoreOptions, check_device};
+use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 
 impl Encoder {
-    pub(super) fn review_edits(&mut self, services: &mut Services) {
-        if !self.staged.is_dirty() {
-            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
-            return;
-        }
-        let edits: Vec<(FieldRange, Vec<u8>)> = self.staged.changed_runs();
-        self.plan(Change::Store(edits), services);
-    }
-
     pub(crate) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
         let options = RestoreOptions::default();
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
@@ -48,6 +39,10 @@ impl WithMemory for Encoder {
 
     fn review_mut(&mut self) -> &mut Option<Review> {
         &mut self.review
+    }
+
+    fn edited_change(&self) -> Option<Change> {
+        self.staged.is_dirty().then(|| Change::Store(self.staged.changed_runs()))
     }
 
     fn is_for_another(&self, change: &Change) -> bool {
@@ -119,8 +114,11 @@ impl Saved for Encoder {
         let locked = fields.iter().filter(|own| own.bytes.is_none() && !self.unreadable.contains_key(&own.number));
         let locked = locked
             .map(|own| Text::new("session.saved_locked").with("field", own.number).with("number", own.status.code()));
-        let remarks =
-            without_edits(self.edits()).into_iter().chain(locked).chain(self.unreadable.values().cloned()).collect();
+        let remarks = without_edits(self.staged.count())
+            .into_iter()
+            .chain(locked)
+            .chain(self.unreadable.values().cloned())
+            .collect();
         let recorded = Recorded { counter: self.counter, ..Recorded::default() };
         Some(Ok((Body::new(profile_of(identity, fields, recorded)), remarks)))
     }

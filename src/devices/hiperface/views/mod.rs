@@ -11,7 +11,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Rgb, Studio};
+use crate::app::{Action, AnyDevice, PendingEdits, Rgb, Studio};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::ui::device_view::{TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page};

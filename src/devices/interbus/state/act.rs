@@ -5,8 +5,7 @@ use super::encoder::Encoder;
 use super::staged::Edit;
 use crate::app::services::Services;
 use crate::app::session::{OnLine, Phase, Saved, WithMemory};
-use crate::app::{DeviceCommand, Severity, Text};
-use crate::app::{DeviceFile, FileQuestion};
+use crate::app::{DeviceFile, FileQuestion, Text};
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::protocol::ProgramNumber;
@@ -55,46 +54,6 @@ impl Encoder {
         }
     }
 
-    /// Does what every device can be asked for.
-    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        match command {
-            // The studio opens links, and knows other sessions.
-            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
-            DeviceCommand::Read => {
-                if !self.session.read_file_again(services) && self.try_submit(InterbusJob::Survey, services) {
-                    self.read_after = self.known_programs();
-                }
-            }
-            DeviceCommand::ReadPosition => self.submit(InterbusJob::Position, services),
-            DeviceCommand::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
-            DeviceCommand::Undo => {
-                self.staged.undo();
-                self.refusal = None;
-            }
-            DeviceCommand::Redo => {
-                self.staged.redo();
-                self.refusal = None;
-            }
-            DeviceCommand::RevertAll => {
-                self.staged.revert();
-                self.refusal = None;
-            }
-            DeviceCommand::Review => self.review_edits(services),
-            // Before a name is asked for: reading for a file selects cam programs. What was read before needs no reading.
-            DeviceCommand::AskSave
-                if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() =>
-            {
-                services.tell(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
-            }
-            DeviceCommand::AskSave => self.session.ask_where_to_save(services),
-            DeviceCommand::Restore(path) => self.read_backup(path, services),
-        }
-    }
-
     pub(super) fn edit(&mut self, edit: &Edit) {
         self.refusal = match self.session.is_writing() {
             true => Some(Text::new("session.busy")),
@@ -110,7 +69,7 @@ impl Encoder {
         if let Some(wanted) = self.staged.wanted() {
             profile.names = wanted.names.clone();
         }
-        let edits = self.is_dirty().then(|| self.edits());
+        let edits = self.is_dirty().then(|| self.staged.count());
         self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 

@@ -2,6 +2,7 @@
 
 use super::encoder::Encoder;
 use super::staged::Kept;
+use crate::app::PendingEdits;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::profile::InterbusProfile;
@@ -35,8 +36,12 @@ impl Drafted for Encoder {
         self.staged.take_draft(edits);
     }
 
-    fn revert_edits(&mut self) {
-        self.staged.revert();
+    fn pending(&self) -> &dyn PendingEdits {
+        &self.staged
+    }
+
+    fn pending_mut(&mut self) -> &mut dyn PendingEdits {
+        &mut self.staged
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {

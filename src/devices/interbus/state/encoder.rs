@@ -14,7 +14,7 @@ use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, ProfileFile, Saved, Session, Source, some};
 use crate::app::studio::SessionId;
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::procedures::{Handshake, Identity, Reading, Survey};
 use crate::devices::interbus::profile::{InterbusProfile, ProfileIdentity, Scale};
@@ -217,11 +217,6 @@ impl Encoder {
         self.session.cycles
     }
 
-    /// Things that are edited.
-    pub(crate) fn edits(&self) -> usize {
-        self.staged.differences().len()
-    }
-
     /// Some parameter is edited.
     pub fn edits_parameters(&self) -> bool {
         self.staged.differences().iter().any(|own| matches!(own.place, Place::Parameter(_)))
@@ -230,14 +225,6 @@ impl Encoder {
     /// Something about cams is edited.
     pub fn edits_cams(&self) -> bool {
         self.staged.differences().iter().any(|own| !matches!(own.place, Place::Parameter(_)))
-    }
-
-    pub(crate) fn can_undo(&self) -> bool {
-        self.staged.can_undo()
-    }
-
-    pub(crate) fn can_redo(&self) -> bool {
-        self.staged.can_redo()
     }
 
     /// There are edits that are not written.

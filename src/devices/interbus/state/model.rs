@@ -1,15 +1,12 @@
 //! An INTERBUS encoder among the devices of the studio.
 
-use std::path::PathBuf;
-
-use super::{Action, Done, Encoder};
+use super::trace::Meaning;
+use super::{Action, Done, Encoder, TEXTS};
 use crate::app::action::Opened;
-use crate::app::recorder::Recorder;
-use crate::app::services::Services;
-use crate::app::session::Saved;
-use crate::app::{ActContext, DeviceCommand, DeviceMemory, DeviceModel, Tab};
-use crate::devices::interbus::jobs::Interbus;
-use crate::profile::{Body, ProfileError};
+use crate::app::services::{JobEnd, Services};
+use crate::app::session::{OnLine, Saved};
+use crate::app::{ActContext, DeviceMemory, DeviceModel, EditStep, Recording, Severity, Tab, Text, explain};
+use crate::devices::interbus::jobs::{Interbus, InterbusJob};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Interbus;
@@ -17,70 +14,72 @@ impl DeviceModel for Encoder {
     type Done = Done;
 
     fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
-        Encoder::connect(self, opened, services);
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.motor = opened.aside.clone();
+        self.trace = Meaning::new(self.order());
+        self.session.take_line(opened, services);
+        self.submit(InterbusJob::Hello, services);
     }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 
-    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        Encoder::command(self, command, services);
-    }
-
     fn done(&mut self, done: Done, services: &mut Services) {
-        Encoder::done(self, done, services);
+        match done {
+            Done::Read(path, Ok(text)) => {
+                let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+                self.read_table(explain::plain(name), text, self.table_program);
+            }
+            Done::Written(path, Ok(())) => {
+                services.log.settle_file(&path);
+                let text = Text::new("session.saved").with("path", path.display());
+                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+            }
+            Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => {
+                self.session.refuse(explain::file(&error), services)
+            }
+        }
     }
 
-    fn wanted_body(&self) -> Option<Body> {
-        Saved::wanted_body(self)
+    fn position_job(&self) -> InterbusJob {
+        InterbusJob::Position
     }
 
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        Saved::restore(self, body, services)
+    fn record(&self) -> &dyn Recording {
+        &self.record
     }
 
-    fn edits(&self) -> usize {
-        Encoder::edits(self)
+    fn record_mut(&mut self) -> &mut dyn Recording {
+        &mut self.record
     }
 
-    fn is_dirty(&self) -> bool {
-        Encoder::is_dirty(self)
+    fn read_device(&mut self, services: &mut Services) {
+        if self.try_submit(InterbusJob::Survey, services) {
+            self.read_after = self.known_programs();
+        }
     }
 
-    fn can_undo(&self) -> bool {
-        Encoder::can_undo(self)
+    fn step(&mut self, step: EditStep) {
+        step(&mut self.staged);
+        self.refusal = None;
     }
 
-    fn can_redo(&self) -> bool {
-        Encoder::can_redo(self)
-    }
-
-    fn save(&mut self, path: PathBuf, services: &mut Services) {
-        Saved::save(self, path, services);
-    }
-
-    fn is_savable(&self) -> bool {
-        self.saves_what_was_read() || self.session.is_savable()
-    }
-
-    fn recorder(&self) -> &Recorder {
-        self.record.recorder()
-    }
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        self.record.recorder_mut()
-    }
-
-    fn dropped(&self) -> u64 {
-        self.record.dropped()
+    fn ask_where_to_save(&mut self, services: &mut Services) {
+        // Before a name is asked for: reading for a file selects cam programs. What was read before needs no reading.
+        if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() {
+            services.tell(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
+        } else {
+            self.session.ask_where_to_save(services);
+        }
     }
 
     fn memory(&self) -> Option<&dyn DeviceMemory> {
         Some(self)
     }
 
-    fn memory_mut(&mut self) -> Option<&mut dyn DeviceMemory> {
-        Some(self)
+    fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text> {
+        Ok(self)
     }
 }

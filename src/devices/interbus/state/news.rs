@@ -3,8 +3,6 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::job;
-use super::trace::Meaning;
-use crate::app::action::Opened;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, Saved, WithMemory};
@@ -69,16 +67,6 @@ impl Kind for Interbus {
 }
 
 impl Encoder {
-    /// The link is open: the word that comes is read, and nothing that a machine would notice is done.
-    pub(crate) fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
-        self.record.begin(&opened.began);
-        self.motor = opened.aside.clone();
-        self.trace = Meaning::new(self.order());
-        self.session.take_line(opened, services);
-        self.submit(InterbusJob::Hello, services);
-    }
-
     /// What comes is to be seen with what is known by now, unless it comes anyway.
     fn see_a_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {

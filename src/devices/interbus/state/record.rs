@@ -8,6 +8,7 @@ use crate::devices::interbus::state::TEXTS;
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
+use crate::app::Recording;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::devices::interbus::procedures::Reading;
@@ -31,24 +32,10 @@ pub struct Record {
 }
 
 impl Record {
-    /// Position and speed as lines, with what the mode gives beside them.
-    pub fn recorder(&self) -> &Recorder {
-        &self.track.recorder
-    }
-
-    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.track.recorder
-    }
-
     /// A session has begun; what was recorded before stays.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin(began);
-    }
-
-    /// Words are wished at this interval from now on.
-    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
     }
 
     /// Takes what has come; `dropped` were not taken in time.
@@ -108,15 +95,28 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Words that came too fast to be recorded.
-    pub fn dropped(&self) -> u64 {
-        self.track.dropped()
-    }
-
     /// Another encoder: nothing of what was recorded is about it.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;
+    }
+}
+
+impl Recording for Record {
+    fn recorder(&self) -> &Recorder {
+        &self.track.recorder
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.track.recorder
+    }
+
+    fn dropped(&self) -> u64 {
+        self.track.dropped()
+    }
+
+    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
     }
 }
 

@@ -21,6 +21,7 @@ pub use draft::Kept;
 pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
+use crate::app::PendingEdits;
 use crate::app::history::History;
 use crate::devices::interbus::profile::{Image, Names, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
@@ -180,12 +181,6 @@ impl Staged {
         self.wanted.as_ref()?.image.program(number)
     }
 
-    /// There is something to write: into the encoder, which keeps no names, or into the profile.
-    pub fn is_dirty(&self) -> bool {
-        let (Some(base), Some(wanted)) = (&self.base, &self.wanted) else { return false };
-        base.image != wanted.image || self.ground == Ground::Profile && base.names != wanted.names
-    }
-
     /// Changes something, as one step that can be undone. Whether anything is other than before.
     ///
     /// # Errors
@@ -204,34 +199,38 @@ impl Staged {
         edit::edited(wanted, edit, self.ground)
     }
 
-    /// Takes all edits back, as one step that can be undone.
-    pub fn revert(&mut self) {
-        if let Some(base) = self.base.clone() {
-            self.step(base);
-        }
+    fn step(&mut self, after: Wanted) -> bool {
+        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
+    }
+}
+
+impl PendingEdits for Staged {
+    fn count(&self) -> usize {
+        self.differences().len()
     }
 
-    /// There is a step to undo.
-    pub fn can_undo(&self) -> bool {
+    fn is_dirty(&self) -> bool {
+        let (Some(base), Some(wanted)) = (&self.base, &self.wanted) else { return false };
+        base.image != wanted.image || self.ground == Ground::Profile && base.names != wanted.names
+    }
+
+    fn can_undo(&self) -> bool {
         self.history.can_undo()
     }
 
-    /// There is a step to do again.
-    pub fn can_redo(&self) -> bool {
+    fn can_redo(&self) -> bool {
         self.history.can_redo()
     }
 
-    /// Undoes the last step. False when there is none.
-    pub fn undo(&mut self) -> bool {
+    fn undo(&mut self) -> bool {
         self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
     }
 
-    /// Does the last undone step again. False when there is none.
-    pub fn redo(&mut self) -> bool {
+    fn redo(&mut self) -> bool {
         self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
     }
 
-    fn step(&mut self, after: Wanted) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
+    fn revert(&mut self) -> bool {
+        self.base.clone().is_some_and(|base| self.step(base))
     }
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use super::Done;
 use super::encoder::Encoder;
 use super::staged::Edit;
+use crate::app::Text;
 use crate::app::action::{Action as StudioAction, Done as StudioDone};
 use crate::app::services::Services;
-use crate::app::{Severity, Text, explain};
 use crate::devices::interbus::profile::{CamTable, TableOptions, emit_table};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::store::{read_file, write_atomically};
@@ -77,23 +77,5 @@ impl Encoder {
             let result = write_atomically(&path, text.as_bytes());
             StudioAction::Done(StudioDone::device(session, Done::Written(path, result)))
         });
-    }
-
-    /// What a task comes back with.
-    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
-        match done {
-            Done::Read(path, Ok(text)) => {
-                let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-                self.read_table(explain::plain(name), text, self.table_program);
-            }
-            Done::Written(path, Ok(())) => {
-                services.log.settle_file(&path);
-                let text = Text::new("session.saved").with("path", path.display());
-                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
-            }
-            Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => {
-                self.session.refuse(explain::file(&error), services)
-            }
-        }
     }
 }

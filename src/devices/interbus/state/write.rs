@@ -5,7 +5,7 @@ use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
-use crate::app::{Severity, Text};
+use crate::app::{PendingEdits, Text};
 use crate::devices::interbus::jobs::{Change, Commit, Interbus, InterbusJob, Prepared, device_key};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device, other_type,
@@ -16,14 +16,6 @@ use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 
 impl Encoder {
-    pub(super) fn review_edits(&mut self, services: &mut Services) {
-        let Some(edited) = self.edited_image().filter(|_| self.staged.is_dirty()) else {
-            services.tell(Severity::Note, vec![Text::new("session.nothing_edited")], Some(&self.session.name()));
-            return;
-        };
-        self.plan(Change::Write(Box::new(edited)), services);
-    }
-
     /// What is wanted otherwise than it was read: of programs only those, since each that a plan speaks of is selected to
     /// be read. Where the measuring range shrinks, all that are known, since their cams have to stay within it.
     fn edited_image(&self) -> Option<Image> {
@@ -53,6 +45,11 @@ impl WithMemory for Encoder {
 
     fn review_mut(&mut self) -> &mut Option<Review> {
         &mut self.review
+    }
+
+    fn edited_change(&self) -> Option<Change> {
+        let edited = self.edited_image().filter(|_| self.staged.is_dirty())?;
+        Some(Change::Write(Box::new(edited)))
     }
 
     fn is_for_another(&self, change: &Change) -> bool {
@@ -122,7 +119,7 @@ impl Saved for Encoder {
         }
         let profile = InterbusProfile::of(survey.identity.profile(), base.image.clone(), survey.recorded());
         let profile = InterbusProfile { names: base.names.clone(), ..profile };
-        let remarks = without_edits(self.edits()).into_iter().collect();
+        let remarks = without_edits(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(profile), remarks)))
     }
 

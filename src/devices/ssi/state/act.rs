@@ -9,15 +9,12 @@ use super::encoder::Encoder;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone};
-use crate::app::documents::{document_of, only_looked_at};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, OnLine, Source};
-use crate::app::{ActContext, DeviceCommand, Severity, Text, explain};
-use crate::app::{DeviceFile, FileQuestion};
+use crate::app::{ActContext, DeviceCommand, DeviceFile, DeviceModel, FileQuestion, Text};
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{find, frame_bits};
 use crate::devices::ssi::state::TEXTS;
-use crate::profile::{Body, Document};
 use crate::store::write_atomically;
 
 impl Encoder {
@@ -104,50 +101,6 @@ impl Encoder {
         }
     }
 
-    /// Does what every device can be asked for.
-    pub(crate) fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        match command {
-            // The studio opens links, and knows other sessions.
-            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
-            DeviceCommand::Read => {
-                if !self.session.read_file_again(services) && !matches!(self.session.source, Source::New { .. }) {
-                    self.submit(SsiJob::Hello, services);
-                }
-            }
-            DeviceCommand::Review | DeviceCommand::Restore(_) => {
-                services.tell(Severity::Note, vec![TEXTS.text("ssi.never_written")], Some(&self.session.name()));
-            }
-            DeviceCommand::ReadPosition => self.submit(SsiJob::Read, services),
-            DeviceCommand::Poll(interval) => {
-                if let Some(begins) = self.session.poll(interval) {
-                    self.record.poll(interval, begins);
-                }
-            }
-            DeviceCommand::Undo | DeviceCommand::Redo | DeviceCommand::RevertAll => self.step(&command),
-            DeviceCommand::AskSave => {
-                let suggested = self.suggested("ron");
-                services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
-            }
-        }
-    }
-
-    /// All changes are taken back, as one step.
-    pub(super) fn act_revert(&mut self) {
-        self.step(&DeviceCommand::RevertAll);
-    }
-
-    fn step(&mut self, command: &DeviceCommand) {
-        let before = self.designer.layout().clone();
-        let has_changed = match command {
-            DeviceCommand::Undo => self.designer.undo(),
-            DeviceCommand::Redo => self.designer.redo(),
-            _ => self.designer.revert(),
-        };
-        if has_changed {
-            self.follow_layout(&before);
-        }
-    }
-
     fn try_with(&mut self, with: Try) {
         let layout = self.designer.layout();
         // Whoever begins with a word that was read goes on from it.
@@ -167,7 +120,7 @@ impl Encoder {
     }
 
     /// A name for a file with this ending.
-    fn suggested(&self, ending: &str) -> PathBuf {
+    pub(super) fn suggested(&self, ending: &str) -> PathBuf {
         match &self.session.source {
             Source::File { path, .. } if ending == "ron" => path.clone(),
             Source::File { path, .. } => path.with_extension(ending),
@@ -225,41 +178,11 @@ impl Encoder {
         self.follows = true;
     }
 
-    /// What a task comes back with.
-    pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
-        match done {
-            Done::Found { number, hunt } => {
-                if self.hunt == Hunt::Running(number) {
-                    self.hunt = *hunt;
-                }
-            }
-            Done::Written(path, Ok(())) => {
-                services.log.settle_file(&path);
-                let text = Text::new("session.saved").with("path", path.display());
-                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
-            }
-            Done::Written(_, Err(error)) => self.session.refuse(explain::file(&error), services),
-        }
-    }
-
     fn write_text(&self, path: PathBuf, text: String, services: &Services) {
         let session = self.session.id;
         services.tasks.run("export", move || {
             let result = write_atomically(&path, text.as_bytes());
             StudioAction::Done(StudioDone::device(session, Done::Written(path, result)))
         });
-    }
-
-    /// Saves the layout.
-    pub(crate) fn save(&mut self, path: PathBuf, services: &mut Services) {
-        if let Some(refusal) = only_looked_at(&self.session.source) {
-            return self.session.refuse(refusal, services);
-        }
-        let body = Body::new(self.wanted_profile());
-        let document = match &self.session.source {
-            Source::File { document, .. } => Document { body, ..(**document).clone() },
-            Source::Link(_) | Source::New { .. } => document_of(body),
-        };
-        self.session.write_document(path, document, Vec::new(), services);
     }
 }

@@ -6,6 +6,7 @@ mod reshape;
 use std::sync::Arc;
 
 use super::strip;
+use crate::app::PendingEdits;
 use crate::app::Text;
 use crate::app::history::History;
 use crate::devices::ssi::profile::{ReadingSettings, SsiProfile};
@@ -182,21 +183,6 @@ impl Designer {
         &self.saved
     }
 
-    /// It is not as it was saved.
-    pub fn is_dirty(&self) -> bool {
-        self.now.profile != self.saved
-    }
-
-    /// There is a step to undo.
-    pub fn can_undo(&self) -> bool {
-        self.history.can_undo()
-    }
-
-    /// There is a step to do again.
-    pub fn can_redo(&self) -> bool {
-        self.history.can_redo()
-    }
-
     /// Other families are known: what one makes of the layout is looked at anew.
     pub(super) fn take_families(&mut self, families: Arc<Families>) {
         self.families = families;
@@ -276,16 +262,6 @@ impl Designer {
         Ok(profile)
     }
 
-    /// Undoes the last step.
-    pub(super) fn undo(&mut self) -> bool {
-        self.step_by(History::undo)
-    }
-
-    /// Does the last undone step again.
-    pub(super) fn redo(&mut self) -> bool {
-        self.step_by(History::redo)
-    }
-
     fn step_by(&mut self, step: fn(&mut History<SsiProfile>, &mut SsiProfile) -> bool) -> bool {
         let mut profile = self.now.profile.clone();
         if !step(&mut self.history, &mut profile) {
@@ -298,14 +274,39 @@ impl Designer {
         true
     }
 
-    /// All changes are taken back, as one step.
-    pub(super) fn revert(&mut self) -> bool {
-        self.edit(Edit::Whole(Box::new(self.saved.clone())))
-    }
-
     /// It is saved like this now; changes stay changes.
     pub(super) fn saved_as(&mut self, profile: SsiProfile) {
         self.saved = profile;
+    }
+}
+
+impl PendingEdits for Designer {
+    fn count(&self) -> usize {
+        usize::from(self.is_dirty())
+    }
+
+    fn is_dirty(&self) -> bool {
+        self.now.profile != self.saved
+    }
+
+    fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    fn can_redo(&self) -> bool {
+        self.history.can_redo()
+    }
+
+    fn undo(&mut self) -> bool {
+        self.step_by(History::undo)
+    }
+
+    fn redo(&mut self) -> bool {
+        self.step_by(History::redo)
+    }
+
+    fn revert(&mut self) -> bool {
+        self.edit(Edit::Whole(Box::new(self.saved.clone())))
     }
 }
 

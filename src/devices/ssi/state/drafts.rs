@@ -3,6 +3,7 @@
 use super::design::Edit;
 use super::encoder::Encoder;
 use crate::app::session::{Drafted, OnDesk, ProfileFile, Session, Source};
+use crate::app::{DeviceModel, PendingEdits};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::state::TEXTS;
@@ -60,8 +61,16 @@ impl Drafted for Encoder {
         }
     }
 
+    fn pending(&self) -> &dyn PendingEdits {
+        &self.designer
+    }
+
+    fn pending_mut(&mut self) -> &mut dyn PendingEdits {
+        &mut self.designer
+    }
+
     fn revert_edits(&mut self) {
-        self.act_revert();
+        DeviceModel::step(self, |edits| edits.revert());
     }
 
     fn take_document(&mut self, file: ProfileFile, document: Document) {

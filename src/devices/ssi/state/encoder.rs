@@ -8,11 +8,11 @@ use super::design::{Design, Designer, Edit};
 use super::record::{Record, Seen, Streamed};
 use super::search::Hunt;
 use super::trial::{Decoded, Trial};
-use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
 use crate::app::studio::SessionId;
+use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::procedures::{Asking, Identity};
 use crate::devices::ssi::profile::SsiProfile;
@@ -139,18 +139,6 @@ impl Encoder {
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }
 
-    pub(crate) fn edits(&self) -> usize {
-        usize::from(self.designer.is_dirty())
-    }
-
-    pub(crate) fn can_undo(&self) -> bool {
-        self.designer.can_undo()
-    }
-
-    pub(crate) fn can_redo(&self) -> bool {
-        self.designer.can_redo()
-    }
-
     /// The layout is not as it was saved.
     pub fn is_dirty(&self) -> bool {
         self.designer.is_dirty()
@@ -171,13 +159,6 @@ impl Encoder {
         let before = self.designer.layout().clone();
         if self.designer.edit(edit) {
             self.follow_layout(&before);
-        }
-    }
-
-    /// Another link leads to the same wire: it is read as that says.
-    pub(crate) fn take_link(&mut self, url: &LinkUrl) {
-        if let Source::Link(before) = &self.session.source {
-            self.edit(Edit::Reading(self.designer.reading_over(before, url)));
         }
     }
 

@@ -3,14 +3,17 @@
 use std::path::PathBuf;
 
 use super::design::Edit;
-use super::{Action, Done, Encoder};
+use super::{Action, Done, Encoder, Hunt, TEXTS};
 use crate::app::action::Opened;
-use crate::app::recorder::Recorder;
-use crate::app::services::{Services, World};
-use crate::app::{ActContext, DeviceCommand, DeviceModel, Prepare, Tab};
-use crate::devices::ssi::jobs::Ssi;
+use crate::app::documents::{document_of, only_looked_at};
+use crate::app::services::{JobEnd, Services, World};
+use crate::app::session::{Drafted, OnLine, Source};
+use crate::app::{
+    ActContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, Prepare, Recording, Severity, Tab, Text, explain,
+};
+use crate::devices::ssi::jobs::{Ssi, SsiJob};
 use crate::link::LinkUrl;
-use crate::profile::{Body, ProfileError};
+use crate::profile::{Body, Document, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::Ssi;
@@ -23,19 +26,35 @@ impl DeviceModel for Encoder {
     }
 
     fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
-        Encoder::connect(self, opened, services);
+        self.let_go(JobEnd::Cancelled, services);
+        self.record.begin(&opened.began);
+        self.motor = opened.aside.clone();
+        self.told = None;
+        self.session.take_line(opened, services);
+        if !self.session.drafting.has_looked() {
+            self.load_draft(services);
+        }
+        self.submit(SsiJob::Hello, services);
     }
 
     fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context);
     }
 
-    fn command(&mut self, command: DeviceCommand, services: &mut Services) {
-        Encoder::command(self, command, services);
-    }
-
     fn done(&mut self, done: Done, services: &mut Services) {
-        Encoder::done(self, done, services);
+        match done {
+            Done::Found { number, hunt } => {
+                if self.hunt == Hunt::Running(number) {
+                    self.hunt = *hunt;
+                }
+            }
+            Done::Written(path, Ok(())) => {
+                services.log.settle_file(&path);
+                let text = Text::new("session.saved").with("path", path.display());
+                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+            }
+            Done::Written(_, Err(error)) => self.session.refuse(explain::file(&error), services),
+        }
     }
 
     fn wanted_body(&self) -> Option<Body> {
@@ -47,24 +66,16 @@ impl DeviceModel for Encoder {
         Ok(())
     }
 
-    fn edits(&self) -> usize {
-        Encoder::edits(self)
-    }
-
-    fn is_dirty(&self) -> bool {
-        Encoder::is_dirty(self)
-    }
-
-    fn can_undo(&self) -> bool {
-        Encoder::can_undo(self)
-    }
-
-    fn can_redo(&self) -> bool {
-        Encoder::can_redo(self)
-    }
-
     fn save(&mut self, path: PathBuf, services: &mut Services) {
-        Encoder::save(self, path, services);
+        if let Some(refusal) = only_looked_at(&self.session.source) {
+            return self.session.refuse(refusal, services);
+        }
+        let body = Body::new(self.wanted_profile());
+        let document = match &self.session.source {
+            Source::File { document, .. } => Document { body, ..(**document).clone() },
+            Source::Link(_) | Source::New { .. } => document_of(body),
+        };
+        self.session.write_document(path, document, Vec::new(), services);
     }
 
     fn is_savable(&self) -> bool {
@@ -72,16 +83,42 @@ impl DeviceModel for Encoder {
         true
     }
 
-    fn recorder(&self) -> &Recorder {
-        self.record.recorder()
+    fn position_job(&self) -> SsiJob {
+        SsiJob::Read
     }
 
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        self.record.recorder_mut()
+    fn record(&self) -> &dyn Recording {
+        &self.record
     }
 
-    fn dropped(&self) -> u64 {
-        self.record.dropped()
+    fn record_mut(&mut self) -> &mut dyn Recording {
+        &mut self.record
+    }
+
+    fn memory(&self) -> Option<&dyn DeviceMemory> {
+        None
+    }
+
+    fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text> {
+        Err(TEXTS.text("ssi.never_written"))
+    }
+
+    fn read_device(&mut self, services: &mut Services) {
+        if !matches!(self.session.source, Source::New { .. }) {
+            self.submit(SsiJob::Hello, services);
+        }
+    }
+
+    fn step(&mut self, step: EditStep) {
+        let before = self.designer.layout().clone();
+        if step(&mut self.designer) {
+            self.follow_layout(&before);
+        }
+    }
+
+    fn ask_where_to_save(&mut self, services: &mut Services) {
+        let suggested = self.suggested("ron");
+        services.file_question = Some(FileQuestion::Save { session: self.session.id, suggested });
     }
 
     fn streams(&self) -> bool {
@@ -90,6 +127,8 @@ impl DeviceModel for Encoder {
     }
 
     fn take_link(&mut self, url: &LinkUrl) {
-        Encoder::take_link(self, url);
+        if let Source::Link(before) = &self.session.source {
+            self.edit(Edit::Reading(self.designer.reading_over(before, url)));
+        }
     }
 }

@@ -5,9 +5,8 @@ use std::convert::Infallible;
 use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::{trace, words};
-use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Drafted, Kind, OnLine};
+use crate::app::session::{Kind, OnLine};
 use crate::app::{Severity, Text};
 use crate::buses::bridge::procedures::AdapterError;
 use crate::devices::ssi::jobs::{JobError, Ssi, SsiJob, SsiOutput};
@@ -55,19 +54,6 @@ impl Kind for Ssi {
 }
 
 impl Encoder {
-    /// The link is open: the adapter is asked who it is.
-    pub(crate) fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
-        self.let_go(JobEnd::Cancelled, services);
-        self.record.begin(&opened.began);
-        self.motor = opened.aside.clone();
-        self.told = None;
-        self.session.take_line(opened, services);
-        if !self.session.drafting.has_looked() {
-            self.load_draft(services);
-        }
-        self.submit(SsiJob::Hello, services);
-    }
-
     /// The layout has other clocks, or is read otherwise, than the adapter was told.
     fn tell_asking(&mut self, services: &mut Services) {
         let asking = self.asking();

@@ -8,6 +8,7 @@ use jiff::Zoned;
 
 use super::trial::Decoded;
 use crate::analysis::Time;
+use crate::app::Recording;
 use crate::app::recorder::{GroupId, Line, Recorder};
 use crate::app::track::{Meaning, Sighting, Track, Watchable};
 use crate::devices::ssi::procedures::Words;
@@ -91,14 +92,6 @@ impl Record {
         self.track.begin(began);
         self.kept.clear();
         (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
-    }
-
-    /// Positions are wished at this interval from now on.
-    pub(super) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
-        if interval.is_none() {
-            self.stream = None;
-        }
     }
 
     /// Takes what has come; `dropped` were not taken in time.
@@ -234,23 +227,31 @@ impl Record {
         self.stream.as_ref()
     }
 
-    /// Words that came too fast to be recorded, and those that an adapter could not send.
-    pub fn dropped(&self) -> u64 {
-        self.track.dropped().saturating_add(self.lost)
-    }
-
     /// Words that are recorded.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }
+}
 
-    /// Position, speed and acceleration as lines.
-    pub fn recorder(&self) -> &Recorder {
+impl Recording for Record {
+    fn recorder(&self) -> &Recorder {
         &self.track.recorder
     }
 
-    pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
+    fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.track.recorder
+    }
+
+    // Words that an adapter could not send count as well.
+    fn dropped(&self) -> u64 {
+        self.track.dropped().saturating_add(self.lost)
+    }
+
+    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        self.track.poll(interval, begins);
+        if interval.is_none() {
+            self.stream = None;
+        }
     }
 }
 

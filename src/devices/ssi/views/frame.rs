@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::View as Tab;
 use super::form::rows_ui;
 use super::trial;
-use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
+use crate::app::{Action, AnyDevice, DeviceCommand, PendingEdits, Studio, Text};
 use crate::devices::ssi::protocol::Family;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::strip::{self, Strip};

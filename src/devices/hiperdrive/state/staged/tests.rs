@@ -1,6 +1,7 @@
 //! Edits, steps and drafts of a HIPERDRIVE.
 
 use super::{Differs, Edit, EditError, Kept, LimitsStay, Mark, Staged};
+use crate::app::PendingEdits;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, ParameterNumber, PositionScale, Range};
 

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::{ask, number};
 use crate::analysis::quality::Verdict;
-use crate::app::{Action, DeviceCommand};
+use crate::app::{Action, DeviceCommand, PendingEdits};
 use crate::devices::hiperface::state::commutation::{Action as Assistant, Form, Storage, Stored, stored};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::devices::hiperface::views::say;

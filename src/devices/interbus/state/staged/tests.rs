@@ -1,6 +1,7 @@
 //! Edits, steps and drafts of a K3 encoder.
 
 use super::{Differs, Edit, EditError, Kept, Mark, Place, Staged, Wanted};
+use crate::app::PendingEdits;
 use crate::devices::interbus::profile::{Direction, Edge, Filled, Image, Names, Parameters};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, GearError, Parameter, Program, ProgramNumber, Value, WindowShift,

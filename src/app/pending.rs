@@ -1,0 +1,28 @@
+//! Edits that are not written, as far as they are the same for every kind of device.
+
+/// What the user wants otherwise than it is in the device or in the file, with the way back.
+pub trait PendingEdits {
+    /// Returns the number of edits.
+    fn count(&self) -> usize;
+
+    /// There is an edit.
+    fn is_dirty(&self) -> bool;
+
+    /// There is a step to undo.
+    fn can_undo(&self) -> bool;
+
+    /// There is a step to do again.
+    fn can_redo(&self) -> bool;
+
+    /// Undoes the last step. False where nothing has changed.
+    fn undo(&mut self) -> bool;
+
+    /// Does the last undone step again. False where nothing has changed.
+    fn redo(&mut self) -> bool;
+
+    /// Takes all edits back, as one step that can be undone. False where there are none.
+    fn revert(&mut self) -> bool;
+}
+
+/// A step through the edits: one undone or done again, or all taken back.
+pub(crate) type EditStep = fn(&mut dyn PendingEdits) -> bool;
