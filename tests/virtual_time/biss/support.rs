@@ -184,7 +184,7 @@ impl Bench {
                 (TestLink::new(port.clone(), clock.clone(), tap.clone()), motor)
             }
             End::Bus(adapter) => {
-                let motor = adapter.lock().unwrap().motor().unwrap();
+                let motor = adapter.lock().unwrap().motor();
                 (TestLink::new(adapter.clone(), clock.clone(), tap.clone()), motor)
             }
         };

@@ -28,7 +28,6 @@ pub struct Adapter {
     faults: Faults,
     rng: Rng,
     switched_supply: bool,
-    is_supplied: bool,
     version: u8,
     receiver: Receiver,
     biss: Option<BissSetting>,
@@ -73,7 +72,6 @@ impl Adapter {
             faults: config.faults.clone(),
             rng: Rng::with_seed(config.seed),
             switched_supply: config.switched_supply,
-            is_supplied: true,
             version: config.version,
             receiver: Receiver::default(),
             biss: None,
@@ -97,7 +95,7 @@ impl Adapter {
             }
         }
         adapter.switch_off();
-        let rpm = adapter.motor().map_or(0.0, |motor| motor.rpm());
+        let rpm = adapter.motor().rpm();
         adapter.analog = adapter.analog.with(Quantity::Speed, rpm);
         if let Some(uart) = &mut adapter.uart {
             uart.set_rpm(Moment::START, rpm);
@@ -117,23 +115,22 @@ impl Adapter {
         device.downcast_mut()
     }
 
-    /// What turns the shaft that all encoders share; `None` where nothing hangs on BiSS.
-    pub fn motor(&self) -> Option<Motor> {
-        self.bus.biss.as_ref().map(|device| device.motor())
+    /// What turns the shaft that all encoders share.
+    pub fn motor(&self) -> Motor {
+        self.bus.motor()
     }
 
     /// Turns that shaft at another speed from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.advance(now);
-        if let Some(device) = &mut self.bus.biss {
-            device.set_rpm(self.now, rpm);
-        }
+        self.bus.set_rpm(self.now, rpm);
         self.follow_motor();
     }
 
     /// The sine/cosine encoder is on the same shaft.
     fn follow_motor(&mut self) {
-        let Some(rpm) = self.motor().map(|motor| motor.rpm()) else { return };
+        self.bus.follow_motor(self.now);
+        let rpm = self.motor().rpm();
         if rpm == self.analog.speed_rpm {
             return;
         }
@@ -167,7 +164,7 @@ impl Adapter {
             }));
         }
         if let Some(stream) = &mut self.sampled {
-            packets.extend(stream.run(self.now, self.is_supplied));
+            packets.extend(stream.run(self.now, self.bus.is_supplied));
         }
         packets.sort_by_key(|(at, _)| *at);
         for (at, data) in packets {
@@ -311,7 +308,7 @@ impl Adapter {
 
     fn hello(&mut self) -> Hello {
         (self.clocked, self.sampled) = (None, None);
-        let is_supplied = self.switched_supply && self.is_supplied;
+        let is_supplied = self.switched_supply && self.bus.is_supplied;
         let can = Capabilities::SSI
             .and(Capabilities::BISS)
             .and(Capabilities::BISS_REGISTERS)
@@ -331,7 +328,7 @@ impl Adapter {
 
     fn switch_off(&mut self) {
         if self.switched_supply {
-            self.is_supplied = false;
+            self.bus.is_supplied = false;
             if let Some(device) = &mut self.bus.biss {
                 device.disconnect();
             }
@@ -349,7 +346,7 @@ impl Adapter {
         if !Self::SUPPLY.contains(&millivolt) {
             return Err(OUT_OF_RANGE);
         }
-        self.is_supplied = true;
+        self.bus.is_supplied = true;
         if let Some(device) = &mut self.bus.biss {
             device.connect(self.now);
         }

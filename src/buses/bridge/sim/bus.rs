@@ -5,7 +5,9 @@ use fastrand::Rng;
 
 use super::attached::{BissDevice, SsiDevice};
 use super::config::{Config, Line};
+use super::shaft::Shaft;
 use crate::buses::bridge::protocol::BissStatus;
+use crate::sim::Motor;
 use crate::units::Moment;
 
 /// The wires with their encoders.
@@ -13,6 +15,10 @@ use crate::units::Moment;
 pub(super) struct Bus {
     pub(super) biss: Option<Box<dyn BissDevice>>,
     pub(super) ssi: Option<Box<dyn SsiDevice>>,
+    /// What turns where nothing hangs on BiSS.
+    shaft: Shaft,
+    /// The encoders have power.
+    pub(super) is_supplied: bool,
     line: Line,
     noise: f64,
     rng: Rng,
@@ -21,7 +27,42 @@ pub(super) struct Bus {
 impl Bus {
     /// Nothing hangs on it yet.
     pub(super) fn new(config: &Config) -> Self {
-        Bus { biss: None, ssi: None, line: config.line, noise: config.noise, rng: Rng::with_seed(config.seed) }
+        Bus {
+            biss: None,
+            ssi: None,
+            shaft: Shaft::turning(config.rpm),
+            is_supplied: true,
+            line: config.line,
+            noise: config.noise,
+            rng: Rng::with_seed(config.seed),
+        }
+    }
+
+    /// What turns the shaft that all encoders share.
+    pub(super) fn motor(&self) -> Motor {
+        self.biss.as_ref().map_or_else(|| self.shaft.motor().clone(), |device| device.motor())
+    }
+
+    /// Turns that shaft at another speed from `now` on.
+    pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
+        match &mut self.biss {
+            Some(device) => device.set_rpm(now, rpm),
+            None => self.shaft.motor().set_rpm(rpm),
+        }
+        self.follow_motor(now);
+    }
+
+    /// A shaft of the adapter's own turns as its motor does from `now` on; a device follows when it is asked.
+    pub(super) fn follow_motor(&mut self, now: Moment) {
+        self.shaft.follow(now);
+    }
+
+    /// Where the shaft is, in steps, and how many a revolution has; `None` without power.
+    fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
+        match &mut self.biss {
+            Some(device) => device.place(at),
+            None => self.is_supplied.then(|| self.shaft.place(at)),
+        }
     }
 
     /// The device whose registers can be asked at `now`.
@@ -44,7 +85,7 @@ impl Bus {
     /// The first `bits` bits of an SSI word taken at a moment.
     pub(super) fn word(&mut self, at: Moment, bits: u8) -> u64 {
         // Without power neither encoder sends.
-        let place = self.biss.as_mut().and_then(|device| device.place(at));
+        let place = self.place(at);
         match (self.line, place, &mut self.ssi) {
             (Line::Low, _, _) => 0,
             (Line::Good, Some(place), Some(ssi)) => {

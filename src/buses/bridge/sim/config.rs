@@ -14,6 +14,8 @@ pub(super) struct Config {
     pub(super) noise: f64,
     pub(super) switched_supply: bool,
     pub(super) version: u8,
+    /// Speed of the shaft at the start, where no device on it has this setting.
+    pub(super) rpm: f64,
 }
 
 /// The wires between adapter and encoder.
@@ -37,6 +39,7 @@ impl Default for Config {
             noise: 0.0,
             switched_supply: false,
             version: VERSION,
+            rpm: 0.0,
         }
     }
 }
@@ -54,6 +57,9 @@ impl Config {
     /// What a device that hangs on it may take as well: where noise begins, and faults of the line and the device.
     pub(super) const SHARED: [&str; 2] = ["seed", "fault"];
 
+    /// Revolutions a minute of the shaft: the adapter's where no device on it has this key.
+    pub(super) const RPM: &str = "rpm";
+
     /// Takes a key with its value; false where it is none of the adapter's.
     pub(super) fn set(&mut self, setting: Setting) -> Result<bool, ConfigError> {
         match setting.key {
@@ -63,6 +69,7 @@ impl Config {
                 let lines = [("good", Line::Good), ("open", Line::Open), ("low", Line::Low), ("high", Line::High)];
                 self.line = setting.one_of(&lines, "good, open, low or high")?;
             }
+            Self::RPM => self.rpm = setting.rpm()?,
             "noise" => self.noise = setting.decimal(0.0..=1.0, "the share of damaged frames from 0 to 1")?,
             "supply" => {
                 let supplies = [("external", false), ("switched", true)];
@@ -90,9 +97,10 @@ mod tests {
 
     #[test]
     fn every_key_is_read() {
-        let config = read("line=low&noise=0.5&supply=switched&version=2&seed=3&fault=drop:0.5").unwrap();
+        let config = read("line=low&noise=0.5&supply=switched&version=2&seed=3&fault=drop:0.5&rpm=-6").unwrap();
         let faults = "drop:0.5".parse().unwrap();
-        let expected = Config { seed: 3, faults, line: Line::Low, noise: 0.5, switched_supply: true, version: 2 };
+        let expected =
+            Config { seed: 3, faults, line: Line::Low, noise: 0.5, switched_supply: true, version: 2, rpm: -6.0 };
         assert_eq!(config, expected);
     }
 

@@ -7,6 +7,7 @@
 //! | `attached` | what can hang on it, as it sees that |
 //! | `config` | the settings of a `sim:` link that are its own |
 //! | `settings` | all settings of such a link, and the adapter as they say |
+//! | `shaft` | what turns where nothing hangs on BiSS |
 //! | `bus` | what one frame of BiSS or SSI carries |
 //! | `clocking` | clocks and how long a frame takes |
 //! | `stream` | samples at equal distances, in packets |
@@ -19,6 +20,7 @@ mod bus;
 mod clocking;
 mod config;
 mod settings;
+mod shaft;
 mod stream;
 #[cfg(test)]
 pub(crate) mod tests;

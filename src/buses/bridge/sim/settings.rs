@@ -11,12 +11,18 @@ use crate::sim::setting::Setting;
 pub fn keys(devices: &[&dyn Attachable]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));
     let mut keys = Config::KEYS.to_vec();
+    keys.extend(turns_itself(devices).then_some(Config::RPM));
     keys.extend(others.iter().flat_map(|device| device.keys()));
     keys.sort_unstable();
     keys.extend(Config::SHARED);
     let last = last.into_iter().flat_map(|device| device.keys());
     keys.extend(last.filter(|key| !Config::SHARED.contains(key)));
     keys
+}
+
+/// Whether the shaft is the adapter's own: no device on it has a setting for its speed.
+fn turns_itself(devices: &[&dyn Attachable]) -> bool {
+    devices.iter().all(|device| !device.keys().contains(&Config::RPM))
 }
 
 impl Adapter {
@@ -29,7 +35,7 @@ impl Adapter {
         let mut config = Config::default();
         for (key, value) in pairs {
             let setting = Setting { key, value };
-            let is_own = config.set(setting)?;
+            let is_own = (key != Config::RPM || turns_itself(devices)) && config.set(setting)?;
             if !is_own && !devices.iter().any(|device| device.keys().contains(&key.as_str())) {
                 return Err(setting.unknown("a virtual adapter", &keys(devices)));
             }

@@ -119,7 +119,7 @@ impl Simulated {
             }
             Simulated::Bus(adapter) => {
                 let motor = adapter.motor();
-                (inside(*adapter, clock), motor)
+                (inside(*adapter, clock), Some(motor))
             }
         }
     }

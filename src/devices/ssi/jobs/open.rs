@@ -31,7 +31,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     let mut motor = None;
     // What a serial port of an adapter is set to matters only behind a converter; it is that of all adapters.
     let wire = open_bytes(url, FORMAT, &clock, || {
-        motor = adapter.motor();
+        motor = Some(adapter.motor());
         Ok(inside(adapter, &clock))
     })?;
     Ok(Session::to_adapter(wire, clock, station, store, motor))

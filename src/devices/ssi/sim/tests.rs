@@ -1,5 +1,7 @@
 //! What a host sees of the virtual SSI encoder behind an adapter, and its settings.
 
+use std::time::Duration;
+
 use proptest::prelude::*;
 
 use super::AtAdapter;
@@ -68,4 +70,19 @@ proptest! {
     fn no_value_panics(key in 0..2_usize, value in ".*") {
         let _ = AtAdapter::DELIVERED.attached(&[(AtAdapter::DELIVERED.keys()[key].to_owned(), value)]);
     }
+}
+
+/// At 60 rpm a revolution of 2^13 steps takes a second; the encoder needs no other device to be turned.
+#[test]
+fn the_encoder_turns_with_nothing_else_at_the_adapter() {
+    let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AtAdapter::DELIVERED]);
+    host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
+    let mut words = (0..3).map(|_| {
+        host.receive(host.now + Duration::from_millis(200));
+        let Some(Message::Reply(Reply::SsiRead { t_us, raw })) = host.ask(Request::SsiRead) else { panic!() };
+        assert_eq!(raw, t_us * 8192 / 1_000_000, "at {t_us} µs");
+        raw
+    });
+    let (first, last) = (words.next().unwrap(), words.last().unwrap());
+    assert!(last - first > 3000, "{first} to {last}");
 }

@@ -103,7 +103,7 @@ pub(crate) struct Dial {
 pub(crate) struct DialSettings;
 
 /// An SSI device that gives the place of the shaft: 12 bits of turns and 13 within one.
-struct WordGiver;
+pub(crate) struct WordGiver;
 
 impl Dial {
     pub(crate) const SETTINGS: DialSettings = DialSettings;

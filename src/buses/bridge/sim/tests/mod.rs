@@ -5,10 +5,13 @@ mod line;
 
 use std::time::Duration;
 
+use host::WordGiver;
 pub(crate) use host::{BISS, Dial, Host, SSI};
 
 use crate::buses::bridge::protocol::*;
+use crate::buses::bridge::sim::{Adapter, keys};
 use crate::sim::ByteDevice;
+use crate::sim::setting::pairs;
 use crate::units::Moment;
 
 #[test]
@@ -124,6 +127,34 @@ fn analogue_samples_are_the_virtual_encoders() {
     assert_eq!(host.stream(100), []);
     host.refuses(Request::AnalogConfig { sample_hz: 0 }, ErrorCode::BAD_ARGUMENT);
     host.refuses(Request::AnalogConfig { sample_hz: 1_000_001 }, ErrorCode::BAD_ARGUMENT);
+}
+
+/// The word of the invented encoder has 13 bits a revolution: a quarter of one is 2048.
+#[test]
+fn without_anything_on_biss_the_shaft_is_the_adapters() {
+    let mut host = Host::to("rpm=60&supply=switched", &[&WordGiver]);
+    host.ask(SSI);
+    let word = |host: &mut Host| match host.ask(Request::SsiRead) {
+        Some(Message::Reply(Reply::SsiRead { t_us, raw })) => (t_us, raw),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(word(&mut host).1, 0x1FF_FFFF, "without power no encoder sends");
+    host.ask(Request::Supply { on: true, millivolt: 8000 });
+    let (before, after) = (word(&mut host), {
+        host.receive(host.now + Duration::from_millis(250));
+        word(&mut host)
+    });
+    for (t_us, raw) in [before, after] {
+        assert_eq!(raw, t_us * 8192 / 1_000_000, "at {t_us} µs");
+    }
+    assert!(after.1 - before.1 >= 2048, "{before:?} {after:?}");
+    host.adapter.set_rpm(host.now, 0.0);
+    let still = word(&mut host).1;
+    host.receive(host.now + Duration::from_millis(100));
+    assert_eq!(word(&mut host).1, still);
+    assert_eq!(host.adapter.motor().rpm(), 0.0);
+    assert!(keys(&[&WordGiver]).contains(&"rpm"));
+    assert!(Adapter::from_pairs(&pairs("rpm=x"), &[&WordGiver]).is_err());
 }
 
 #[test]

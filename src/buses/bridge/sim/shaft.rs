@@ -1,0 +1,81 @@
+//! The shaft of an adapter where nothing hangs on BiSS: its place as an exact function of time.
+
+use crate::sim::Motor;
+use crate::units::Moment;
+
+/// A shaft with its motor. A copy gets a motor of its own.
+#[derive(Debug)]
+pub(super) struct Shaft {
+    motor: Motor,
+    /// As the motor has turned since then.
+    rpm: f64,
+    since: Moment,
+    /// Revolutions from its zero at that moment.
+    revolutions: f64,
+}
+
+impl Clone for Shaft {
+    fn clone(&self) -> Self {
+        Shaft { motor: Motor::at(self.motor.rpm()), ..*self }
+    }
+}
+
+impl Shaft {
+    /// Steps of a revolution.
+    const PER_TURN: u64 = 1 << 25;
+    /// It begins again behind so many revolutions.
+    const TURNS: f64 = 65_536.0;
+
+    /// At its zero, turning at a speed.
+    pub(super) fn turning(rpm: f64) -> Self {
+        Shaft { motor: Motor::at(rpm), rpm, since: Moment::START, revolutions: 0.0 }
+    }
+
+    pub(super) const fn motor(&self) -> &Motor {
+        &self.motor
+    }
+
+    /// Turns as its motor does from `now` on.
+    pub(super) fn follow(&mut self, now: Moment) {
+        let rpm = self.motor.rpm();
+        if rpm != self.rpm {
+            (self.revolutions, self.since, self.rpm) = (self.revolutions(now), now, rpm);
+        }
+    }
+
+    /// Where it is, in steps, and how many a revolution has.
+    pub(super) fn place(&mut self, at: Moment) -> (u64, u64) {
+        self.follow(at);
+        // Not negative, below 2^41.
+        ((self.revolutions(at) * Self::PER_TURN as f64) as u64, Self::PER_TURN)
+    }
+
+    fn revolutions(&self, at: Moment) -> f64 {
+        let revolutions = self.revolutions + at.since(self.since).as_secs_f64() * self.rpm / 60.0;
+        let revolutions = revolutions.rem_euclid(Self::TURNS);
+        // rem_euclid may round up to the divisor itself.
+        if revolutions < Self::TURNS { revolutions } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    /// 60 rpm: a revolution of 2^25 steps a second; 65 536 revolutions in all.
+    #[test]
+    fn a_turning_shaft_is_where_it_must_be() {
+        let mut shaft = Shaft::turning(60.0);
+        assert_eq!([0, 250, 1_500].map(|ms| shaft.place(at(ms)).0), [0, 1 << 23, 3 << 24]);
+        let copy = shaft.clone();
+        shaft.motor().set_rpm(-60.0);
+        assert_eq!(shaft.place(at(2_000)), (2 << 25, 1 << 25), "it follows when it is asked");
+        assert_eq!(shaft.place(at(5_000)).0, 65_535 << 25, "below zero it is at the end");
+        assert_eq!(copy.motor().rpm(), 60.0);
+    }
+}
