@@ -1,7 +1,11 @@
 //! The review of a write, for every kind of device: what it would do, the consent, how far it is, and what came of it.
 
+mod permit;
+
 use std::hash::Hash;
 use std::path::PathBuf;
+
+pub use permit::{Permit, Toggle};
 
 use super::{Severity, Text, explain};
 use crate::profile::{Operation, Plan, PlanId};
@@ -149,56 +153,6 @@ impl OpWords {
     pub fn texts(&self) -> impl Iterator<Item = &Text> {
         let changes = self.changes.iter().flat_map(|own| own.part.iter().chain([&own.old, &own.new]));
         std::iter::once(&self.item).chain(changes)
-    }
-}
-
-/// What the user may allow beyond the usual.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Permit {
-    /// To write what was made for another device.
-    OtherDevice,
-    /// To write what was made for another type of device.
-    OtherType,
-    /// To write what belongs to the mounting of another device.
-    Mounting,
-    /// To delete and create again.
-    Recreate,
-    /// To copy the bytes of unknown meaning of this data field onto another device.
-    Copy(u8),
-}
-
-/// Something that the user may allow beyond the usual, and that makes another plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Toggle {
-    /// What.
-    pub permit: Permit,
-    /// It is allowed.
-    pub is_on: bool,
-}
-
-impl Permit {
-    /// In the order in which they stand.
-    const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
-
-    /// Its words, as a row of the texts.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Permit::OtherDevice => "review.allow_other",
-            Permit::OtherType => "review.allow_other_type",
-            Permit::Mounting => "review.with_mounting",
-            Permit::Recreate => "review.recreate",
-            Permit::Copy(_) => "review.copy_field",
-        }
-    }
-
-    /// What it means, as a row of the texts.
-    pub const fn hint(self) -> Option<&'static str> {
-        match self {
-            Permit::OtherDevice | Permit::Copy(_) => None,
-            Permit::OtherType => Some("review.allow_other_type_hint"),
-            Permit::Mounting => Some("review.with_mounting_hint"),
-            Permit::Recreate => Some("review.recreate_hint"),
-        }
     }
 }
 

@@ -32,12 +32,7 @@ impl Reviewed for Biss {
 
     fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
-        match permit {
-            Permit::OtherDevice => Some(&mut options.allow_other_device),
-            Permit::OtherType => Some(&mut options.allow_other_type),
-            Permit::Mounting => Some(&mut options.with_mounting),
-            Permit::Recreate | Permit::Copy(_) => None,
-        }
+        permit.option(options)
     }
 
     fn plan(prepared: &Prepared) -> &Plan<Base, Op> {

@@ -1,0 +1,63 @@
+//! What a person may allow a write beyond the usual.
+
+use crate::profile::RestoreOptions;
+
+/// What the user may allow beyond the usual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Permit {
+    /// To write what was made for another device.
+    OtherDevice,
+    /// To write what was made for another type of device.
+    OtherType,
+    /// To write what belongs to the mounting of another device.
+    Mounting,
+    /// To delete and create again.
+    Recreate,
+    /// To copy the bytes of unknown meaning of this data field onto another device.
+    Copy(u8),
+}
+
+/// Something that the user may allow beyond the usual, and that makes another plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Toggle {
+    /// What.
+    pub permit: Permit,
+    /// It is allowed.
+    pub is_on: bool,
+}
+
+impl Permit {
+    /// In the order in which they stand.
+    pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
+
+    /// Its words, as a row of the texts.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Permit::OtherDevice => "review.allow_other",
+            Permit::OtherType => "review.allow_other_type",
+            Permit::Mounting => "review.with_mounting",
+            Permit::Recreate => "review.recreate",
+            Permit::Copy(_) => "review.copy_field",
+        }
+    }
+
+    /// What it means, as a row of the texts.
+    pub const fn hint(self) -> Option<&'static str> {
+        match self {
+            Permit::OtherDevice | Permit::Copy(_) => None,
+            Permit::OtherType => Some("review.allow_other_type_hint"),
+            Permit::Mounting => Some("review.with_mounting_hint"),
+            Permit::Recreate => Some("review.recreate_hint"),
+        }
+    }
+
+    /// Returns the option of a restore that this stands for; `None` where there is none for every kind of device.
+    pub(crate) fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
+        match self {
+            Permit::OtherDevice => Some(&mut options.allow_other_device),
+            Permit::OtherType => Some(&mut options.allow_other_type),
+            Permit::Mounting => Some(&mut options.with_mounting),
+            Permit::Recreate | Permit::Copy(_) => None,
+        }
+    }
+}
