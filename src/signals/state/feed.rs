@@ -14,6 +14,7 @@ use crate::buses::bridge::jobs::{Bridge, BridgeError, Open, Pair, SineCosine, op
 use crate::buses::bridge::procedures::{Streaming, TapError};
 use crate::buses::bridge::state as bridge;
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
+use crate::sim::AT_ADAPTER;
 use crate::sim::sine_cosine::Checked;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
@@ -81,7 +82,7 @@ impl AdapterLink {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-        let (margin, open) = open_adapter(&url, clock.clone()).map_err(|error| refused(&error))?;
+        let (margin, open) = open_adapter(&url, clock.clone(), &AT_ADAPTER).map_err(|error| refused(&error))?;
         Ok(AdapterLink { url, clock, margin, open })
     }
 

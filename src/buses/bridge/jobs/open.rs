@@ -4,9 +4,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::Open;
-use crate::buses::bridge::sim::Adapter;
+use crate::buses::bridge::sim::{Adapter, Attachable};
 use crate::link::{Clock, LinkUrl, Query, Scheme, UrlError};
-use crate::sim::AT_ADAPTER;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
@@ -18,11 +17,16 @@ pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200
 /// How much later a reply may come than the protocol says.
 const MARGIN: &str = "margin";
 
-/// How late the replies of an adapter may be, and what opens the wire to it, on whichever thread.
+/// How late the replies of an adapter may be, and what opens the wire to it, on whichever thread. These devices hang on a
+/// virtual one.
 ///
 /// # Errors
 /// A link that does not lead to an adapter, or a parameter that it does not take; nothing has been opened.
-pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, Open), OpenError> {
+pub fn open_adapter(
+    url: &LinkUrl,
+    clock: Arc<dyn Clock>,
+    devices: &[&dyn Attachable],
+) -> Result<(Duration, Open), OpenError> {
     let simulated = match url.scheme {
         Scheme::Bridge => {
             check_parameters(&url.query, url.scheme, &[MARGIN])?;
@@ -36,7 +40,7 @@ pub fn open_adapter(url: &LinkUrl, clock: Arc<dyn Clock>) -> Result<(Duration, O
             return Err(leads_elsewhere(url.scheme, "sim: and bridge:"));
         }
     };
-    let adapter = Adapter::from_pairs(&simulated, &AT_ADAPTER)?;
+    let adapter = Adapter::from_pairs(&simulated, devices)?;
     let late = read_margin(&url.query)?.unwrap_or(margin(url.scheme));
     let url = url.clone();
     let open = move || open_bytes(&url, FORMAT, &clock, || Ok(inside(adapter, &clock)));
@@ -54,7 +58,7 @@ mod tests {
     use crate::link::VirtualClock;
 
     fn opened(text: &str) -> Result<Duration, String> {
-        let adapter = open_adapter(&text.parse().unwrap(), Arc::new(VirtualClock::default()));
+        let adapter = open_adapter(&text.parse().unwrap(), Arc::new(VirtualClock::default()), &[]);
         adapter.map(|(margin, _)| margin).map_err(|error| error.to_string())
     }
 
