@@ -81,7 +81,7 @@ const STREAMED: Duration = Duration::from_secs(15);
 /// when the adapter streams 20 000 frames a second.
 fn stream() {
     use encoder_studio::app::{Action, Look, Studio, Tab, World};
-    use encoder_studio::kinds::{FORMATS, TABS};
+    use encoder_studio::kinds::program;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
 
@@ -94,7 +94,9 @@ fn stream() {
     impl eframe::App for Streaming {
         fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
             let studio = self.window.studio();
-            let ready = studio.biss().filter(|own| own.session.is_ready() && own.survey.is_some());
+            let ready = studio
+                .shown_as::<encoder_studio::devices::biss::state::Encoder>()
+                .filter(|own| own.session.is_ready() && own.survey.is_some());
             if let (None, Some(encoder)) = (self.began, ready) {
                 let poll = DeviceCommand::Poll(Some(Duration::from_micros(50)));
                 studio.mailbox().send(Action::Command(encoder.session.id, poll));
@@ -107,7 +109,9 @@ fn stream() {
                 return;
             }
             self.took.push(begun.elapsed().as_micros() as u64);
-            let Some(encoder) = self.window.studio().biss() else { return };
+            let Some(encoder) = self.window.studio().shown_as::<encoder_studio::devices::biss::state::Encoder>() else {
+                return;
+            };
             if self.began.is_some_and(|began| began.elapsed() >= STREAMED) {
                 let (pictures, positions, lost) =
                     (self.took.len(), encoder.record.positions(), encoder.record.dropped());
@@ -136,13 +140,13 @@ fn stream() {
             install_fonts(&cc.egui_ctx);
             let ctx = cc.egui_ctx.clone();
             let mut studio = Studio::new(
-                World::real(Store::at(&folder), FORMATS),
+                World::real(Store::at(&folder), program().studio),
                 std::sync::Arc::new(move || ctx.request_repaint()),
             );
-            studio.act(Action::ShowTab(Tab::Biss));
+            studio.act(Action::ShowTab(Tab::named("Biss")));
             // 2 MHz: a frame of 43 clocks takes 21.5 µs beside 27 µs of waiting.
             studio.begin(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
-            let window = Window::new(studio, Look::built_in()?, TABS);
+            let window = Window::new(studio, Look::built_in()?, program().tabs);
             Ok(Box::new(Streaming { window, began: None, took: Vec::new() }))
         }),
     )
@@ -166,13 +170,15 @@ fn write_capture(path: &std::path::Path) {
 /// The whole window with the capture in its scope: every picture another stretch, as fast as they come.
 fn plot() {
     use encoder_studio::analysis::Time;
-    use encoder_studio::app::{Action, Desk, Look, Studio, World, recorder};
-    use encoder_studio::kinds::{FORMATS, TABS};
+    use encoder_studio::app::{Action, Look, Studio, World, recorder};
+    use encoder_studio::kinds::program;
     use encoder_studio::signals::state as signals;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
 
     const PICTURES: usize = 150;
+    use encoder_studio::signals::state::Signals;
+
     struct Plotting {
         window: Window,
         /// Nanoseconds since the program began, of each picture.
@@ -181,7 +187,7 @@ fn plot() {
     impl eframe::App for Plotting {
         fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
             let studio = self.window.studio();
-            if studio.signals.measurement().is_some() {
+            if studio.tool::<Signals>().and_then(Signals::measurement).is_some() {
                 self.times.push(Instant::now());
                 let span = SAMPLES as i64 * 1000;
                 let share = [1.0, 0.5, 0.1, 1e-3][self.times.len() % 4];
@@ -189,13 +195,19 @@ fn plot() {
                 let from = (span - length) / 300 * (self.times.len() % 300) as i64;
                 let (from, to) = (Time::from_nanoseconds(from), Time::from_nanoseconds(from + length));
                 let mailbox = studio.mailbox();
-                mailbox.send(Action::Recorder(Desk::Signals, recorder::Action::Look(from, to)));
+                mailbox.send(Action::Recorder(
+                    encoder_studio::app::Desk::Tool(encoder_studio::app::Tab::named("Signals")),
+                    recorder::Action::Look(from, to),
+                ));
                 if self.times.len() == 1 {
-                    let lines = studio.signals.scope().recorder.lines();
+                    let lines = studio.tool::<Signals>().expect("there is a Signals tab").scope().recorder.lines();
                     for (at, line) in lines.iter().enumerate() {
                         // Sine, cosine, and both references.
                         let shown = [0, 1, 4, 6].contains(&at);
-                        mailbox.send(Action::Recorder(Desk::Signals, recorder::Action::Show(line.id, shown)));
+                        mailbox.send(Action::Recorder(
+                            encoder_studio::app::Desk::Tool(encoder_studio::app::Tab::named("Signals")),
+                            recorder::Action::Show(line.id, shown),
+                        ));
                     }
                 }
             }
@@ -218,9 +230,9 @@ fn plot() {
         }
     }
     let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
-    let mut studio = Studio::new(World::real(Store::at(&folder), FORMATS), std::sync::Arc::new(|| {}));
+    let mut studio = Studio::new(World::real(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
     studio.begin(None, None);
-    studio.act(Action::Signals(signals::Action::Open(folder.join("capture.csv"))));
+    studio.act(Action::tool(signals::Action::Open(folder.join("capture.csv"))));
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default().with_inner_size([1280.0, 800.0]),
         renderer: eframe::Renderer::Glow,
@@ -232,7 +244,7 @@ fn plot() {
         options,
         Box::new(move |cc| {
             install_fonts(&cc.egui_ctx);
-            Ok(Box::new(Plotting { window: Window::new(studio, look, TABS), times: Vec::new() }))
+            Ok(Box::new(Plotting { window: Window::new(studio, look, program().tabs), times: Vec::new() }))
         }),
     )
     .unwrap();

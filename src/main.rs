@@ -3,13 +3,14 @@
 use std::process::ExitCode;
 
 use encoder_studio::cli::{self, Asked};
-use encoder_studio::kinds::{COMMANDS, FORMATS, TABS};
+use encoder_studio::kinds::program;
 use encoder_studio::ui;
 
 fn main() -> ExitCode {
-    match cli::run(FORMATS, COMMANDS) {
+    let program = program();
+    match cli::run(program.studio.formats, program.commands) {
         Asked::Command(code) => code,
-        Asked::Window(start) => match ui::run(start, FORMATS, TABS) {
+        Asked::Window(start) => match ui::run(start, program.studio, program.tabs) {
             Ok(()) => ExitCode::SUCCESS,
             Err(why) => cli::no_window(&why),
         },

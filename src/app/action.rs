@@ -2,9 +2,8 @@
 
 use std::any::Any;
 use std::path::PathBuf;
-use std::sync::Arc;
 
-use super::devices::DeviceCommand;
+use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{Diverged, Resolve};
 use super::file_question::FileQuestion;
 use super::keep::{SettingsRead, SettingsWritten};
@@ -16,15 +15,10 @@ use super::services::Services;
 use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
 use super::studio::SessionId;
 use super::tab::Tab;
-use super::{Language, Picture, Settings, Text, Theme, connect};
-use crate::devices::biss::protocol::Descriptions;
-use crate::devices::hiperface::jobs::Hiperface;
-use crate::devices::hiperface::protocol::EncoderTypes;
-use crate::devices::ssi::protocol::Families;
+use super::{Language, Picture, Settings, Theme, connect};
 use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
-use crate::signals::state as signals;
-use crate::store::{DeviceKey, FileError, StoreError};
+use crate::store::{DeviceKey, FileError};
 use crate::worker::{OpenError, Worker};
 
 /// Something to be done.
@@ -101,10 +95,10 @@ pub enum Action {
     Command(SessionId, DeviceCommand),
     /// Something that one kind of device can be asked for; see [`Action::device`].
     Device(SessionId, Payload),
-    /// A layout of an SSI encoder that is in no file yet.
-    NewLayout,
-    /// Something in the Signals tab.
-    Signals(signals::Action),
+    /// A profile that is in no file yet, of the kind of device of this tab.
+    New(Tab),
+    /// Something in a tab that needs no device; see [`Action::tool`].
+    Tool(Tab, Payload),
     /// A task has come back.
     Done(Done),
     /// The system has no thread left for a task.
@@ -137,17 +131,10 @@ pub enum Done {
     },
     /// A link was opened for a session, or not.
     Opened(Attempt),
-    /// Devices that answer in this network, or why nobody could be asked.
-    FoundDrives(u32, Result<Vec<crate::devices::hiperdrive::state::FoundDevice>, Text>),
-    /// The families of SSI encoders were read, with what is wrong with those of the user's own.
-    Families(Arc<Families>, Vec<StoreError>),
-    /// A link was opened for a search.
-    OpenedForSearch {
-        /// For which.
-        number: u32,
-        /// The session on its thread.
-        result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,
-    },
+    /// A task of a search, from the connection form of the kind of device of this tab; see [`Done::finder`].
+    Finder(Tab, Payload),
+    /// A task whose result is for no one session, and what is done with it.
+    Shared(SharedResult),
     /// The serial ports of this machine.
     Ports(Result<Vec<connect::Offer>, LinkError>),
     /// A profile was read.
@@ -156,8 +143,8 @@ pub enum Done {
         file: ProfileFile,
         /// What is in it.
         result: Result<Box<Document>, ReadError>,
-        /// What is known of encoders.
-        known: Known,
+        /// Puts it on the desk, with the tables that its kind needs; `None` of a kind that the window does not show.
+        open: Option<OpenProfile>,
     },
     /// A profile was written.
     Written {
@@ -205,8 +192,8 @@ pub enum Done {
     },
     /// A task of one kind of device, for one session; see `Done::device`.
     Device(SessionId, Payload),
-    /// In the Signals tab.
-    Signals(signals::Done),
+    /// A task of a tab that needs no device; see [`Done::tool`].
+    Tool(Tab, Payload),
 }
 
 /// What came of opening a link for a session.
@@ -238,7 +225,7 @@ pub struct Opened<D: Kind> {
 }
 
 /// A session on its thread, of a kind of device that is not known on the way.
-pub(super) trait AnyOpened: Any + Send {
+pub trait AnyOpened: Any + Send {
     /// Closes the session that is no longer needed.
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
 
@@ -280,13 +267,8 @@ pub enum OpenFailed {
     Held,
 }
 
-/// What a profile is read with: the tables of encoders, the built-in ones and the user's own.
-pub struct Known {
-    /// HIPERFACE encoder types; or why the user's own cannot be read.
-    pub hiperface: Result<EncoderTypes, StoreError>,
-    /// Descriptions of BiSS encoders.
-    pub biss: Descriptions,
-}
+/// What is done with a result that is for no one session.
+pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
 /// Why a profile cannot be read.
 #[derive(Debug)]
@@ -302,6 +284,6 @@ pub enum ReadError {
 pub enum Desk {
     /// A device's.
     Device(SessionId),
-    /// The Signals tab's.
-    Signals,
+    /// That of a tab that needs no device.
+    Tool(Tab),
 }

@@ -100,7 +100,7 @@ impl Studio {
         }
         self.services.brakes.begin();
         self.services.brakes.note_closing();
-        self.signals.stop(&mut self.services);
+        self.stop_tools();
         let patience = self.services.world.patience;
         let limits = [
             (Waited::Drives, patience.drives),
@@ -124,7 +124,7 @@ impl Studio {
                 let why = Text::new("session.maybe_drive");
                 self.with_device(id, |device, services| device.lose(why, services));
             }
-            Then::Search(_) => {
+            Then::Find => {
                 if let Some(connect) = &mut self.connect {
                     connect.problem = Some(Text::new("session.maybe_drive"));
                 }
@@ -143,11 +143,11 @@ impl Studio {
             Some(Then::CloseSession(id)) => self.remove(id),
             Some(Then::Write(question, path)) => self.chosen(question, path),
             Some(Then::Save(saving)) => {
-                let formats = self.services.world.formats;
+                let formats = self.services.world.kinds.formats;
                 self.services.tasks.run("save", move || saving.run(formats));
             }
             Some(Then::OpenLink(id)) => self.open_confirmed(id),
-            Some(Then::Search(options)) => self.search_confirmed(options),
+            Some(Then::Find) => self.find_confirmed(),
             Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::Action::Clear),
             None => {}
         }

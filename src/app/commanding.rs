@@ -60,9 +60,14 @@ impl Studio {
     /// the strength of it.
     pub(super) fn check_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
         if done.is_err() {
-            self.stop_motion();
             let name = self.device(id).map(AnyDevice::name);
-            self.services.tell(Severity::Error, vec![Text::new("session.wrong_kind")], name.as_deref());
+            self.refuse_kind(name.as_deref());
         }
+    }
+
+    /// Tells that something was meant for another kind of device; nothing goes on moving.
+    pub(super) fn refuse_kind(&mut self, about: Option<&str>) {
+        self.stop_motion();
+        self.services.tell(Severity::Error, vec![Text::new("session.wrong_kind")], about);
     }
 }

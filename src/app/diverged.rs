@@ -210,7 +210,7 @@ impl Studio {
             }
             Resolve::Reload => return self.reload(diverged),
             Resolve::KeepMine if diverged.can_keep_mine() => diverged.over_theirs(None),
-            Resolve::Merge if diverged.can_merge() => match diverged.merged(self.services.world.formats) {
+            Resolve::Merge if diverged.can_merge() => match diverged.merged(self.services.world.kinds.formats) {
                 Ok(document) => diverged.over_theirs(Some(document)),
                 Err(why) => {
                     diverged.problem = Some(why);
@@ -223,7 +223,7 @@ impl Studio {
                 return;
             }
         };
-        let formats = self.services.world.formats;
+        let formats = self.services.world.kinds.formats;
         self.services.tasks.run("save", move || saving.run(formats));
     }
 

@@ -4,21 +4,23 @@ use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 
-use super::action::{Action, Done, Known, ReadError};
-use super::devices::device_in_file;
+use super::action::{Action, Done, ReadError};
+use super::devices::OpenProfile;
+use super::kinds::Kinds;
 use super::session::{DraftDone, ProfileFile, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
-use crate::devices::biss::jobs::descriptions;
-use crate::devices::biss::protocol::Descriptions;
-use crate::devices::hiperface::jobs::encoder_types;
-use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::profile::{Body, Document, Formats, ProfileError};
 use crate::store::{Store, read_file};
 
 impl Studio {
     /// A profile was read, or not.
-    pub(super) fn read(&mut self, file: ProfileFile, result: Result<Box<Document>, ReadError>, known: Known) {
+    pub(super) fn read(
+        &mut self,
+        file: ProfileFile,
+        result: Result<Box<Document>, ReadError>,
+        opens: Option<OpenProfile>,
+    ) {
         let opening = &mut self.services.opening_files;
         if let Some(at) = opening.iter().position(|own| *own == file.path) {
             opening.remove(at);
@@ -38,8 +40,8 @@ impl Studio {
                     self.with_device(id, |device, _| device.take_document(file, *document));
                 } else {
                     let (path, found) = (file.path.clone(), document.device());
-                    let device = device_in_file(id, file, *document, known, &mut self.services);
-                    let Some(device) = device else { return self.cannot_show(&path, found) };
+                    let Some(opens) = opens else { return self.cannot_show(&path, found) };
+                    let device = opens(id, file, *document, &mut self.services);
                     self.devices.push(device);
                 }
                 if let Some(tab) = self.device(id).map(|device| device.tab()) {
@@ -52,8 +54,10 @@ impl Studio {
 
     /// A profile is of a kind of device that the window does not show.
     fn cannot_show(&mut self, path: &Path, found: &str) {
-        let error =
-            ProfileError::Device { found: found.to_owned(), known: self.services.world.formats.kinds().collect() };
+        let error = ProfileError::Device {
+            found: found.to_owned(),
+            known: self.services.world.kinds.formats.kinds().collect(),
+        };
         self.services.tell(Severity::Error, vec![explain::profile(path, &error)], None);
     }
 
@@ -86,11 +90,6 @@ pub(crate) fn only_looked_at(source: &Source) -> Option<Text> {
     document.is_newer().then(|| explain::newer_profile(path, document))
 }
 
-/// A table, and no profile.
-pub(super) fn is_capture(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
-}
-
 /// What was read just now, as a profile.
 pub(crate) fn document_of(body: Body) -> Document {
     let now = Timestamp::now();
@@ -99,19 +98,16 @@ pub(crate) fn document_of(body: Body) -> Document {
 }
 
 /// Reads a profile, as a task.
-pub(super) fn read_document(path: PathBuf, store: &Store, formats: Formats) -> Action {
-    let (text, result) = match read_text_and_profile(&path, formats) {
+pub(super) fn read_document(path: PathBuf, store: &Store, kinds: Kinds) -> Action {
+    let (text, result) = match read_text_and_profile(&path, kinds.formats) {
         Ok((text, document)) => (text, Ok(Box::new(document))),
         Err(error) => (String::new(), Err(error)),
     };
     let file = ProfileFile { key: file_key(&path), path, text };
     // Where there is no profile, nobody waits for the tables.
-    let known = if result.is_ok() {
-        Known { hiperface: encoder_types(store), biss: descriptions(store).0 }
-    } else {
-        Known { hiperface: Ok(EncoderTypes::built_in()), biss: Descriptions::built_in() }
-    };
-    Action::Done(Done::Read { file, result, known })
+    let kind = result.as_ref().ok().and_then(|document| kinds.of_profile(document.body.kind()));
+    let open = kind.map(|kind| kind.read_tables(store));
+    Action::Done(Done::Read { file, result, open })
 }
 
 pub(super) fn read_profile(path: &Path, formats: Formats) -> Result<Document, ReadError> {

@@ -63,7 +63,7 @@ pub(crate) struct LocksAlone {
 
 /// Whether the settings were read since control was taken: another window may have marked limits in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Marks {
+pub enum Marks {
     /// Not yet, or too long ago.
     Unread,
     /// They are being read.

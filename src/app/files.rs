@@ -10,7 +10,6 @@ use super::recorder::{self, Exported, Recorder};
 use super::studio::{SessionId, Studio};
 use super::{Picture, Severity, Text, connect, explain};
 use crate::link::{LinkUrl, Scheme};
-use crate::signals::state as signals;
 use crate::store::{FileError, Folders};
 
 impl Studio {
@@ -54,7 +53,7 @@ impl Studio {
     pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
-            FileQuestion::OpenCapture => self.act(Action::Signals(signals::Action::Open(path))),
+            FileQuestion::OpenCapture => self.open_capture(path),
             FileQuestion::Recording => self.act(Action::Connect(connect::Action::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
             FileQuestion::OfDevice(file) => {
@@ -77,14 +76,14 @@ impl Studio {
     pub fn recorder(&self, desk: Desk) -> Option<&Recorder> {
         match desk {
             Desk::Device(id) => self.device(id).map(|device| device.recorder()),
-            Desk::Signals => Some(&self.signals.scope().recorder),
+            Desk::Tool(tab) => self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder()),
         }
     }
 
     fn recorder_mut(&mut self, desk: Desk) -> Option<&mut Recorder> {
         match desk {
             Desk::Device(id) => self.device_mut(id).map(|device| device.recorder_mut()),
-            Desk::Signals => Some(&mut self.signals.scope_mut().recorder),
+            Desk::Tool(tab) => self.tools.iter_mut().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder_mut()),
         }
     }
 
@@ -122,7 +121,7 @@ impl Studio {
     fn suggested(&self, desk: Option<Desk>, ending: &str) -> PathBuf {
         let device = match desk {
             Some(Desk::Device(id)) => self.device(id),
-            Some(Desk::Signals) => None,
+            Some(Desk::Tool(_)) => None,
             None => self.shown(),
         };
         let whose = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
@@ -151,7 +150,7 @@ impl Studio {
         // Another drive may be shown by now.
         let recorders = match desk {
             Desk::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
-            Desk::Signals => vec![&mut self.signals.scope_mut().recorder],
+            Desk::Tool(_) => self.recorder_mut(desk).into_iter().collect(),
         };
         let ended = recorders.into_iter().find_map(|recorder| recorder.end_export(exported.number, is_written));
         let lost = ended.unwrap_or(0);
@@ -200,6 +199,6 @@ impl Studio {
         for device in &mut self.devices {
             device.recorders_mut().into_iter().for_each(Recorder::feed_export);
         }
-        self.signals.scope_mut().recorder.feed_export();
+        self.tools.iter_mut().for_each(|(_, tool)| tool.recorder_mut().feed_export());
     }
 }

@@ -13,6 +13,7 @@ use crossbeam_channel::bounded;
 use jiff::Zoned;
 
 use super::action::{Action, Done};
+use super::kinds::Kinds;
 use super::services::Services;
 use super::{Settings, Severity, Text, explain};
 use crate::store::{FileError, FileProblem, read_text, update_text};
@@ -78,16 +79,16 @@ pub struct SettingsWritten {
 impl Keeper {
     /// Reads the settings. A disk that does not answer at once comes back as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
-        let path = services.world.store.settings_path();
+        let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
         // Handed over from hand to hand: what nobody takes any more goes into the mailbox.
         let (sender, receiver) = bounded(0);
         let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || {
-            if let Err(late) = sender.send(read(path)) {
+            if let Err(late) = sender.send(read(path, kinds)) {
                 mailbox.send(Action::Done(Done::SettingsRead(late.into_inner())));
             }
         });
-        let mut settings = Settings::default();
+        let mut settings = Settings::of(kinds);
         let mut keeper = Keeper {
             known: settings.clone(),
             failed: None,
@@ -111,6 +112,7 @@ impl Keeper {
     /// Takes over what was read; what the user has set meanwhile stays.
     pub(super) fn take(&mut self, read: SettingsRead, settings: &mut Settings, services: &mut Services) {
         services.log.settle("session.settings_slow", None);
+        let kinds = services.world.kinds;
         let found = match read {
             SettingsRead::Whole(found) => {
                 self.may_write = true;
@@ -118,7 +120,7 @@ impl Keeper {
             }
             SettingsRead::Missing => {
                 self.may_write = true;
-                Settings::default()
+                Settings::of(kinds)
             }
             SettingsRead::Broken { settings, path, aside } => {
                 let text = match &aside {
@@ -135,7 +137,7 @@ impl Keeper {
                 return;
             }
         };
-        *settings = found.clone().with_changes(&Settings::default(), settings);
+        *settings = found.clone().with_changes(&Settings::of(kinds), settings);
         self.known = found;
     }
 
@@ -145,8 +147,9 @@ impl Keeper {
             return;
         }
         self.busy = Some(settings.clone());
-        let (path, known, ours) = (services.world.store.settings_path(), self.known.clone(), settings.clone());
-        services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours))));
+        let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
+        let (known, ours) = (self.known.clone(), settings.clone());
+        services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours, kinds))));
     }
 
     /// What has become of a write; that one failed is told once.
@@ -188,10 +191,11 @@ impl Keeper {
             return false;
         }
         self.looking = Some(services.now());
-        let path = services.world.store.settings_path();
-        services
-            .tasks
-            .run("settings", move || Action::Done(Done::SettingsSeen(found(&path).map(|found| found.map(Box::new)))));
+        let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
+        services.tasks.run("settings", move || {
+            let found = found(&path, kinds).map(|found| found.map(Box::new));
+            Action::Done(Done::SettingsSeen(found))
+        });
         true
     }
 
@@ -233,8 +237,8 @@ impl Keeper {
 }
 
 /// Reads the settings, and puts a broken file aside: as it is, beside itself.
-fn read(path: PathBuf) -> SettingsRead {
-    match understood(read_text(&path)) {
+fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
+    match understood(read_text(&path), kinds) {
         Ok(Some((settings, true))) => SettingsRead::Whole(Box::new(settings)),
         Ok(Some((settings, false))) => {
             let aside = aside_of(&path);
@@ -248,24 +252,28 @@ fn read(path: PathBuf) -> SettingsRead {
 }
 
 /// What can be read of a text, and whether that is all of it; `None` where there is no file.
-fn understood(text: Result<String, FileError>) -> Result<Option<(Settings, bool)>, FileError> {
+fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
-        Ok(text) => Ok(Some(match Settings::parse(&text) {
-            Some(settings) => (settings, true),
-            None => (Settings::salvage(&text), false),
-        })),
+        Ok(text) => {
+            let (mut settings, is_whole) = match Settings::parse(&text) {
+                Some(settings) => (settings, true),
+                None => (Settings::salvage(&text), false),
+            };
+            settings.settle(kinds);
+            Ok(Some((settings, is_whole)))
+        }
         Err(FileError { problem: FileProblem::NotFound, .. }) => Ok(None),
         Err(FileError { problem: FileProblem::NotUtf8 { .. } | FileProblem::TooLarge { .. }, .. }) => {
-            Ok(Some((Settings::default(), false)))
+            Ok(Some((Settings::of(kinds), false)))
         }
         Err(error) => Err(error),
     }
 }
 
 /// What stands in the settings; `None` where no window can have written any.
-fn found(path: &Path) -> Result<Option<Settings>, FileError> {
+fn found(path: &Path, kinds: Kinds) -> Result<Option<Settings>, FileError> {
     use FileProblem::{IsFolder, NoFolder, NotAFile, NotFolder};
-    match understood(read_text(path)) {
+    match understood(read_text(path), kinds) {
         Err(FileError { problem: NoFolder | NotFolder | IsFolder | NotAFile, .. }) => Ok(None),
         read => Ok(read?.map(|(settings, _)| settings)),
     }
@@ -278,9 +286,9 @@ fn aside_of(path: &Path) -> PathBuf {
 }
 
 /// Writes what was changed in `ours` since `known` into the file as it is now.
-fn write(path: &Path, known: &Settings, ours: &Settings) -> Result<SettingsWritten, FileError> {
+fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result<SettingsWritten, FileError> {
     update_text(path, |text| {
-        let (there, is_whole) = match understood(text)? {
+        let (there, is_whole) = match understood(text, kinds)? {
             Some((found, is_whole)) => (Some(found), is_whole),
             None => (None, true),
         };

@@ -19,6 +19,7 @@ mod given;
 pub(crate) mod history;
 mod hold;
 mod keep;
+mod kinds;
 pub(crate) mod leaving;
 pub(crate) mod line;
 mod look;
@@ -45,13 +46,17 @@ pub(crate) mod studio;
 pub(crate) mod tab;
 pub(crate) mod tasks;
 pub(crate) mod texts;
+mod tool;
 mod trace;
 pub(crate) mod track;
 
 pub use action::{Action, Desk, Done, ReviewAction};
 pub use brakes::{Brake, Brakes};
 pub(crate) use devices::{ActContext, DeviceMemory, DeviceModel, MotionControl, Prepare};
-pub use devices::{AnyDevice, DeviceCommand, OpenDevice};
+pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice};
+pub use kinds::Kinds;
+pub use tool::{Tool, ToolAction, ToolContext, ToolKind};
+
 pub(crate) use drives::Marks;
 pub use drives::{Measure, RememberedDrives};
 pub use file_question::{DeviceFile, FileQuestion};

@@ -2,7 +2,6 @@
 
 use super::devices::MotionControl;
 use super::studio::Studio;
-use super::tab::Tab;
 
 impl Studio {
     fn motions(&self) -> impl Iterator<Item = &dyn MotionControl> {
@@ -55,7 +54,7 @@ impl Studio {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;
         let tab = self.settings.tab;
-        let seen = self.shown.of(tab).filter(|_| tab != Tab::Signals && !is_covered);
+        let seen = self.shown.of(tab).filter(|_| !is_covered);
         for device in &mut self.devices {
             let is_seen = seen == Some(device.id()) && !device.is_reviewing();
             if let Some(motion) = device.motion_mut().filter(|_| !is_seen) {

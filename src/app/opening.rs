@@ -3,7 +3,6 @@
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
-use super::devices::device_at_link;
 use super::given::Opener;
 use super::leaving::same_wire;
 use super::question::{Question, Then};
@@ -13,7 +12,6 @@ use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text};
-use crate::devices::hiperface::jobs::may_have_other_master;
 use crate::link::{LinkUrl, Scheme, TraceEntry};
 use crate::worker::{Ring, Session, Worker};
 
@@ -24,24 +22,16 @@ impl Studio {
     /// The tab of the device that a link leads to. What the link does not say is remembered: the kind of device that was
     /// at it before, the tab shown last if it was one of several; for a new link that tab.
     pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
-        let shown = if self.settings.tab == Tab::Signals { Tab::Hiperface } else { self.settings.tab };
+        let kinds = self.services.world.kinds;
+        let tab = self.settings.tab;
+        let shown = if kinds.of_tab(tab).is_some() { tab } else { kinds.first_tab() };
         let Some(link) = link else { return shown };
-        let fits = |tab: &Tab| tab.check(link).is_ok();
+        let fits = |tab: &Tab| kinds.of_tab(*tab).is_some_and(|kind| kind.check(link).is_ok());
         // Each kind has virtual devices: their links tell nothing about it.
         let text = (link.scheme != Scheme::Sim).then(|| link.to_string());
         let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
-        if used(&shown) {
-            return shown;
-        }
-        if let Some(tab) = Tab::DEVICES.into_iter().find(used) {
-            return tab;
-        }
-        match link.scheme {
-            // Both of these are reached over an adapter.
-            Scheme::Bridge if shown != Tab::Ssi => Tab::Biss,
-            _ if fits(&shown) => shown,
-            _ => Tab::DEVICES.into_iter().find(fits).unwrap_or(shown),
-        }
+        let tabs = || std::iter::once(shown).chain(kinds.devices().iter().map(|kind| kind.tab()));
+        tabs().find(used).or_else(|| tabs().find(fits)).unwrap_or(shown)
     }
 
     /// Opens a link to a kind of device: in the session that has this wire already, else in a new one. A session of
@@ -53,9 +43,9 @@ impl Studio {
         }
     }
 
-    /// Opens a link to an encoder that a search has found: about other masters on its line it was asked before.
-    pub(crate) fn open_found(&mut self, url: LinkUrl) {
-        if let Some(id) = self.session_at(Tab::Hiperface, &url) {
+    /// Opens a link to a device that a search has found: about other masters on its line it was asked before.
+    pub(super) fn open_found(&mut self, tab: Tab, url: LinkUrl) {
+        if let Some(id) = self.session_at(tab, &url) {
             self.attempt_to_open(id, url);
         }
     }
@@ -87,7 +77,8 @@ impl Studio {
             Some(id) => id,
             None => {
                 let id = self.new_id();
-                let device = device_at_link(tab, id, url.clone(), &mut self.services)?;
+                let kind = self.services.world.kinds.of_tab(tab)?;
+                let device = kind.at_link(id, url.clone(), &mut self.services);
                 self.devices.push(device);
                 id
             }
@@ -101,7 +92,7 @@ impl Studio {
     ///
     /// # Errors
     /// It writes: which one.
-    pub(crate) fn free_wire(&mut self, url: &LinkUrl, why: &'static str) -> Result<Option<Receiver<()>>, Text> {
+    pub(super) fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
             held && matches!(device.source(), Source::Link(own) if same_wire(own, url))
@@ -114,7 +105,6 @@ impl Studio {
             return Err(Text::new("session.writes_there").with("name", name));
         }
         device.let_go(JobEnd::Cancelled, &mut self.services);
-        let why = Text::new(why);
         *device.phase_mut() = Phase::Lost(why.clone());
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         self.services.tell(Severity::Note, vec![why], Some(&name));
@@ -131,8 +121,9 @@ impl Studio {
     /// Opens a link for a session. Where a drive may be on the line, that is asked before anything is opened: it may have
     /// read the encoder at power-up and be silent since, so that listening proves nothing.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
+        let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
-        if device.tab() != Tab::Hiperface || !may_have_other_master(&url) {
+        if !kinds.of_tab(device.tab()).is_some_and(|kind| kind.may_have_other_master(&url)) {
             return self.attempt_to_open(id, url);
         }
         *device.phase_mut() = Phase::Lost(Text::new("session.not_asked"));
@@ -149,7 +140,7 @@ impl Studio {
     /// Another attempt to open a link for a session: from now on only its result counts.
     fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl) {
         let attempt = self.new_number();
-        self.signals.source.free_wire(&url, &mut self.services);
+        self.free_wire_of_tools(&url);
         let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) else { return };
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         let over = device.open(url, attempt, earlier, &mut self.services);

@@ -5,7 +5,9 @@ use std::any::Any;
 use std::fmt;
 
 use super::action::{Action, Done};
+use super::connect::form::Finder;
 use super::studio::SessionId;
+use super::tab::Tab;
 
 /// An action that a kind of device takes.
 pub trait DeviceAction: Any + Send {}
@@ -19,15 +21,20 @@ pub struct Payload(Box<dyn Any + Send>);
 pub struct WrongKind;
 
 impl Payload {
-    pub(super) fn of(content: impl Any + Send) -> Self {
+    pub(in crate::app) fn of(content: impl Any + Send) -> Self {
         Payload(Box::new(content))
+    }
+
+    /// Returns whether it holds this type.
+    pub(in crate::app) fn is<T: Any>(&self) -> bool {
+        self.0.is::<T>()
     }
 
     /// Returns what was put in.
     ///
     /// # Errors
     /// [`WrongKind`] where that is of another type.
-    pub(super) fn open<T: Any>(self) -> Result<T, WrongKind> {
+    pub fn open<T: Any>(self) -> Result<T, WrongKind> {
         self.0.downcast().map(|content| *content).map_err(|_| WrongKind)
     }
 }
@@ -49,5 +56,15 @@ impl Done {
     /// Returns what a task of one device comes back with, as its kind takes it.
     pub(crate) fn device(id: SessionId, done: impl Any + Send) -> Self {
         Done::Device(id, Payload::of(done))
+    }
+
+    /// Returns what a task of a search comes back with, for the connection form of a kind of device.
+    pub fn finder<F: Finder>(tab: Tab, done: F::Done) -> Self {
+        Done::Finder(tab, Payload::of(done))
+    }
+
+    /// Returns what a task of a tool comes back with, as the tool takes it.
+    pub fn tool(tab: Tab, done: impl Any + Send) -> Self {
+        Done::Tool(tab, Payload::of(done))
     }
 }

@@ -7,7 +7,6 @@ use super::action::Desk;
 use super::file_question::FileQuestion;
 use super::session::{Saving, without_codes};
 use super::studio::SessionId;
-use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::link::LinkUrl;
 
 /// A question that has to be answered before something is done.
@@ -32,8 +31,8 @@ pub(crate) enum Then {
     Save(Box<Saving>),
     /// The link of this session is opened.
     OpenLink(SessionId),
-    /// The link of the connection dialog is searched.
-    Search(FindOptions),
+    /// The search of the connection dialog goes on.
+    Find,
 }
 
 impl Question {

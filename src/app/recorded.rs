@@ -13,7 +13,14 @@ pub(crate) const SETTINGS: &str = include_str!("../../tests/fixtures/settings/se
 fn settings_are_read_and_written_as_recorded() {
     let settings = Settings::parse(SETTINGS).unwrap();
     assert_eq!(settings.emit(), SETTINGS.trim_end());
-    let tabs = [Tab::Hiperface, Tab::Biss, Tab::Ssi, Tab::Interbus, Tab::Hiperdrive, Tab::Signals];
+    let tabs = [
+        Tab::named("Hiperface"),
+        Tab::named("Biss"),
+        Tab::named("Ssi"),
+        Tab::named("Interbus"),
+        Tab::named("Hiperdrive"),
+        Tab::named("Signals"),
+    ];
     assert!(tabs.iter().all(|tab| settings.links(*tab).len() == 1));
     assert_eq!(Settings::salvage(SETTINGS), settings);
 }

@@ -1,25 +1,22 @@
 //! What every session needs of the studio: the world outside, threads for what would block, the log, the list of jobs.
 
-use std::collections::VecDeque;
+use std::any::{Any, TypeId};
+use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
 use jiff::Zoned;
 
 use super::Text;
-use super::action::{Action, Done};
 use super::brakes::Brakes;
 use super::file_question::FileQuestion;
 use super::given::Given;
+use super::kinds::Kinds;
 use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
-use crate::devices::hiperface::protocol::EncoderTypes;
-use crate::devices::hiperface::state::explain as hiperface_words;
-use crate::devices::ssi::protocol::Families;
 use crate::link::{LinkError, PortInfo};
-use crate::profile::Formats;
-use crate::store::{Folders, Store, StoreError};
+use crate::store::{Folders, Store};
 use crate::worker::JobId;
 
 /// The world outside, as the studio reaches it; a test has one of its own.
@@ -29,8 +26,8 @@ pub struct World {
     pub store: Store,
     /// What kinds of device are given from outside.
     pub given: Given,
-    /// The formats of profiles that can be read.
-    pub formats: Formats,
+    /// The kinds of devices and the tools that there are.
+    pub kinds: Kinds,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// Where paths begin that a person gives.
@@ -42,12 +39,12 @@ pub struct World {
 }
 
 impl World {
-    /// This machine, with the formats of profiles that can be read.
-    pub fn real(store: Store, formats: Formats) -> Self {
+    /// This machine, with these kinds of devices and tools.
+    pub fn real(store: Store, kinds: Kinds) -> Self {
         World {
             store,
             given: Given::default(),
-            formats,
+            kinds,
             ports: Arc::new(crate::link::ports),
             folders: Folders::of_user(),
             now: Arc::new(Zoned::now),
@@ -105,32 +102,27 @@ pub struct Services {
     pub(super) opening_files: Vec<std::path::PathBuf>,
     /// Drafts that are on their way to the disk.
     pub(super) drafts_on_their_way: usize,
-    /// Families of SSI encoders: the built-in ones, until the user's own were read.
-    pub(crate) families: Arc<Families>,
-    /// The user's own are being read, or were.
-    families_asked: bool,
+    /// What the sessions of one kind of device have in common.
+    shared: HashMap<TypeId, Box<dyn Any>>,
 }
 
 impl Services {
     const JOBS: usize = 500;
 
-    /// Families of SSI encoders. Whoever wants them first has the user's own read beside the built-in ones, as a task.
-    pub(crate) fn ssi_families(&mut self) -> Arc<Families> {
-        if !std::mem::replace(&mut self.families_asked, true) {
-            let store = self.world.store.clone();
-            self.tasks.run("families", move || {
-                let (families, broken) = crate::devices::ssi::jobs::families(&store);
-                Action::Done(Done::Families(Arc::new(families), broken))
-            });
-        }
-        self.families.clone()
+    /// Returns what the sessions of one kind of device have in common; `None` before one has shared it.
+    pub fn shared<T: Any>(&self) -> Option<&T> {
+        self.shared.get(&TypeId::of::<T>())?.downcast_ref()
+    }
+
+    /// Shares something with the other sessions of this kind of device, in the place of what was shared before.
+    pub fn share<T: Any>(&mut self, value: T) {
+        self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
 
     pub(crate) fn new(world: World, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
         let (tasks, leaving) = (Tasks::new(wake), Vec::new());
         let opening_files = Vec::new();
-        let families = Arc::new(Families::built_in());
         Services {
             world,
             tasks,
@@ -141,8 +133,7 @@ impl Services {
             leaving,
             opening_files,
             drafts_on_their_way: 0,
-            families,
-            families_asked: false,
+            shared: HashMap::new(),
         }
     }
 
@@ -173,14 +164,6 @@ impl Services {
 
     fn notice(&self, severity: Severity, texts: Vec<Text>, about: Option<&str>) -> Notice {
         Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
-    }
-
-    /// The table of encoder types as it was read; the built-in one where the user's own cannot be, which is told.
-    pub(super) fn encoder_types(&mut self, read: Result<EncoderTypes, StoreError>) -> EncoderTypes {
-        read.unwrap_or_else(|error| {
-            self.tell(Severity::Warning, vec![hiperface_words::store(&error)], None);
-            EncoderTypes::built_in()
-        })
     }
 
     /// Jobs, the newest last.

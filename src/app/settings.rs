@@ -2,11 +2,14 @@
 //! that cannot be read costs the memory of a few clicks, and the defaults hold. Files are opened elsewhere.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Language;
 use super::drives::{LocksAlone, RememberedDrives};
+use super::kinds::Kinds;
 use super::tab::Tab;
 
 /// Dark or light.
@@ -28,7 +31,7 @@ pub struct Settings {
     /// Language of the window.
     pub language: Language,
     /// Links used, the latest first, by the tab of the device; never with access codes, which are no part of a link.
-    links: BTreeMap<Tab, Vec<String>>,
+    links: Links,
     /// Arrangement of the panels, which only the window reads.
     pub layout: Option<String>,
     /// The open tab.
@@ -44,9 +47,9 @@ impl Default for Settings {
         Settings {
             theme: Theme::Dark,
             language: Language::English,
-            links: BTreeMap::new(),
+            links: Links::default(),
             layout: None,
-            tab: Tab::Hiperface,
+            tab: Tab::default(),
             size: None,
             drives: BTreeMap::new(),
         }
@@ -54,6 +57,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Those of a first start.
+    pub fn of(kinds: Kinds) -> Self {
+        Settings { tab: kinds.first_tab(), ..Settings::default() }
+    }
+
     /// Links that are remembered.
     const LINKS: usize = 12;
 
@@ -79,10 +87,10 @@ impl Settings {
             theme: entry!(theme: Theme, usual.theme),
             language: entry!(language: Language, usual.language),
             links: entry!(
-                links: BTreeMap<Tab, Vec<String>>,
+                links: Links,
                 // As it was while there was one kind of device.
-                entry!(links: Vec<String>, Vec::new()).into_iter().rev().fold(BTreeMap::new(), |mut links, link| {
-                    links.entry(Tab::Hiperface).or_insert_with(Vec::new).insert(0, link);
+                entry!(links: Vec<String>, Vec::new()).into_iter().rev().fold(Links::default(), |mut links, link| {
+                    links.change(Tab::default(), |own| own.insert(0, link));
                     links
                 })
             ),
@@ -108,9 +116,9 @@ impl Settings {
         }
         take!(theme, language, layout, tab, size);
         self.change_drives(known, ours);
-        for tab in ours.links.keys() {
-            let used = used_since(known.links(*tab), ours.links(*tab));
-            used.iter().rev().for_each(|link| self.use_link(*tab, link));
+        for tab in ours.links.tabs() {
+            let used = used_since(known.links(tab), ours.links(tab));
+            used.iter().rev().for_each(|link| self.use_link(tab, link));
         }
         self
     }
@@ -149,15 +157,83 @@ impl Settings {
 
     /// Links to the devices of a tab that were used, the latest first.
     pub fn links(&self, tab: Tab) -> &[String] {
-        self.links.get(&tab).map_or(&[], Vec::as_slice)
+        self.links.of(tab)
+    }
+
+    /// What names no tab that there is means the first one.
+    pub(super) fn settle(&mut self, kinds: Kinds) {
+        if !kinds.has_tab(self.tab) {
+            self.tab = kinds.first_tab();
+        }
+        self.links.settle(kinds.first_tab());
     }
 
     /// Notes that a link was used.
     pub fn use_link(&mut self, tab: Tab, link: &str) {
-        let links = self.links.entry(tab).or_default();
-        links.retain(|known| known != link);
-        links.insert(0, link.to_owned());
-        links.truncate(Self::LINKS);
+        self.links.change(tab, |links| {
+            links.retain(|known| known != link);
+            links.insert(0, link.to_owned());
+            links.truncate(Self::LINKS);
+        });
+    }
+}
+
+/// Links used, by the tab of the device, in the order in which the tabs came.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Links(Vec<(Tab, Vec<String>)>);
+
+impl Links {
+    fn of(&self, tab: Tab) -> &[String] {
+        self.0.iter().find(|(own, _)| *own == tab).map_or(&[], |(_, links)| links)
+    }
+
+    fn change(&mut self, tab: Tab, change: impl FnOnce(&mut Vec<String>)) {
+        if let Some((_, links)) = self.0.iter_mut().find(|(own, _)| *own == tab) {
+            change(links);
+        } else {
+            let mut links = Vec::new();
+            change(&mut links);
+            self.0.push((tab, links));
+        }
+    }
+
+    fn tabs(&self) -> impl Iterator<Item = Tab> {
+        self.0.iter().map(|(tab, _)| *tab)
+    }
+
+    /// Links of files from before there were several kinds are those of the first.
+    fn settle(&mut self, first: Tab) {
+        let Some(at) = self.0.iter().position(|(tab, _)| *tab == Tab::default()) else { return };
+        let (_, links) = self.0.remove(at);
+        self.change(first, |own| drop(own.splice(0..0, links)));
+    }
+}
+
+impl Serialize for Links {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(tab, links)| (tab, links)))
+    }
+}
+
+impl<'de> Deserialize<'de> for Links {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct LinksVisitor;
+        impl<'de> Visitor<'de> for LinksVisitor {
+            type Value = Links;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("links by tab")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Links, A::Error> {
+                let mut links = Links::default();
+                while let Some((tab, used)) = map.next_entry()? {
+                    links.change(tab, |own| *own = used);
+                }
+                Ok(links)
+            }
+        }
+        deserializer.deserialize_map(LinksVisitor)
     }
 }
 
@@ -176,10 +252,13 @@ fn used_since<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
 mod tests {
     use super::*;
 
+    const HIPERFACE: Tab = Tab::named("Hiperface");
+    const BISS: Tab = Tab::named("Biss");
+
     #[test]
     fn settings_come_back_and_unknown_ones_do_not_hurt() {
         let mut settings = Settings { theme: Theme::Light, language: Language::German, ..Settings::default() };
-        settings.use_link(Tab::Hiperface, "serial:/dev/ttyUSB0");
+        settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
         settings.layout = Some("(tiles: {})".to_owned());
         assert_eq!(Settings::parse(&settings.emit()), Some(settings));
         assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Some(Theme::Light));
@@ -190,27 +269,40 @@ mod tests {
     #[test]
     fn what_can_be_read_of_broken_settings_is_kept() {
         let mut settings = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
-        settings.use_link(Tab::Hiperface, "serial:/dev/ttyUSB0");
-        let broken = settings.emit().replace("tab: Hiperface", "tab: Gearbox");
+        settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
+        let broken = settings.emit().replace("tab: First", "tab: 7");
         assert_eq!(Settings::parse(&broken), None);
         assert_eq!(Settings::salvage(&broken), settings);
         assert_eq!(Settings::salvage("(theme: Light, links: 7)").theme, Theme::Light);
-        assert_eq!(Settings::salvage("(links: [\"sim:\"])").links(Tab::Hiperface), ["sim:"], "from before");
-        assert!(Settings::salvage("no settings").links(Tab::Hiperface).is_empty());
+        assert_eq!(Settings::salvage("(links: [\"sim:\"])").links(Tab::default()), ["sim:"], "from before");
+        assert!(Settings::salvage("no settings").links(HIPERFACE).is_empty());
+    }
+
+    /// A tab that another version has is none here; what stands there of it stays.
+    #[test]
+    fn links_of_a_tab_that_is_not_known_are_kept() {
+        let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
+        let mut settings = Settings::parse(text).unwrap();
+        settings.settle(Kinds::NONE);
+        settings.use_link(HIPERFACE, "tcp:host:2");
+        let again = Settings::parse(&settings.emit()).unwrap();
+        assert_eq!(again.tab, Tab::default());
+        assert_eq!(again.links(Tab::named("Gearbox")), ["tcp:host:1"]);
+        assert_eq!(again.links(HIPERFACE), ["tcp:host:2", "sim:"]);
     }
 
     #[test]
     fn what_was_set_since_the_start_stays() {
         let mut found = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
-        found.use_link(Tab::Hiperface, "tcp:host:1");
+        found.use_link(HIPERFACE, "tcp:host:1");
         let mut settings = Settings { language: Language::German, ..Settings::default() };
-        settings.use_link(Tab::Hiperface, "sim:");
+        settings.use_link(HIPERFACE, "sim:");
         let settings = found.with_changes(&Settings::default(), &settings);
         assert_eq!(
             (settings.theme, settings.language, settings.size),
             (Theme::Light, Language::German, Some((1500, 900)))
         );
-        assert_eq!(settings.links(Tab::Hiperface), ["sim:", "tcp:host:1"]);
+        assert_eq!(settings.links(HIPERFACE), ["sim:", "tcp:host:1"]);
     }
 
     fn with_drives(drives: &str) -> Settings {
@@ -285,7 +377,7 @@ mod tests {
     fn links_of_two_windows_stand_together() {
         let of = |links: &[&str]| {
             let mut settings = Settings::default();
-            links.iter().rev().for_each(|link| settings.use_link(Tab::Biss, link));
+            links.iter().rev().for_each(|link| settings.use_link(BISS, link));
             settings
         };
         type Links<'l> = &'l [&'l str];
@@ -298,7 +390,7 @@ mod tests {
         ];
         for [there, known, ours, expected] in cases {
             let merged = of(there).with_changes(&of(known), &of(ours));
-            assert_eq!(merged.links(Tab::Biss), expected, "{there:?} {known:?} {ours:?}");
+            assert_eq!(merged.links(BISS), expected, "{there:?} {known:?} {ours:?}");
         }
     }
 
@@ -314,10 +406,10 @@ mod tests {
     fn the_latest_link_comes_first_and_stands_once() {
         let mut settings = Settings::default();
         for at in 0..20 {
-            settings.use_link(Tab::Hiperface, &format!("tcp:host:{at}"));
+            settings.use_link(HIPERFACE, &format!("tcp:host:{at}"));
         }
-        settings.use_link(Tab::Hiperface, "tcp:host:15");
-        assert_eq!(settings.links(Tab::Hiperface).len(), 12);
-        assert_eq!(settings.links(Tab::Hiperface)[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
+        settings.use_link(HIPERFACE, "tcp:host:15");
+        assert_eq!(settings.links(HIPERFACE).len(), 12);
+        assert_eq!(settings.links(HIPERFACE)[..3], ["tcp:host:15", "tcp:host:19", "tcp:host:18"]);
     }
 }

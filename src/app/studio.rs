@@ -1,12 +1,12 @@
 //! All that the window knows, and what it can do. It is complete without a window: a test sends actions and reads state.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::action::{Action, AnyOpened, Done, Waited};
+use super::action::{Action, Done, Waited};
 use super::connect::Connect;
-use super::devices::{AnyDevice, Shown};
+use super::devices::{AnyDevice, DeviceType, Shown};
 use super::diverged::Diverged;
-use super::documents::{is_capture, read_document};
+use super::documents::read_document;
 use super::file_question::FileQuestion;
 use super::keep::Keeper;
 use super::question::{Question, Then};
@@ -14,11 +14,9 @@ use super::services::{Services, World};
 use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
+use super::tool::{Tool, ToolKind};
 use super::{Settings, Severity, Text, explain};
-use crate::devices::biss::state as biss;
-use crate::devices::hiperface::state::Encoder;
 use crate::link::LinkUrl;
-use crate::signals::state::{self as signals, Signals};
 
 /// A session's number, from the start of the program on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -36,8 +34,7 @@ pub struct Studio {
     pub diverged: Option<Diverged>,
     /// The log, the jobs.
     pub services: Services,
-    /// The Signals tab.
-    pub signals: Signals,
+    pub(super) tools: Vec<(Tab, Box<dyn Tool>)>,
     pub(crate) devices: Vec<Box<AnyDevice>>,
     pub(crate) shown: Shown,
     next_id: u32,
@@ -51,9 +48,11 @@ impl Studio {
     /// A studio with what it remembers; `wake` is called when there is something to look at.
     pub fn new(world: World, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
+        let kinds = services.world.kinds;
         let (settings, keeper) = Keeper::load(&mut services);
+        let begin = |kind: &&dyn ToolKind| (kind.tab(), kind.begin(settings.links(kind.tab())));
         Studio {
-            signals: Signals::at(settings.links(Tab::Signals)),
+            tools: kinds.tools().iter().map(begin).collect(),
             settings,
             connect: None,
             question: None,
@@ -72,7 +71,8 @@ impl Studio {
     /// What the window begins with: a link, a profile, or else the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
         let tab = self.tab_of(link.as_ref());
-        let link = link.or_else(|| profile.is_none().then(|| tab.virtual_link()));
+        let is_empty = link.is_none() && profile.is_none();
+        let link = link.or_else(|| self.virtual_link(tab).filter(|_| is_empty));
         if let Some(link) = link {
             self.open_link(tab, link);
         }
@@ -85,7 +85,7 @@ impl Studio {
     pub fn act(&mut self, action: Action) {
         match self.with_whole_path(action) {
             Action::ShowTab(tab) => self.show_tab(tab),
-            Action::NewLayout => self.new_layout(),
+            Action::New(tab) => self.new_profile(tab),
             Action::SetTheme(theme) => self.settings.theme = theme,
             Action::SetLanguage(language) => self.settings.language = language,
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
@@ -107,24 +107,23 @@ impl Studio {
             Action::Connect(action) => self.act_connect(action),
             Action::OpenVirtual => {
                 let tab = self.settings.tab;
-                self.open_link(tab, tab.virtual_link());
+                if let Some(link) = self.virtual_link(tab) {
+                    self.open_link(tab, link);
+                }
             }
             Action::Save(id) => self.save_in_place(id),
             Action::Resolve(resolve) => self.resolve(resolve),
             Action::AskOpen => {
-                self.services.file_question = Some(match self.settings.tab {
-                    Tab::Signals => FileQuestion::OpenCapture,
-                    Tab::Hiperface | Tab::Biss | Tab::Ssi | Tab::Interbus | Tab::Hiperdrive => FileQuestion::Open,
-                });
-            }
-            Action::Open(path) if is_capture(&path) => {
-                self.settings.tab = Tab::Signals;
-                self.signals.act(signals::Action::Open(path), &mut self.services);
+                let is_tool = self.is_tool(self.settings.tab);
+                self.services.file_question =
+                    Some(if is_tool { FileQuestion::OpenCapture } else { FileQuestion::Open });
             }
             Action::Open(path) => {
-                let (store, formats) = (self.services.world.store.clone(), self.services.world.formats);
-                self.services.opening_files.push(path.clone());
-                self.services.tasks.run("open", move || read_document(path, &store, formats));
+                if let Err(path) = self.open_in_tool(path) {
+                    let (store, kinds) = (self.services.world.store.clone(), self.services.world.kinds);
+                    self.services.opening_files.push(path.clone());
+                    self.services.tasks.run("open", move || read_document(path, &store, kinds));
+                }
             }
             Action::FileNotChosen => {}
             Action::TypePath(question) => self.path_question = Some(question),
@@ -138,7 +137,7 @@ impl Studio {
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Command(id, command) => self.command(id, command),
             Action::Device(id, action) => self.act_device(id, action),
-            Action::Signals(action) => self.act_signals(action),
+            Action::Tool(tab, action) => self.act_tool(tab, action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
                 self.devices.iter_mut().for_each(|device| device.save_waits());
@@ -158,12 +157,12 @@ impl Studio {
         for device in &mut self.devices {
             device.pump(&mut self.services);
             if let Some(source) = device.sine_cosine_mut() {
-                self.signals.follow(source);
+                self.tools.iter_mut().for_each(|(_, tool)| tool.follow(source));
             }
         }
-        self.signals.pump(&mut self.services);
-        if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
-            search.pump();
+        self.tools.iter_mut().for_each(|(_, tool)| tool.pump(&mut self.services));
+        if let Some(connect) = &mut self.connect {
+            connect.pump();
         }
         self.services.pump_leaving();
         self.feed_exports();
@@ -212,26 +211,52 @@ impl Studio {
 
     /// The device that the open tab shows; where that shows none, the one that was shown last.
     pub fn shown(&self) -> Option<&AnyDevice> {
-        let id = match self.settings.tab {
-            Tab::Signals => self.shown.last(),
-            tab => self.shown.of(tab),
-        };
+        let tab = self.settings.tab;
+        let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
         self.device(id?)
     }
 
-    /// The encoder that the HIPERFACE tab shows.
-    pub fn hiperface(&self) -> Option<&Encoder> {
-        self.device(self.shown.of(Tab::Hiperface)?)?.get()
+    /// The device of that type which its tab shows.
+    pub fn shown_as<M: DeviceType>(&self) -> Option<&M> {
+        self.device(self.shown.of(M::TAB)?)?.get()
+    }
+
+    /// A tab that needs no device.
+    fn is_tool(&self, tab: Tab) -> bool {
+        self.tools.iter().any(|(own, _)| *own == tab)
+    }
+
+    /// The virtual device of a tab; of a tool the first kind's.
+    fn virtual_link(&self, tab: Tab) -> Option<LinkUrl> {
+        let kinds = self.services.world.kinds;
+        let kind = kinds.of_tab(tab).or_else(|| kinds.devices().first().copied())?;
+        Some(kind.virtual_link())
+    }
+
+    /// Shows a tab. A kind whose profiles begin here needs no device: where there is none, a profile to begin with.
+    fn show_tab(&mut self, tab: Tab) {
+        self.settings.tab = tab;
+        if self.shown.of(tab).is_none() {
+            self.new_profile(tab);
+        }
+    }
+
+    /// A profile that is in no file yet, where the kind has such.
+    fn new_profile(&mut self, tab: Tab) {
+        let Some(kind) = self.services.world.kinds.of_tab(tab) else { return };
+        let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested()).collect();
+        let id = self.new_id();
+        let is_taken = |name: &Path| taken.iter().any(|own| own == name);
+        if let Some(device) = kind.new_profile(id, &is_taken, &mut self.services) {
+            self.devices.push(device);
+            self.show(tab, id);
+        }
     }
 
     /// Sine and cosine of a device that is shown in its own tab.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
-        Tab::DEVICES.into_iter().find_map(|tab| self.device(self.shown.of(tab)?)?.sine_cosine())
-    }
-
-    /// The encoder that the BiSS tab shows.
-    pub fn biss(&self) -> Option<&biss::Encoder> {
-        self.device(self.shown.of(Tab::Biss)?)?.get()
+        let kinds = self.services.world.kinds.devices().iter();
+        kinds.into_iter().find_map(|kind| self.device(self.shown.of(kind.tab())?)?.sine_cosine())
     }
 
     /// Shows a device in its tab.
@@ -242,15 +267,13 @@ impl Studio {
 
     /// Something runs or is read all the time, in any session: there is something to stop.
     pub fn can_stop(&self) -> bool {
-        let search = self.search().is_some_and(crate::devices::hiperface::state::Search::is_running);
-        self.devices.iter().any(|device| device.is_active()) || search || self.signals.can_stop()
+        self.devices.iter().any(|device| device.is_active()) || self.searches() || self.can_stop_tools()
     }
 
     /// Something runs that comes to an end by itself, or measures; being read all the time is none of that.
     pub fn works(&self) -> bool {
-        let search = self.search().is_some_and(crate::devices::hiperface::state::Search::is_running);
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
-        self.devices.iter().map(Box::as_ref).any(device) || search || self.signals.can_stop()
+        self.devices.iter().map(Box::as_ref).any(device) || self.searches() || self.can_stop_tools()
     }
 
     /// Live values come in: the picture has to be drawn again and again.
@@ -258,8 +281,12 @@ impl Studio {
         self.devices.iter().any(|device| device.is_polling()) || self.is_in_control()
     }
 
-    fn search(&self) -> Option<&crate::devices::hiperface::state::Search> {
-        self.connect.as_ref()?.search.as_ref()
+    fn searches(&self) -> bool {
+        self.connect.as_ref().is_some_and(Connect::is_searching)
+    }
+
+    fn can_stop_tools(&self) -> bool {
+        self.tools.iter().any(|(_, tool)| tool.can_stop())
     }
 
     pub(super) fn device_mut(&mut self, id: SessionId) -> Option<&mut AnyDevice> {
@@ -285,24 +312,15 @@ impl Studio {
     fn done(&mut self, done: Done) {
         match done {
             Done::Opened(attempt) => self.opened(attempt),
-            Done::FoundDrives(number, found) => self.found_drives(number, found),
             Done::Device(id, done) => self.device_done(id, done),
-            Done::Families(families, broken) => self.take_families(families, &broken),
-            Done::OpenedForSearch { number, result } => {
-                let search = self.connect.as_mut().and_then(|connect| connect.search.as_mut());
-                match (search.filter(|search| search.number == number && search.is_running()), result) {
-                    (Some(search), result) => search.opened(result, &self.services),
-                    // One that was ended while it opened has no use for it.
-                    (None, Ok(opened)) => opened.turn_away(SessionId(number), &mut self.services),
-                    (None, Err(_)) => {}
-                }
-            }
+            Done::Finder(tab, done) => self.finder_done(tab, done),
+            Done::Shared(with) => with(&mut self.services, &mut self.devices),
             Done::Ports(ports) => {
                 if let Some(connect) = &mut self.connect {
                     connect.ports = Some(ports.map_err(|error| explain::link(&error)));
                 }
             }
-            Done::Read { file, result, known } => self.read(file, result, known),
+            Done::Read { file, result, open } => self.read(file, result, open),
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
             Done::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
@@ -329,7 +347,7 @@ impl Studio {
             Done::Backup { session, of, path, result } => {
                 self.with_device(session, |device, services| device.take_backup(&of, &path, result, services));
             }
-            Done::Signals(done) => self.signals.done(done, &mut self.services),
+            Done::Tool(tab, done) => self.tool_done(tab, done),
         }
     }
 
@@ -337,10 +355,15 @@ impl Studio {
         for device in &mut self.devices {
             device.stop(&mut self.services);
         }
-        self.signals.stop(&mut self.services);
-        if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
-            search.stop();
+        self.stop_tools();
+        if let Some(connect) = &mut self.connect {
+            connect.stop();
         }
+    }
+
+    /// Stops what runs in tabs that need no device.
+    pub(super) fn stop_tools(&mut self) {
+        self.tools.iter_mut().for_each(|(_, tool)| tool.stop(&mut self.services));
     }
 
     fn escape(&mut self) {

@@ -1,72 +1,108 @@
 //! The tabs of the window.
 
-use crate::devices::biss::jobs as biss;
-use crate::devices::biss::state::BissForm;
-use crate::devices::hiperdrive::jobs as hiperdrive;
-use crate::devices::hiperdrive::state::HiperdriveForm;
-use crate::devices::hiperface::jobs as hiperface;
-use crate::devices::interbus::jobs as interbus;
-use crate::devices::interbus::state::InterbusForm;
-use crate::devices::ssi::jobs as ssi;
-use crate::devices::ssi::state::SsiForm;
-use crate::link::LinkUrl;
-use crate::worker::OpenError;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::sync::{Mutex, PoisonError};
 
-/// A tab of the window: a kind of device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-pub enum Tab {
-    /// HIPERFACE motor-feedback encoders.
-    #[default]
-    Hiperface,
-    /// BiSS C encoders.
-    Biss,
-    /// SSI encoders and their frames.
-    Ssi,
-    /// INTERBUS encoders and their cams.
-    Interbus,
-    /// HIPERDRIVE drives.
-    Hiperdrive,
-    /// Captures of sine and cosine, whatever encoder they are from.
-    Signals,
-}
+use serde::de::{EnumAccess, Error, VariantAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A tab of the window: of a kind of device, or a tool that needs none. It is known by the name that stands in the settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Tab(&'static str);
 
 impl Tab {
-    /// The tabs that show devices.
-    pub const DEVICES: [Tab; 5] = [Tab::Hiperface, Tab::Biss, Tab::Ssi, Tab::Interbus, Tab::Hiperdrive];
+    /// The tab of that name. The name is written into people's settings: it never changes.
+    pub const fn named(name: &'static str) -> Self {
+        Tab(name)
+    }
 
-    /// The name of its bus, the same in every language; `None` for a tab that shows no device.
-    pub fn bus(self) -> Option<&'static str> {
-        match self {
-            Tab::Hiperface => Some("HIPERFACE"),
-            Tab::Biss => Some("BiSS"),
-            Tab::Ssi => Some("SSI"),
-            Tab::Interbus => Some("INTERBUS"),
-            Tab::Hiperdrive => Some("HIPERDRIVE"),
-            Tab::Signals => None,
-        }
+    /// Its name in the settings, which is no word for people.
+    pub fn name(self) -> &'static str {
+        self.0
     }
 }
 
-impl Tab {
-    /// Whether a link can lead to a device of its kind, as far as that can be told without opening it.
-    pub(super) fn check(self, url: &LinkUrl) -> Result<(), OpenError> {
-        match self {
-            Tab::Biss => biss::check(url),
-            Tab::Ssi => ssi::check(url),
-            Tab::Interbus => interbus::check(url),
-            Tab::Hiperdrive => hiperdrive::check(url),
-            Tab::Hiperface | Tab::Signals => hiperface::check(url),
-        }
+/// Stands for the first tab, in settings that name none.
+impl Default for Tab {
+    fn default() -> Self {
+        Tab("First")
+    }
+}
+
+impl Serialize for Tab {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_unit_variant("Tab", 0, self.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for Tab {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_enum("Tab", &[], TabVisitor)
+    }
+}
+
+struct TabVisitor;
+
+impl<'de> Visitor<'de> for TabVisitor {
+    type Value = Tab;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the name of a tab")
     }
 
-    /// The virtual device of its kind.
-    pub(super) fn virtual_link(self) -> LinkUrl {
-        match self {
-            Tab::Biss => BissForm::usual(),
-            Tab::Ssi => SsiForm::usual(),
-            Tab::Interbus => InterbusForm::usual(),
-            Tab::Hiperdrive => HiperdriveForm::usual(),
-            Tab::Hiperface | Tab::Signals => LinkUrl::sim(),
+    fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<Tab, A::Error> {
+        let (Name(name), variant) = data.variant()?;
+        variant.unit_variant()?;
+        Ok(Tab(kept(name)))
+    }
+}
+
+/// The name of a tab, as a settings file has it.
+struct Name(String);
+
+impl<'de> Deserialize<'de> for Name {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NameVisitor;
+        impl Visitor<'_> for NameVisitor {
+            type Value = Name;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a name")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<Name, E> {
+                Ok(Name(name.to_owned()))
+            }
+        }
+        deserializer.deserialize_identifier(NameVisitor)
+    }
+}
+
+/// Names that were read from settings: also of tabs that this program does not have, whose links another one goes on with.
+/// Each is kept once, as long as the program runs.
+fn kept(name: String) -> &'static str {
+    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = names.get(name.as_str()) {
+        return known;
+    }
+    let name: &'static str = name.leak();
+    names.insert(name);
+    name
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tab_is_read_and_written_as_its_name() {
+        let tab: Tab = ron::from_str("Canopen").unwrap();
+        assert_eq!(tab, Tab::named("Canopen"), "also one that no kind has");
+        assert_eq!(ron::to_string(&tab).unwrap(), "Canopen");
+        for broken in ["\"Canopen\"", "Canopen(1)", "7", ""] {
+            assert!(ron::from_str::<Tab>(broken).is_err(), "{broken}");
         }
     }
 }

@@ -30,7 +30,7 @@ struct Front {
 }
 
 #[derive(Args)]
-pub(crate) struct Common {
+pub struct Common {
     /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
     /// bridge:tcp:HOST:PORT or replay:FILE, with ?name=value&…
     #[arg(long, global = true, value_name = "URL")]
@@ -98,7 +98,7 @@ pub(super) struct Device {
 }
 
 #[derive(Args)]
-pub(crate) struct Find {
+pub struct Find {
     /// The kind of device.
     pub(super) device: String,
     #[command(flatten)]
@@ -106,7 +106,7 @@ pub(crate) struct Find {
 }
 
 #[derive(Args)]
-pub(crate) struct Status {
+pub struct Status {
     /// The kind of device.
     pub(super) device: String,
     #[command(flatten)]
@@ -114,7 +114,7 @@ pub(crate) struct Status {
 }
 
 #[derive(Args)]
-pub(crate) struct Position {
+pub struct Position {
     /// The kind of device.
     pub(super) device: String,
     /// Number of lines; without it one, and with --csv as many as come until Ctrl-C.
@@ -131,7 +131,7 @@ pub(crate) struct Position {
 }
 
 #[derive(Args)]
-pub(crate) struct Read {
+pub struct Read {
     /// The kind of device.
     pub(super) device: String,
     /// What to read, by its name.
@@ -141,7 +141,7 @@ pub(crate) struct Read {
 }
 
 #[derive(Args)]
-pub(crate) struct Save {
+pub struct Save {
     /// The kind of device.
     pub(super) device: String,
     /// The profile to write.
@@ -172,7 +172,7 @@ pub(super) struct Verify {
 }
 
 #[derive(Args)]
-pub(crate) struct Restore {
+pub struct Restore {
     /// The profile.
     pub(crate) file: PathBuf,
     /// Print exactly the operations that would be carried out; write nothing.
@@ -211,7 +211,7 @@ pub(crate) struct Consenting {
 }
 
 #[derive(Args)]
-pub(crate) struct Write {
+pub struct Write {
     /// The kind of device.
     pub(super) device: String,
     /// What to write, by its name.
@@ -227,7 +227,7 @@ pub(crate) struct Write {
 }
 
 #[derive(Args)]
-pub(crate) struct Simulate {
+pub struct Simulate {
     /// The kind of device.
     pub(super) device: String,
     /// Make a pseudo-terminal and a symbolic link to it here.
@@ -261,14 +261,14 @@ mod tests {
     use clap::Arg;
 
     use super::build::command;
-    use crate::kinds::COMMANDS;
+    use crate::kinds::program;
 
     /// Commands, options and the values they take, without their descriptions: scripts rely on them. With
     /// `ENCODER_STUDIO_RECORD=1` the recording is written anew.
     #[test]
     fn commands_and_options_are_as_recorded() {
         let mut text = String::new();
-        list(&mut text, "encoder-studio", &command(COMMANDS));
+        list(&mut text, "encoder-studio", &command(program().commands));
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/cli/options.txt");
         if std::env::var_os("ENCODER_STUDIO_RECORD").is_some() {
             std::fs::write(path, &text).unwrap();

@@ -13,19 +13,32 @@ use crate::profile::{Body, Comparison, ProfileError};
 
 /// The commands that a kind of device may take part in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CommandId {
+pub enum CommandId {
+    /// Looks for devices.
     Find,
+    /// Says which device answers.
     Identify,
+    /// Says what the device reports of itself.
     Status,
+    /// Reads the position.
     Position,
+    /// Reads the memory.
     Read,
+    /// Saves a profile.
     Save,
+    /// Compares two profiles, or a profile with the device.
     Diff,
+    /// Checks the device against a profile.
     Verify,
+    /// Writes a profile into the device.
     Restore,
+    /// Writes values.
     Write,
+    /// Does something else with the device.
     Do,
+    /// Explains captured bytes.
     Decode,
+    /// Serves a virtual device.
     Simulate,
 }
 
@@ -67,7 +80,7 @@ impl CommandId {
 }
 
 /// A kind of device on the command line. A command that it does not implement is refused as wrong usage.
-pub(crate) trait DeviceCommands: Sync {
+pub trait DeviceCommands: Sync {
     /// The kind as it is written on the command line and in profiles.
     fn name(&self) -> &'static str;
 
@@ -133,42 +146,52 @@ pub(crate) trait DeviceCommands: Sync {
         false
     }
 
+    /// Looks for devices on the line or in the network.
     fn find(&self, _common: &Common, _output: &Output, _find: &Find) -> Result {
         lacking(CommandId::Find, self.name())
     }
 
+    /// Says which device answers.
     fn identify(&self, _common: &Common, _output: &Output) -> Result {
         lacking(CommandId::Identify, self.name())
     }
 
+    /// Says what the device reports of itself.
     fn status(&self, _common: &Common, _output: &Output, _status: &Status) -> Result {
         lacking(CommandId::Status, self.name())
     }
 
+    /// Reads the position, once or all the time.
     fn position(&self, _common: &Common, _output: &Output, _position: &Position) -> Result {
         lacking(CommandId::Position, self.name())
     }
 
+    /// Reads the memory, or a part of it.
     fn read(&self, _common: &Common, _output: &Output, _read: &Read) -> Result {
         lacking(CommandId::Read, self.name())
     }
 
+    /// Saves what the device holds as a profile.
     fn save(&self, _common: &Common, _output: &Output, _save: &Save) -> Result {
         lacking(CommandId::Save, self.name())
     }
 
+    /// Writes values, after a review and consent.
     fn write(&self, _common: &Common, _output: &Output, _write: &Write) -> Result {
         lacking(CommandId::Write, self.name())
     }
 
+    /// Does what `do` names.
     fn act(&self, _common: &Common, _output: &Output, _act: &Do) -> Result {
         lacking(CommandId::Do, self.name())
     }
 
+    /// Explains captured bytes.
     fn decode(&self, _output: &Output, _decode: &Decode) -> Result {
         lacking(CommandId::Decode, self.name())
     }
 
+    /// Writes a profile into the device, after a review and consent.
     fn restore(&self, _common: &Common, _output: &Output, _restore: &Restore, _profile: Body) -> Result {
         lacking(CommandId::Restore, self.name())
     }
@@ -204,15 +227,16 @@ fn lacking<T>(command: CommandId, kind: &str) -> Result<T> {
 }
 
 /// A command that a kind of device, or a part of the program beside the devices, has for itself.
-pub(crate) trait OwnCommand: Sync {
+pub trait OwnCommand: Sync {
     /// Its name, options and help.
     fn command(&self) -> clap::Command;
 
+    /// Runs it with what was given.
     fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result;
 }
 
 /// A protocol that several kinds of device may speak, whose captured bytes `decode` explains.
-pub(crate) trait ProtocolDecoder: Sync {
+pub trait ProtocolDecoder: Sync {
     /// As it is written on the command line.
     fn name(&self) -> &'static str;
 
@@ -222,6 +246,7 @@ pub(crate) trait ProtocolDecoder: Sync {
     /// What the help of `decode` says of the bytes.
     fn help(&self) -> &'static str;
 
+    /// Explains captured bytes.
     fn decode(&self, output: &Output, decode: &Decode) -> Result;
 }
 
@@ -243,7 +268,8 @@ impl Commands {
     /// The core alone.
     pub(super) const NONE: Commands = Commands::new(&[], &[], &[]);
 
-    pub(crate) const fn new(
+    /// These.
+    pub const fn new(
         devices: &'static [&'static dyn DeviceCommands],
         protocols: &'static [&'static dyn ProtocolDecoder],
         further: &'static [&'static dyn OwnCommand],
@@ -321,7 +347,7 @@ impl Commands {
 
 /// The options that kinds of device add to a command, as they were given.
 #[derive(Clone)]
-pub(crate) struct OwnOptions(ArgMatches);
+pub struct OwnOptions(ArgMatches);
 
 impl OwnOptions {
     /// Reads the options that a kind of device has added.

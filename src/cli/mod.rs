@@ -20,10 +20,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use args::{Arguments, Called, Command, Common};
-use commands::{CommandId, OwnOptions};
 use output::Output;
 
-pub use commands::Commands;
+pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProtocolDecoder};
 
 use crate::app::Given;
 use crate::link::LinkUrl;
@@ -31,7 +30,7 @@ use crate::profile::Formats;
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Done {
+pub enum Done {
     /// As it should: status 0.
     Well,
     /// `diff` or `verify` found differences: status 3.
@@ -40,7 +39,7 @@ pub(crate) enum Done {
 
 /// Why a command did not do what it should.
 #[derive(Debug)]
-pub(crate) enum Failure {
+pub enum Failure {
     /// It was called wrongly: status 2.
     Usage(String),
     /// The device or the operation failed: status 1. One to four lines.
@@ -49,7 +48,8 @@ pub(crate) enum Failure {
     NobodyReads,
 }
 
-pub(crate) type Result<T = Done> = std::result::Result<T, Failure>;
+/// What a command comes to.
+pub type Result<T = Done> = std::result::Result<T, Failure>;
 
 /// What the arguments of this process ask for.
 pub enum Asked {

@@ -8,7 +8,7 @@ use super::{Commands, Failure};
 use crate::profile::Formats;
 
 /// What a command is given: where results go, the formats of profiles that can be read, and the kinds of device.
-pub(crate) struct Output {
+pub struct Output {
     json: bool,
     formats: Formats,
     commands: Commands,

@@ -6,8 +6,7 @@ use serde_json::{Value as Json, json};
 
 use super::output::{Lines, Output};
 use crate::app::explain;
-use crate::profile::Written;
-use crate::profile::{Operation, Plan};
+use crate::profile::{Operation, Plan, Written};
 use crate::store::LogbookError;
 use crate::worker::Committed;
 

@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_millis(20);
 const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
-pub(crate) trait Simulated: ByteDevice {
+pub trait Simulated: ByteDevice {
     /// How its line is set at a moment; `None` where there is nothing to set, and while it is deaf.
     fn format(&self, now: Moment) -> Option<CharacterFormat>;
 

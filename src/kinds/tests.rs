@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{FORMATS, TABS};
+use super::program;
 use crate::profile::{Document, ProfileError};
 
 mod rewrite;
@@ -11,7 +11,7 @@ mod rewrite;
 fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let in_kind = |kind: &str| fs::read_dir(root.join(kind)).unwrap().map(|entry| entry.unwrap().path());
-    let all = FORMATS.kinds().flat_map(in_kind);
+    let all = program().studio.formats.kinds().flat_map(in_kind);
     all.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
 }
 
@@ -64,7 +64,7 @@ fn no_name_of_a_ready_made_profile_is_misspelt_without_a_word() {
             let column = begin - text[..begin].rfind('\n').map_or(0, |at| at + 1) + 1;
             for slip in slips(&text[begin..end]) {
                 let wrong = format!("{}{slip}{}", &text[..begin], &text[end..]);
-                let error = Document::parse(&wrong, FORMATS).map(|_| ()).unwrap_err();
+                let error = Document::parse(&wrong, program().studio.formats).map(|_| ()).unwrap_err();
                 let place = format!("line {line}, column {column}: ");
                 assert!(error.to_string().starts_with(&place), "{}: {slip} at {place}{error}", path.display());
                 assert!(error.to_string().contains(&slip), "{}: {error}", path.display());
@@ -79,22 +79,26 @@ fn no_name_of_a_ready_made_profile_is_misspelt_without_a_word() {
 #[test]
 fn profiles_of_schema_1_open() {
     let files = profiles_in("tests/fixtures/schema-1");
-    assert_eq!(files.iter().filter(|(path, _)| path.file_stem().unwrap() == "saved").count(), FORMATS.kinds().count());
+    assert_eq!(
+        files.iter().filter(|(path, _)| path.file_stem().unwrap() == "saved").count(),
+        program().studio.formats.kinds().count()
+    );
     for (path, text) in files {
-        let document = Document::parse(&text, FORMATS).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let document = Document::parse(&text, program().studio.formats)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         assert!(document.beyond.is_empty() && !document.is_newer(), "{}", path.display());
-        assert_eq!(Document::parse(&document.emit(), FORMATS), Ok(document), "{}", path.display());
+        assert_eq!(Document::parse(&document.emit(), program().studio.formats), Ok(document), "{}", path.display());
     }
 }
 
 #[test]
 fn the_profiles_that_ship_are_read() {
-    for kind in FORMATS.kinds() {
+    for kind in program().studio.formats.kinds() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles").join(kind);
         let mut count = 0;
         for entry in std::fs::read_dir(folder).unwrap() {
             let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
-            let document = Document::parse(&text, FORMATS).unwrap();
+            let document = Document::parse(&text, program().studio.formats).unwrap();
             assert_eq!((document.device(), document.emit()), (kind, text), "as the program writes it");
             count += 1;
         }
@@ -111,7 +115,7 @@ fn the_profiles_that_ship_are_read() {
 
 #[test]
 fn a_kind_that_is_not_known_is_told_with_those_that_are() {
-    let error = Document::parse("(schema: 1, device: \"sse\")", FORMATS).unwrap_err();
+    let error = Document::parse("(schema: 1, device: \"sse\")", program().studio.formats).unwrap_err();
     let known = "\"hiperface\", \"biss\", \"ssi\", \"interbus\" and \"hiperdrive\"";
     assert_eq!(error.to_string(), format!("device \"sse\"; this program knows {known}"));
     assert!(matches!(error, ProfileError::Device { found, .. } if found == "sse"));
@@ -119,14 +123,10 @@ fn a_kind_that_is_not_known_is_told_with_those_that_are() {
 
 #[test]
 fn the_tabs_stand_in_the_order_of_the_navigation() {
-    let buses: Vec<_> = TABS.tabs().map(crate::app::Tab::bus).collect();
-    assert_eq!(
-        buses,
-        [Some("HIPERFACE"), Some("BiSS"), Some("SSI"), Some("INTERBUS"), Some("HIPERDRIVE"), None],
-        "devices, then Signals"
-    );
-    for tab in TABS.tabs() {
-        let mut words = TABS.page_words(tab);
+    let tabs: Vec<_> = program().tabs.tabs().map(crate::app::Tab::name).collect();
+    assert_eq!(tabs, ["Hiperface", "Biss", "Ssi", "Interbus", "Hiperdrive", "Signals"], "devices, then Signals");
+    for tab in program().tabs.tabs() {
+        let mut words = program().tabs.page_words(tab);
         let count = words.len();
         words.sort_unstable();
         words.dedup();

@@ -13,10 +13,11 @@ pub use quality::LineQuality;
 pub use state::LineState;
 pub(crate) use state::{MARGIN_ALLOWED, read_margin};
 
+use state::LONGEST_MARGIN;
+
 use super::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::bits::MaskedBytes;
 use crate::units::Moment;
-use state::LONGEST_MARGIN;
 
 /// Tries before a reading command fails.
 pub(crate) const TRIES: u32 = 5;

@@ -3,3 +3,8 @@
 pub(crate) mod commands;
 pub mod state;
 pub mod views;
+
+use crate::kinds::ToolTab;
+
+/// The tab, for the list of tools.
+pub const TAB: ToolTab = ToolTab { view: &views::SignalsView };

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Skin, workspace};
-use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio, Tab, Text};
+use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
 /// A page of a tab, as the navigation and the help show it. `word` and `help` name texts of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ pub(crate) fn place_of<P: TabPage>(page: P) -> usize {
 /// The view of a kind of device, as the device implements it.
 pub(crate) trait TypedDeviceView: Sync + 'static {
     /// The state of the device.
-    type Device: DeviceModel;
+    type Device: DeviceType;
     /// The pages of the tab.
     type Page: TabPage;
     /// The text buffers and selections of one session; they are dropped when another device answers.
@@ -112,8 +112,8 @@ pub(crate) trait TypedDeviceView: Sync + 'static {
 
 /// The view of a kind of device, as the window uses it. A device of another kind is not drawn, and has no edits here.
 pub trait DeviceView: Sync {
-    /// Returns the tab that shows the device.
-    fn tab(&self) -> Tab;
+    /// Returns the kind of device.
+    fn kind(&self) -> &'static dyn DeviceKind;
 
     /// Returns all pages, in the order of the navigation.
     fn pages(&self) -> Vec<PageInfo>;
@@ -159,8 +159,8 @@ pub trait SessionView {
 }
 
 impl<V: TypedDeviceView> DeviceView for V {
-    fn tab(&self) -> Tab {
-        V::Device::TAB
+    fn kind(&self) -> &'static dyn DeviceKind {
+        V::Device::KIND
     }
 
     fn pages(&self) -> Vec<PageInfo> {
@@ -255,8 +255,8 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
 
 /// The view of a tab without devices.
 pub trait ToolView: Sync {
-    /// Returns the tab.
-    fn tab(&self) -> Tab;
+    /// Returns the tool.
+    fn kind(&self) -> &'static dyn ToolKind;
 
     /// Returns the name of the tab, as the table of texts calls it.
     fn title(&self) -> &'static str;
@@ -306,23 +306,23 @@ impl TabViews {
 
     /// Returns all tabs in their order.
     pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
-        self.of_devices().chain(self.tools.iter().map(|view| view.tab()))
+        self.of_devices().chain(self.tools.iter().map(|view| view.kind().tab()))
     }
 
     /// Returns the name of a tab.
     pub(crate) fn title(self, skin: &Skin, tab: Tab) -> String {
         let title = self.tool(tab).map(|view| skin.say(view.title()));
-        title.or_else(|| tab.bus().map(str::to_owned)).unwrap_or_default()
+        title.or_else(|| self.device(tab).map(|view| view.kind().bus().to_owned())).unwrap_or_default()
     }
 
     /// Returns the tabs of devices in their order.
     pub(crate) fn of_devices(self) -> impl Iterator<Item = Tab> {
-        self.devices.iter().map(|view| view.tab())
+        self.devices.iter().map(|view| view.kind().tab())
     }
 
     /// Returns the view of the device that a tab shows.
     pub(crate) fn device(self, tab: Tab) -> Option<&'static dyn DeviceView> {
-        self.devices.iter().copied().find(|view| view.tab() == tab)
+        self.devices.iter().copied().find(|view| view.kind().tab() == tab)
     }
 
     /// Returns the tabs without devices in their order.
@@ -332,7 +332,7 @@ impl TabViews {
 
     /// Returns the view of a tab without devices.
     fn tool(self, tab: Tab) -> Option<&'static dyn ToolView> {
-        self.tools.iter().copied().find(|view| view.tab() == tab)
+        self.tools.iter().copied().find(|view| view.kind().tab() == tab)
     }
 }
 

@@ -4,16 +4,15 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::{TabViews, Window, end, install_fonts};
-use crate::app::{Look, Studio, Wake, World, explain};
+use crate::app::{Kinds, Look, Studio, Wake, World, explain};
 use crate::cli::Window as Start;
-use crate::profile::Formats;
 use crate::store::{LogFile, Store};
 
-/// Opens the window with these tabs and returns when it is closed. Profiles are read in these formats.
+/// Opens the window with these kinds of devices and their tabs, and returns when it is closed.
 ///
 /// # Errors
 /// Why there is no window, in one line.
-pub fn run(start: Start, formats: Formats, tabs: TabViews) -> Result<(), String> {
+pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
     let began = Instant::now();
     if !has_display() {
         return Err(NO_DISPLAY.to_owned());
@@ -29,7 +28,7 @@ pub fn run(start: Start, formats: Formats, tabs: TabViews) -> Result<(), String>
             context.request_repaint();
         }
     });
-    let mut studio = Studio::new(World { given: start.given, ..World::real(store, formats) }, wake);
+    let mut studio = Studio::new(World { given: start.given, ..World::real(store, kinds) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
     end::prepare(&studio);

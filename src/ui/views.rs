@@ -28,7 +28,7 @@ impl Views {
         Views {
             tabs,
             sessions: BTreeMap::new(),
-            tools: tabs.tools().iter().map(|view| (view.tab(), view.begin())).collect(),
+            tools: tabs.tools().iter().map(|view| (view.kind().tab(), view.begin())).collect(),
             connect: ConnectView::default(),
             file: None,
             about: false,

@@ -12,7 +12,7 @@ use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{HiperfaceProfile, RestoreOptions};
 use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, EncoderTypes, MAX_TRANSFER};
 use encoder_studio::devices::hiperface::sim::{Bus, Config};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::program;
 use encoder_studio::link::{
     ByteLink, Cancel, Clock, Direction, LinkError, LinkErrorKind, SimLink, TraceEntry, VirtualClock,
 };
@@ -304,7 +304,7 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
 
 /// The profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
-    Document::parse(&read_text(path).unwrap(), FORMATS).unwrap().body.into_profile().unwrap()
+    Document::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
 }
 
 /// Bytes that repeat themselves late and differ for different seeds.

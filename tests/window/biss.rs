@@ -1,6 +1,7 @@
 //! A BiSS encoder in the window: the virtual kit encoder, over its pin and over the virtual adapter.
 
 use crate::biss_support::command;
+use crate::tabs::Tabs as _;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
@@ -28,20 +29,20 @@ fn the_virtual_encoder_is_read_over_either_way() {
         assert_eq!((reading.turns, reading.steps, reading.error.is_some()), (0x1234, 0x18000, has_bits), "{link}");
         assert_eq!(encoder.status.as_ref().unwrap().celsius, Some(30.0));
         assert!(desk.told(Severity::Warning).is_empty(), "{link}");
-        assert_eq!(desk.studio.settings.links(Tab::Biss), [link]);
-        assert!(desk.studio.settings.links(Tab::Hiperface).is_empty());
+        assert_eq!(desk.studio.settings.links(crate::tabs::BISS), [link]);
+        assert!(desk.studio.settings.links(crate::tabs::HIPERFACE).is_empty());
     }
 }
 
 #[test]
 fn a_link_that_only_one_kind_can_open_opens_in_its_tab() {
     let cases = [
-        (Tab::Hiperface, "sim:?bridge=on", Tab::Biss),
-        (Tab::Hiperface, "serial:/dev/nowhere?order=low-first", Tab::Biss),
-        (Tab::Biss, "sim:?model=sel37", Tab::Hiperface),
-        (Tab::Hiperface, "sim:", Tab::Hiperface),
-        (Tab::Biss, "sim:", Tab::Biss),
-        (Tab::Biss, "sim:?nobody=1", Tab::Biss),
+        (crate::tabs::HIPERFACE, "sim:?bridge=on", crate::tabs::BISS),
+        (crate::tabs::HIPERFACE, "serial:/dev/nowhere?order=low-first", crate::tabs::BISS),
+        (crate::tabs::BISS, "sim:?model=sel37", crate::tabs::HIPERFACE),
+        (crate::tabs::HIPERFACE, "sim:", crate::tabs::HIPERFACE),
+        (crate::tabs::BISS, "sim:", crate::tabs::BISS),
+        (crate::tabs::BISS, "sim:?nobody=1", crate::tabs::BISS),
     ];
     for (shown, link, expected) in cases {
         let mut desk = Desk::fresh("");
@@ -56,15 +57,15 @@ fn a_link_that_only_one_kind_can_open_opens_in_its_tab() {
 fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
     let (port, adapter) = ("serial:/dev/nowhere", "bridge:/dev/nowhere");
     let cases: [(Tab, &[Tab], &str, Tab); 9] = [
-        (Tab::Hiperface, &[], port, Tab::Hiperface),
-        (Tab::Hiperface, &[Tab::Biss], port, Tab::Biss),
-        (Tab::Signals, &[Tab::Biss], port, Tab::Biss),
-        (Tab::Biss, &[Tab::Hiperface], port, Tab::Hiperface),
-        (Tab::Biss, &[Tab::Hiperface, Tab::Biss], port, Tab::Biss),
-        (Tab::Interbus, &[Tab::Biss, Tab::Hiperface], port, Tab::Hiperface),
-        (Tab::Hiperface, &[Tab::Ssi], adapter, Tab::Ssi),
-        (Tab::Hiperface, &[], adapter, Tab::Biss),
-        (Tab::Biss, &[Tab::Hiperface], "sim:", Tab::Biss),
+        (crate::tabs::HIPERFACE, &[], port, crate::tabs::HIPERFACE),
+        (crate::tabs::HIPERFACE, &[crate::tabs::BISS], port, crate::tabs::BISS),
+        (crate::tabs::SIGNALS, &[crate::tabs::BISS], port, crate::tabs::BISS),
+        (crate::tabs::BISS, &[crate::tabs::HIPERFACE], port, crate::tabs::HIPERFACE),
+        (crate::tabs::BISS, &[crate::tabs::HIPERFACE, crate::tabs::BISS], port, crate::tabs::BISS),
+        (crate::tabs::INTERBUS, &[crate::tabs::BISS, crate::tabs::HIPERFACE], port, crate::tabs::HIPERFACE),
+        (crate::tabs::HIPERFACE, &[crate::tabs::SSI], adapter, crate::tabs::SSI),
+        (crate::tabs::HIPERFACE, &[], adapter, crate::tabs::BISS),
+        (crate::tabs::BISS, &[crate::tabs::HIPERFACE], "sim:", crate::tabs::BISS),
     ];
     for (shown, used, link, expected) in cases {
         let mut desk = Desk::fresh("");
@@ -72,7 +73,11 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
         used.iter().for_each(|tab| desk.studio.settings.use_link(*tab, link));
         desk.studio.begin(Some(link.parse().unwrap()), None);
         assert_eq!(desk.studio.settings.tab, expected, "{link} in {shown:?}, used in {used:?}");
-        assert_eq!(asks_for_drive(&desk.studio), link == port && expected == Tab::Hiperface, "{link} in {shown:?}");
+        assert_eq!(
+            asks_for_drive(&desk.studio),
+            link == port && expected == crate::tabs::HIPERFACE,
+            "{link} in {shown:?}"
+        );
     }
 }
 
@@ -150,11 +155,11 @@ fn a_register_is_watched_beside_the_position() {
 #[test]
 fn a_link_is_for_the_tab_that_asks_for_it() {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Biss));
+    desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.connect(Connect::Open);
-    assert_eq!(desk.studio.connect.as_ref().unwrap().device, Tab::Biss);
+    assert_eq!(desk.studio.connect.as_ref().unwrap().device, crate::tabs::BISS);
     let form = BissForm { way: BissWay::Pin, port: "/dev/nowhere".to_owned(), ..BissForm::default() };
-    desk.connect(Connect::EditBiss(Box::new(form)));
+    desk.connect(Connect::edit(form));
     desk.connect(Connect::Connect);
     desk.until("it cannot be opened", |studio| {
         studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_)))
@@ -167,7 +172,7 @@ fn a_link_is_for_the_tab_that_asks_for_it() {
 
 #[test]
 fn a_click_in_the_list_of_banks_goes_there_and_reads_it() {
-    let mut screen = Screen::opened_in(Tab::Biss, "sim:?bridge=on", [1440.0, 900.0]);
+    let mut screen = Screen::opened_in(crate::tabs::BISS, "sim:?bridge=on", [1440.0, 900.0]);
     screen.until("it is read", is_read);
     screen.click("page.registers");
     assert_eq!(screen.studio().biss().unwrap().memory.read(at("0x04:0x3F")), None);

@@ -1,6 +1,7 @@
 //! A BiSS encoder that is another one all at once, and a wire that two want.
 
 use crate::biss_support::command;
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::Severity;
 use encoder_studio::app::session::Phase;
@@ -50,10 +51,10 @@ fn a_wire_belongs_to_the_encoder_or_to_the_scope() {
     desk.signals(Signals::Source(SourceAction::StartAdapter));
     let why = |phase: &Phase| matches!(phase, Phase::Lost(why) if why.id() == "session.let_go_for_signals");
     assert!(why(&encoder(&desk).session.phase));
-    desk.until("it samples", |studio| studio.signals.source().streaming().is_some());
-    assert!(desk.studio.signals.source().adapter_problem().is_none());
+    desk.until("it samples", |studio| studio.signals().source().streaming().is_some());
+    assert!(desk.studio.signals().source().adapter_problem().is_none());
     command(&mut desk, DeviceCommand::Reconnect);
-    let source = desk.studio.signals.source();
+    let source = desk.studio.signals().source();
     assert!(!source.is_running());
     assert_eq!(source.adapter_problem().map(|text| text.id()), Some("adapter.let_go"));
     desk.until("the encoder is read again", is_read);
@@ -68,7 +69,7 @@ fn an_adapter_does_not_take_the_wire_from_a_write() {
     assert!(encoder(&desk).session.is_writing());
     desk.signals(Signals::Source(SourceAction::SetLink(served.link())));
     desk.signals(Signals::Source(SourceAction::StartAdapter));
-    let source = desk.studio.signals.source();
+    let source = desk.studio.signals().source();
     assert_eq!(source.adapter_problem().map(|text| text.id()), Some("session.writes_there"));
     assert!(!source.is_running());
     desk.until("the write ends", is_read);

@@ -1,10 +1,11 @@
 //! The position of a BiSS encoder as its adapter streams it: 20 000 frames a second, shown without loss.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::analysis::history::Flags;
-use encoder_studio::app::{Action, Recording, Severity, Studio, Tab};
+use encoder_studio::app::{Action, Recording, Severity, Studio};
 use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
 
 use crate::biss_support::is_read;
@@ -47,7 +48,7 @@ fn check(encoder: &Encoder, seconds: f64) {
 #[test]
 fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Biss));
+    desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.studio.begin(Some(LINK.parse().unwrap()), None);
     desk.until("the encoder is read", is_read);
     desk.act(poll(&desk.studio, Some(FAST)));
@@ -78,7 +79,7 @@ fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
 fn the_window_shows_a_stream_without_loss() {
     let outside = Outside::new("");
     let mut studio = outside.studio();
-    studio.act(Action::ShowTab(Tab::Biss));
+    studio.act(Action::ShowTab(crate::tabs::BISS));
     studio.begin(Some(LINK.parse().unwrap()), None);
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
     screen.until("the encoder is read", is_read);
@@ -86,7 +87,7 @@ fn the_window_shows_a_stream_without_loss() {
     screen.act(action);
     screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let began = Instant::now();
-    for page in encoder_studio::kinds::TABS.page_words(Tab::Biss) {
+    for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::BISS) {
         screen.click(page);
     }
     screen.until("three seconds pass", |_| began.elapsed() > Duration::from_secs(3));

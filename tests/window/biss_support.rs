@@ -1,7 +1,8 @@
 //! A desk with a BiSS encoder on it.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::{Action, Studio, Tab};
+use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::biss::protocol::RegisterAddress;
 use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
 
@@ -25,7 +26,7 @@ pub(crate) fn open(link: &str) -> Desk {
 
 /// Opens a link in the BiSS tab and waits until the encoder is read.
 pub(crate) fn connect(desk: &mut Desk, link: &str) {
-    desk.act(Action::ShowTab(Tab::Biss));
+    desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.studio.begin(Some(link.parse().unwrap()), None);
     desk.until("the encoder is read", is_read);
     desk.settle();

@@ -1,11 +1,12 @@
 //! Writing into a BiSS encoder from the window: edits with their review, and procedures that a person leads.
 
 use crate::biss_support::command;
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
 use encoder_studio::analysis::check::Verdict;
-use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Tab};
+use encoder_studio::app::{Action, ReviewAction, Severity, Studio};
 use encoder_studio::devices::biss::jobs::Change;
 use encoder_studio::devices::biss::procedures::procedure::{Answer, Outcome, Task};
 use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, Op, PresetParts};
@@ -173,7 +174,7 @@ fn stopping_a_procedure_leads_the_encoder_back() {
 fn the_live_position_says_that_it_waits_for_a_job() {
     let outside = Outside::new("");
     let mut studio = outside.studio();
-    studio.act(Action::ShowTab(Tab::Biss));
+    studio.act(Action::ShowTab(crate::tabs::BISS));
     studio.begin(Some("sim:?bridge=on".parse().unwrap()), None);
     let mut screen = Screen::of(outside, studio, [1280.0, 800.0]);
     screen.until("the encoder is read", is_read);

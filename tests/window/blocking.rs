@@ -1,14 +1,16 @@
 //! The window waits for nothing: a link that hangs, a disk that does not answer or does not take anything, events that
 //! nobody reads.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Recording, Severity, Tab, Theme};
+use encoder_studio::app::{Action, Recording, Severity, Theme};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
@@ -38,7 +40,7 @@ fn a_link_that_hangs_holds_nobody_up() {
     desk.act(Action::CloseSession(hanging));
     assert!(desk.studio.question.is_none(), "nothing would be lost");
     assert_eq!(desk.studio.devices().len(), 1);
-    assert_eq!(desk.studio.settings.links(Tab::Hiperface), [format!("serial:{PORT}")]);
+    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), [format!("serial:{PORT}")]);
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.may_close());
 }
@@ -67,18 +69,18 @@ fn a_search_on_a_link_that_hangs_can_be_ended() {
     let mut desk = Desk::fresh("");
     let hanging = LinkForm::from_url(&HANGING.parse().unwrap());
     desk.connect(Connect::Open);
-    desk.connect(Connect::Edit(Box::new(hanging)));
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(Connect::edit(hanging));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.settle();
     assert!(desk.studio.can_stop());
     desk.act(Action::Escape);
     assert!(!desk.studio.can_stop());
-    assert!(desk.studio.connect.as_ref().unwrap().search.as_ref().unwrap().end.is_some());
+    assert!(crate::tabs::search(desk.studio.connect.as_ref().unwrap()).unwrap().end.is_some());
     // The next search is not disturbed by it.
     desk.connect(Connect::Use(format!("serial:{PORT}")));
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it is found", |studio| {
-        let search = studio.connect.as_ref().and_then(|dialog| dialog.search.as_ref());
+        let search = studio.connect.as_ref().and_then(|dialog| crate::tabs::search(dialog));
         search.is_some_and(|search| !search.is_running() && search.found.len() == 1)
     });
     desk.act(Action::Escape);
@@ -228,7 +230,7 @@ fn the_end_of_a_search_that_nobody_watches_is_not_lost() {
     let wire = desk.wire();
     desk.connect(Connect::Open);
     desk.connect(Connect::Use(format!("serial:{PORT}")));
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it has begun", |_| wire.sent() > 0);
     // Hundreds of tries tell how far they are.
     without_polling(|| {
@@ -237,7 +239,7 @@ fn the_end_of_a_search_that_nobody_watches_is_not_lost() {
         wire.sent() == sent
     });
     desk.until("the end is told", |studio| !studio.can_stop());
-    let search = desk.studio.connect.as_ref().unwrap().search.as_ref().unwrap();
+    let search = crate::tabs::search(desk.studio.connect.as_ref().unwrap()).unwrap();
     assert_eq!(search.found.iter().map(|found| found.address).collect::<Vec<_>>(), (0x40..0x48).collect::<Vec<u8>>());
     assert_eq!(search.end.as_ref().unwrap().id(), "find.done");
 }

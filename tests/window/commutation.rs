@@ -1,6 +1,7 @@
 //! The commutation assistant: what has to be so before, readings, the offset, both ways to keep it, and what goes wrong on
 //! the way. Numbers are those of section 5 of the sine/cosine reference, or reckoned apart.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::analysis::quality::Verdict;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Phase;

@@ -4,9 +4,10 @@ use encoder_studio::app::DeviceCommand;
 use std::sync::Arc;
 use std::time::Duration;
 
+use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::connect::{Action as Connect, Connect as Dialog, is_missing};
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, FileQuestion, Language, Tab};
+use encoder_studio::app::{Action, FileQuestion, Language};
 use encoder_studio::devices::biss::state::{BissForm, BissWay};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::{LinkForm, LinkKind, Search};
@@ -20,13 +21,13 @@ fn dialog(desk: &Desk) -> &Dialog {
 }
 
 fn search(desk: &Desk) -> &Search {
-    dialog(desk).search.as_ref().expect("there is a search")
+    crate::tabs::search(dialog(desk)).as_ref().expect("there is a search")
 }
 
 fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
     let mut form = LinkForm::default();
     change(&mut form);
-    desk.connect(Connect::Edit(Box::new(form)));
+    desk.connect(Connect::edit(form));
 }
 
 /// Issue 22.30: before the first byte on a serial line it is asked whether a drive is on it, which may be silent since it
@@ -70,18 +71,18 @@ fn a_search_asks_for_a_drive_before_its_first_byte() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
-    desk.studio.act(Action::Connect(Connect::Search(FindOptions::default())));
-    assert!(asks_for_drive(&desk.studio) && dialog(&desk).search.is_none());
+    desk.studio.act(Action::Connect(crate::tabs::search_for(FindOptions::default())));
+    assert!(asks_for_drive(&desk.studio) && crate::tabs::search(dialog(&desk)).is_none());
     desk.studio.act(Action::Escape);
     desk.settle();
     assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("session.maybe_drive"));
-    assert_eq!((desk.wire().sent(), dialog(&desk).search.is_none()), (0, true));
-    desk.studio.act(Action::Connect(Connect::Search(FindOptions::default())));
+    assert_eq!((desk.wire().sent(), crate::tabs::search(dialog(&desk)).is_none()), (0, true));
+    desk.studio.act(Action::Connect(crate::tabs::search_for(FindOptions::default())));
     desk.studio.act(Action::Confirm);
     desk.until("it has found one", |studio| {
-        studio.connect.as_ref().and_then(|own| own.search.as_ref()).is_some_and(|own| !own.found.is_empty())
+        studio.connect.as_ref().and_then(|own| crate::tabs::search(own)).is_some_and(|own| !own.found.is_empty())
     });
-    desk.studio.act(Action::Connect(Connect::Choose(0)));
+    desk.studio.act(Action::Connect(crate::tabs::choose(0)));
     assert!(desk.studio.question.is_none());
     desk.until_read();
 }
@@ -107,12 +108,12 @@ fn what_cannot_be_is_refused_with_a_sentence() {
     for (slip, id) in cases {
         edit(&mut desk, slip);
         assert_eq!(dialog(&desk).url().unwrap_err().id(), id);
-        for action in [Connect::Connect, Connect::Search(FindOptions::default())] {
+        for action in [Connect::Connect, crate::tabs::search_for(FindOptions::default())] {
             desk.connect(action);
             assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some(id));
             desk.settle();
         }
-        assert!(dialog(&desk).search.is_none() && desk.studio.devices().is_empty());
+        assert!(crate::tabs::search(dialog(&desk)).is_none() && desk.studio.devices().is_empty());
     }
     edit(&mut desk, |_| {});
     assert!(dialog(&desk).problem.is_none(), "with the entry goes the sentence");
@@ -126,11 +127,11 @@ fn each_kind_shows_a_link_that_it_takes() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     for (device, scheme) in [
-        (Tab::Hiperface, "serial:"),
-        (Tab::Biss, "bridge:"),
-        (Tab::Ssi, "bridge:"),
-        (Tab::Interbus, "modbus:"),
-        (Tab::Hiperdrive, "enip:"),
+        (crate::tabs::HIPERFACE, "serial:"),
+        (crate::tabs::BISS, "bridge:"),
+        (crate::tabs::SSI, "bridge:"),
+        (crate::tabs::INTERBUS, "modbus:"),
+        (crate::tabs::HIPERDRIVE, "enip:"),
     ] {
         desk.connect(Connect::Device(device));
         let example = dialog(&desk).example();
@@ -138,7 +139,7 @@ fn each_kind_shows_a_link_that_it_takes() {
         desk.connect(Connect::Use(example.to_owned()));
         assert!(dialog(&desk).url().is_ok(), "{example}");
     }
-    desk.connect(Connect::Device(Tab::Biss));
+    desk.connect(Connect::Device(crate::tabs::BISS));
     desk.connect(Connect::Use("serial:COM3".to_owned()));
     assert!(dialog(&desk).example().starts_with("serial:"), "a pin is reached otherwise than a bus");
 }
@@ -149,17 +150,17 @@ fn a_link_is_typed_or_pasted() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     let wrong = [
-        (Tab::Hiperface, "", "form.other", "is not a link"),
-        (Tab::Hiperface, "/dev/ttyUSB0", "form.other", "it begins with sim:, serial:"),
-        (Tab::Hiperface, "serial:", "form.other", "serial:/dev/ttyUSB0"),
-        (Tab::Hiperface, "tcp:moxa", "form.other", "tcp:192.168.0.7:4001"),
-        (Tab::Hiperface, "bridge:/dev/ttyACM0", "form.other", "do not lead to this device"),
-        (Tab::Hiperface, "serial:x?clock=1", "form.other", "clock is not a parameter"),
-        (Tab::Hiperface, "serial:x?baud=fast", "form.parameter", "baud=fast"),
-        (Tab::Biss, "serial:x?address=0x40", "form.other", "address is not a parameter"),
-        (Tab::Biss, "bridge:x?clock=9", "form.clock", "9 is not possible"),
-        (Tab::Biss, "sim:?motor=none", "form.parameter", "motor=none"),
-        (Tab::Biss, "sim:?noise=0.1", "form.other", "noise"),
+        (crate::tabs::HIPERFACE, "", "form.other", "is not a link"),
+        (crate::tabs::HIPERFACE, "/dev/ttyUSB0", "form.other", "it begins with sim:, serial:"),
+        (crate::tabs::HIPERFACE, "serial:", "form.other", "serial:/dev/ttyUSB0"),
+        (crate::tabs::HIPERFACE, "tcp:moxa", "form.other", "tcp:192.168.0.7:4001"),
+        (crate::tabs::HIPERFACE, "bridge:/dev/ttyACM0", "form.other", "do not lead to this device"),
+        (crate::tabs::HIPERFACE, "serial:x?clock=1", "form.other", "clock is not a parameter"),
+        (crate::tabs::HIPERFACE, "serial:x?baud=fast", "form.parameter", "baud=fast"),
+        (crate::tabs::BISS, "serial:x?address=0x40", "form.other", "address is not a parameter"),
+        (crate::tabs::BISS, "bridge:x?clock=9", "form.clock", "9 is not possible"),
+        (crate::tabs::BISS, "sim:?motor=none", "form.parameter", "motor=none"),
+        (crate::tabs::BISS, "sim:?noise=0.1", "form.other", "noise"),
     ];
     for (device, link, id, words) in wrong {
         desk.connect(Connect::Device(device));
@@ -174,16 +175,16 @@ fn a_link_is_typed_or_pasted() {
         desk.connect(Connect::Device(device));
         assert_eq!(dialog(&desk).link(), before, "the form is as it was");
     }
-    desk.connect(Connect::Device(Tab::Biss));
+    desk.connect(Connect::Device(crate::tabs::BISS));
     desk.connect(Connect::Use("bridge:tcp:adapter:5000?clock=2000000".to_owned()));
-    let form = dialog(&desk).biss.clone();
+    let form = dialog(&desk).form::<encoder_studio::devices::biss::state::BissForm>().unwrap().clone();
     assert_eq!((form.way, form.host.as_str(), form.clock.as_str()), (BissWay::Bus, "adapter", "2000000"));
-    desk.connect(Connect::EditBiss(Box::new(BissForm { clock: String::new(), ..form })));
+    desk.connect(Connect::edit(BissForm { clock: String::new(), ..form }));
     assert_eq!(dialog(&desk).link(), "bridge:tcp:adapter:5000");
 
-    desk.connect(Connect::Device(Tab::Hiperface));
+    desk.connect(Connect::Device(crate::tabs::HIPERFACE));
     desk.connect(Connect::Use(format!(" serial:{PORT}?baud=9600 ")));
-    assert_eq!(dialog(&desk).form.port, PORT);
+    assert_eq!(dialog(&desk).form::<encoder_studio::devices::hiperface::state::LinkForm>().unwrap().port, PORT);
     desk.connect(Connect::Connect);
     desk.until_read();
     assert_eq!(desk.encoder().session.source, Source::Link(format!("serial:{PORT}?baud=9600").parse().unwrap()));
@@ -210,7 +211,10 @@ fn it_begins_with_what_was_used_before() {
     desk.open(&link);
     desk.until_read();
     desk.connect(Connect::Open);
-    assert_eq!(dialog(&desk).form.url().unwrap().to_string(), link);
+    assert_eq!(
+        dialog(&desk).form::<encoder_studio::devices::hiperface::state::LinkForm>().unwrap().url().unwrap().to_string(),
+        link
+    );
     desk.until("the ports are listed", |studio| matches!(studio.connect.as_ref().unwrap().ports, Some(Ok(_))));
     let offers = dialog(&desk).ports.clone().unwrap().unwrap();
     assert!(offers[0].path == PORT && offers[0].used, "{offers:?}");
@@ -229,7 +233,7 @@ fn searching(hold: Option<usize>) -> Desk {
     if let Some(number) = hold {
         desk.wire().hold_at(0x52, number);
     }
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk
 }
 
@@ -241,7 +245,7 @@ fn all_that_answer_are_found_and_one_is_chosen() {
     let found: Vec<u8> = search(&desk).found.iter().map(|found| found.address).collect();
     assert_eq!(found, [0x43, 0x44]);
     let format = search(&desk).found[1].format;
-    desk.connect(Connect::Choose(1));
+    desk.connect(crate::tabs::choose(1));
     assert!(desk.studio.connect.is_none());
     desk.until_read();
     assert_eq!(*desk.phase(), Phase::Connected);
@@ -249,7 +253,7 @@ fn all_that_answer_are_found_and_one_is_chosen() {
     assert_ne!((format.baud, format.parity), (Baud::new(9600).unwrap(), Parity::Even));
     let link = format!("serial:{PORT}?baud={}&parity={}&address=0x44", format.baud, format.parity.word());
     assert_eq!(desk.encoder().session.source, Source::Link(link.parse().unwrap()));
-    assert_eq!(desk.studio.settings.links(encoder_studio::app::Tab::Hiperface), [link]);
+    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), [link]);
 }
 
 #[test]
@@ -260,7 +264,7 @@ fn it_lists_while_it_runs_and_stop_ends_it() {
         wire.hold_at(0x52, 600);
         desk.until("the line is held", |_| wire.is_held());
         desk.until("something is listed", |studio| {
-            let search = studio.connect.as_ref().and_then(|dialog| dialog.search.as_ref()).unwrap();
+            let search = studio.connect.as_ref().and_then(|dialog| crate::tabs::search(dialog)).unwrap();
             !search.found.is_empty() && search.progress().is_some_and(|progress| progress.done > 0)
         });
         assert!(search(&desk).is_running());
@@ -277,14 +281,14 @@ fn a_search_that_finds_nobody_says_what_to_look_at() {
     let mut desk = Desk::fresh("fault=silent-after:0");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it is over", |studio| !studio.can_stop());
     assert_eq!(search(&desk).end.as_ref().unwrap().id(), "find.nothing");
     desk.wire().unplug();
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it is over", |studio| !studio.can_stop());
     assert_eq!(search(&desk).end.as_ref().unwrap().id(), "link.not_found");
-    desk.connect(Connect::Choose(0));
+    desk.connect(crate::tabs::choose(0));
     assert!(desk.studio.connect.is_some() && desk.studio.devices().is_empty());
 }
 
@@ -307,7 +311,7 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(2))));
     desk.connect(Connect::Open);
     desk.connect(Connect::Use(link.clone()));
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.let_go_for_search"));
     assert!(desk.encoder().session.line().is_none());
     assert_eq!(desk.times_told("session.let_go_for_search"), 1);
@@ -325,9 +329,9 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.wire().wait_until_held();
     desk.connect(Connect::Open);
     desk.connect(Connect::Use(link));
-    desk.connect(Connect::Search(FindOptions::default()));
+    desk.connect(crate::tabs::search_for(FindOptions::default()));
     assert_eq!(dialog(&desk).problem.as_ref().map(|text| text.id()), Some("session.writes_there"));
-    assert!(dialog(&desk).search.is_none() && desk.encoder().session.is_writing());
+    assert!(crate::tabs::search(dialog(&desk)).is_none() && desk.encoder().session.is_writing());
     desk.wire().release();
     desk.until_written();
 }

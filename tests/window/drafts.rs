@@ -1,5 +1,6 @@
 //! Edits outlive a crash: they are on disk as they are made, and come back with their encoder or profile.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 

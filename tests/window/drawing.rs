@@ -1,6 +1,7 @@
 //! How often the window is drawn while nothing changes (issue 22.32): by the clock of the pictures alone, each at the time
 //! for which the one before it has asked.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::sync::atomic::Ordering;
 
@@ -98,11 +99,18 @@ fn nothing_is_drawn_while_nothing_changes() {
 #[test]
 fn a_window_without_a_device_is_drawn_when_something_changes() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SIZE);
-    for tab in [Tab::Hiperface, Tab::Biss, Tab::Ssi, Tab::Interbus, Tab::Hiperdrive, Tab::Signals] {
+    for tab in [
+        crate::tabs::HIPERFACE,
+        crate::tabs::BISS,
+        crate::tabs::SSI,
+        crate::tabs::INTERBUS,
+        crate::tabs::HIPERDRIVE,
+        crate::tabs::SIGNALS,
+    ] {
         screen.act(Action::ShowTab(tab));
         for focused in [true, false] {
             screen.harness.input_mut().focused = focused;
-            for page in encoder_studio::kinds::TABS.page_words(tab) {
+            for page in encoder_studio::kinds::program().tabs.page_words(tab) {
                 if screen.has_button(page) {
                     screen.click(page);
                 }
@@ -118,11 +126,11 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
 fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     type Ready = fn(&Studio) -> bool;
     let kinds: [(Tab, &str, Ready); 3] = [
-        (Tab::Biss, "sim:?bridge=on", |studio| studio.biss().is_some_and(|own| own.survey.is_some())),
-        (Tab::Interbus, "sim:?steps=3600&revolutions=1&cams=demo", |studio| {
+        (crate::tabs::BISS, "sim:?bridge=on", |studio| studio.biss().is_some_and(|own| own.survey.is_some())),
+        (crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", |studio| {
             studio.interbus().is_some_and(|own| own.programs_read() == 8)
         }),
-        (Tab::Hiperdrive, "sim:", |studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some())),
+        (crate::tabs::HIPERDRIVE, "sim:", |studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some())),
     ];
     for (tab, link, is_read) in kinds {
         let mut screen = Screen::opened_in(tab, link, SIZE);
@@ -133,7 +141,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
         }
         for focused in [true, false] {
             screen.harness.input_mut().focused = focused;
-            for page in encoder_studio::kinds::TABS.page_words(tab) {
+            for page in encoder_studio::kinds::program().tabs.page_words(tab) {
                 screen.click(page);
                 settle(&mut screen);
                 assert_eq!(pictures(&mut screen), 0, "{tab:?}, {page}, {focused}");

@@ -1,9 +1,11 @@
 //! What holds for every kind of device on the desk, with the same words for all: edits are kept, writes end before anything
 //! closes, and every link that the connection dialog takes leads to its device.
 
+use crate::tabs::Tabs as _;
 use std::path::Path;
 
-use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::form::FormModel;
+use encoder_studio::app::connect::{Action as Connect, Connect as Dialog};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, DeviceCommand, JobEnd, Language, ReviewAction, Severity, Studio, Tab};
@@ -17,7 +19,8 @@ use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::devices::interbus::profile::InterbusProfile;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
+use encoder_studio::kinds::program;
 use encoder_studio::profile::{Body, Comparison, Document, PlanId, Profile};
 
 use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, PORT};
@@ -37,12 +40,19 @@ struct Case {
 }
 
 const CASES: [Case; 4] = [
-    Case { tab: Tab::Hiperface, scheme: "serial", port: PORT, writes: 0x4B, reads: 0x52, other: "serial=OTHER0001" },
-    Case { tab: Tab::Biss, scheme: "serial", port: KIT, writes: 0x02, reads: 0x01, other: "serial=42" },
+    Case {
+        tab: crate::tabs::HIPERFACE,
+        scheme: "serial",
+        port: PORT,
+        writes: 0x4B,
+        reads: 0x52,
+        other: "serial=OTHER0001",
+    },
+    Case { tab: crate::tabs::BISS, scheme: "serial", port: KIT, writes: 0x02, reads: 0x01, other: "serial=42" },
     // The preset is a parameter of code 4, in bits 28 to 25 of its word; function 4 reads a word.
-    Case { tab: Tab::Interbus, scheme: "modbus", port: GATE, writes: 0x08, reads: 4, other: "serial=42" },
+    Case { tab: crate::tabs::INTERBUS, scheme: "modbus", port: GATE, writes: 0x08, reads: 4, other: "serial=42" },
     // Services that set and get an attribute.
-    Case { tab: Tab::Hiperdrive, scheme: "enip", port: DRIVE, writes: 0x10, reads: 0x0E, other: "serial=42" },
+    Case { tab: crate::tabs::HIPERDRIVE, scheme: "enip", port: DRIVE, writes: 0x10, reads: 0x0E, other: "serial=42" },
 ];
 
 impl Case {
@@ -65,7 +75,7 @@ impl Case {
         desk.open(&format!("{}:{}", self.scheme, self.port));
         until_ready(desk);
         self.stands(desk);
-        if self.tab == Tab::Interbus {
+        if self.tab == crate::tabs::INTERBUS {
             wish(desk, DeviceCommand::Read);
             desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
             until_ready(desk);
@@ -81,7 +91,7 @@ impl Case {
 
     /// A person says that it does, where that is asked for.
     fn stands(&self, desk: &mut Desk) {
-        if self.tab == Tab::Interbus {
+        if self.tab == crate::tabs::INTERBUS {
             let id = shown(&desk.studio).unwrap().id();
             desk.act(Action::device(id, Interbus::Stopped(true)));
         }
@@ -104,7 +114,7 @@ impl Case {
     fn edit(&self, desk: &mut Desk, bytes: &[u8]) {
         let id = shown(&desk.studio).unwrap().id();
         match self.tab {
-            Tab::Biss => {
+            crate::tabs::BISS => {
                 let start = "0x24:0x00".parse().unwrap();
                 if desk.studio.biss().unwrap().memory.read(start).is_none() {
                     desk.act(Action::device(id, Biss::ReadBank(Some(0x24))));
@@ -112,13 +122,13 @@ impl Case {
                 }
                 desk.act(Action::device(id, Biss::Put { start, bytes: bytes.to_vec() }));
             }
-            Tab::Interbus => {
+            crate::tabs::INTERBUS => {
                 let edits = [Edit::Preset, Edit::ZeroShift].into_iter().zip(bytes);
                 for (edit, byte) in edits {
                     desk.act(Action::device(id, Interbus::Edit(Box::new(edit(u32::from(*byte))))));
                 }
             }
-            Tab::Hiperdrive => {
+            crate::tabs::HIPERDRIVE => {
                 // Free registers.
                 let edits = [24, 26].into_iter().filter_map(ParameterNumber::new).zip(bytes);
                 for (number, byte) in edits {
@@ -143,14 +153,14 @@ impl Case {
     fn read_all(&self, desk: &mut Desk) {
         let id = shown(&desk.studio).unwrap().id();
         match self.tab {
-            Tab::Biss => {
+            crate::tabs::BISS => {
                 let description = desk.studio.biss().unwrap().description.clone().unwrap();
                 for area in description.areas() {
                     desk.act(Action::device(id, Biss::ReadArea(area.first)));
                     until_ready(desk);
                 }
             }
-            Tab::Interbus => {
+            crate::tabs::INTERBUS => {
                 desk.act(Action::device(id, Interbus::ReadPrograms(ProgramNumber::all().collect())));
                 until_ready(desk);
             }
@@ -163,9 +173,9 @@ impl Case {
         let path_of = || path.to_path_buf();
         wish(desk, DeviceCommand::AskSave);
         desk.act(match self.tab {
-            Tab::Biss => Action::device(id, Biss::Save(path_of())),
-            Tab::Interbus => Action::device(id, Interbus::Save(path_of())),
-            Tab::Hiperdrive => Action::device(id, Hiperdrive::Save(path_of())),
+            crate::tabs::BISS => Action::device(id, Biss::Save(path_of())),
+            crate::tabs::INTERBUS => Action::device(id, Interbus::Save(path_of())),
+            crate::tabs::HIPERDRIVE => Action::device(id, Hiperdrive::Save(path_of())),
             _ => Action::device(id, Hiperface::Save(path_of())),
         });
     }
@@ -173,9 +183,9 @@ impl Case {
     /// An entry of a profile by which its device is of another type.
     fn other_type(&self) -> (&'static str, &'static str) {
         match self.tab {
-            Tab::Biss => ("device_id", "\"09 09 09 09 09 09\""),
-            Tab::Interbus => ("flags", "0"),
-            Tab::Hiperdrive => ("category", "\"HIPERDRIVE HUB-4\""),
+            crate::tabs::BISS => ("device_id", "\"09 09 09 09 09 09\""),
+            crate::tabs::INTERBUS => ("flags", "0"),
+            crate::tabs::HIPERDRIVE => ("category", "\"HIPERDRIVE HUB-4\""),
             _ => ("encoder_type", "0x32"),
         }
     }
@@ -406,27 +416,32 @@ fn escape_stops_what_runs_before_it_closes_anything() {
     }
 }
 
+/// The action that takes the form as it is.
+fn edited<F: FormModel>(dialog: &Dialog) -> Connect {
+    Connect::edit(dialog.form::<F>().unwrap().clone())
+}
+
 #[test]
 fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
     let links = [
-        (Tab::Hiperface, "sim:".to_owned()),
-        (Tab::Hiperface, format!("serial:{PORT}")),
-        (Tab::Hiperface, "tcp:moxa:4001".to_owned()),
-        (Tab::Biss, "sim:".to_owned()),
-        (Tab::Biss, "sim:?bridge=on".to_owned()),
-        (Tab::Biss, format!("serial:{KIT}?order=low-first")),
-        (Tab::Biss, "tcp:moxa:4002".to_owned()),
-        (Tab::Biss, format!("bridge:{ADAPTER}?clock=2000000")),
-        (Tab::Biss, "bridge:tcp:adapter:5000".to_owned()),
-        (Tab::Ssi, "sim:".to_owned()),
-        (Tab::Ssi, "sim:?ssi=ahm36,code=gray&rpm=6".to_owned()),
-        (Tab::Interbus, "sim:?rpm=6&cams=demo".to_owned()),
-        (Tab::Interbus, format!("modbus:{GATE}")),
-        (Tab::Interbus, format!("modbus:{GATE}?unit=1&handshake=500")),
-        (Tab::Hiperdrive, "sim:".to_owned()),
-        (Tab::Hiperdrive, "sim:?hub=4&drives=1,0,1".to_owned()),
-        (Tab::Hiperdrive, format!("enip:{DRIVE}")),
-        (Tab::Hiperdrive, format!("enip:{DRIVE}?rpi=20&order=big")),
+        (crate::tabs::HIPERFACE, "sim:".to_owned()),
+        (crate::tabs::HIPERFACE, format!("serial:{PORT}")),
+        (crate::tabs::HIPERFACE, "tcp:moxa:4001".to_owned()),
+        (crate::tabs::BISS, "sim:".to_owned()),
+        (crate::tabs::BISS, "sim:?bridge=on".to_owned()),
+        (crate::tabs::BISS, format!("serial:{KIT}?order=low-first")),
+        (crate::tabs::BISS, "tcp:moxa:4002".to_owned()),
+        (crate::tabs::BISS, format!("bridge:{ADAPTER}?clock=2000000")),
+        (crate::tabs::BISS, "bridge:tcp:adapter:5000".to_owned()),
+        (crate::tabs::SSI, "sim:".to_owned()),
+        (crate::tabs::SSI, "sim:?ssi=ahm36,code=gray&rpm=6".to_owned()),
+        (crate::tabs::INTERBUS, "sim:?rpm=6&cams=demo".to_owned()),
+        (crate::tabs::INTERBUS, format!("modbus:{GATE}")),
+        (crate::tabs::INTERBUS, format!("modbus:{GATE}?unit=1&handshake=500")),
+        (crate::tabs::HIPERDRIVE, "sim:".to_owned()),
+        (crate::tabs::HIPERDRIVE, "sim:?hub=4&drives=1,0,1".to_owned()),
+        (crate::tabs::HIPERDRIVE, format!("enip:{DRIVE}")),
+        (crate::tabs::HIPERDRIVE, format!("enip:{DRIVE}?rpi=20&order=big")),
     ];
     let mut desk = Desk::fresh("");
     for (tab, link) in links {
@@ -437,11 +452,11 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
             let dialog = desk.studio.connect.as_ref().unwrap();
             if !typed {
                 let form = match tab {
-                    Tab::Biss => Connect::EditBiss(Box::new(dialog.biss.clone())),
-                    Tab::Ssi => Connect::EditSsi(Box::new(dialog.ssi.clone())),
-                    Tab::Interbus => Connect::EditInterbus(Box::new(dialog.interbus.clone())),
-                    Tab::Hiperdrive => Connect::EditHiperdrive(Box::new(dialog.hiperdrive.clone())),
-                    _ => Connect::Edit(Box::new(dialog.form.clone())),
+                    crate::tabs::BISS => edited::<biss::state::BissForm>(dialog),
+                    crate::tabs::SSI => edited::<ssi::state::SsiForm>(dialog),
+                    crate::tabs::INTERBUS => edited::<interbus::state::InterbusForm>(dialog),
+                    crate::tabs::HIPERDRIVE => edited::<hiperdrive::state::HiperdriveForm>(dialog),
+                    _ => edited::<hiperface::state::LinkForm>(dialog),
                 };
                 desk.connect(form);
                 assert_eq!(desk.studio.connect.as_ref().unwrap().link(), link);
@@ -495,8 +510,8 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
         let mut desk = case.desk();
         // What is not read when it is connected.
         let missing = match case.tab {
-            Tab::Biss => Some("OEM"),
-            Tab::Interbus => Some("cam program 8"),
+            crate::tabs::BISS => Some("OEM"),
+            crate::tabs::INTERBUS => Some("cam program 8"),
             _ => None,
         };
         let whole = desk.outside.path("whole.ron");
@@ -532,7 +547,9 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
                     desk.until("it is saved", is_saved);
                     let texts = told(&desk.studio, "session.saved_as_read").unwrap();
                     assert!(texts.iter().any(|text| text.id() == "session.saved_without"), "{texts:?}");
-                    let read = |path: &Path| Document::parse(&std::fs::read_to_string(path).unwrap(), FORMATS).unwrap();
+                    let read = |path: &Path| {
+                        Document::parse(&std::fs::read_to_string(path).unwrap(), program().studio.formats).unwrap()
+                    };
                     let lost = read(&path);
                     assert!(lost.note.is_some_and(|note| note.contains("did not answer")));
                     if all {

@@ -1,9 +1,10 @@
 //! The HIPERDRIVE tab by actions: what is read and when, parameters beside what is wanted, a write with its review, and what is
 //! locked after it.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Studio, Tab, connect};
+use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Studio, connect};
 use encoder_studio::buses::ethernet_ip::protocol::{Identity, IdentityItem, Revision, SocketAddress};
 use encoder_studio::devices::hiperdrive::procedures::Found;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Goal, Lock};
@@ -22,7 +23,7 @@ pub(crate) fn number(number: u16) -> ParameterNumber {
 
 pub(crate) fn read(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open(link);
     until_read(&mut desk);
     desk
@@ -193,7 +194,7 @@ fn a_pitch_and_what_is_measured_in_come_back() {
         std::fs::read_to_string(&path).is_ok_and(|text| text.contains("4000000") && text.contains("Millimetres"))
     });
     let mut desk = desk.crash();
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open("sim:");
     until_read(&mut desk);
     assert_eq!((unit(&desk).pitch(ONE), unit(&desk).measure), (Some(pitch), Measure::Millimetres));
@@ -217,7 +218,7 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
     assert!(unit(&desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed), "also over a connection");
     desk.settle();
     let mut desk = desk.crash();
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open("sim:");
     until_read(&mut desk);
     assert!(unit(&desk).moves.locks(ONE).contains(&Lock::LimitsUnconfirmed), "and over a crash");
@@ -242,21 +243,21 @@ fn who_answers_in_the_network_fills_the_form() {
     outside.found =
         vec![found([10, 0, 0, 9], 2222, 1, "a switch"), found([10, 0, 0, 7], 44818, VENDOR, "HIPERDRIVE HUB-4")];
     let mut desk = Desk { studio: outside.studio(), outside };
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.connect(connect::Action::Open);
-    desk.connect(connect::Action::Discover);
-    assert!(desk.studio.connect.as_ref().unwrap().discovery.as_ref().unwrap().is_running());
+    desk.connect(crate::tabs::discover());
+    assert!(crate::tabs::discovery(desk.studio.connect.as_ref().unwrap()).unwrap().is_running());
     desk.until("they have answered", |studio| {
-        studio.connect.as_ref().unwrap().discovery.as_ref().is_some_and(|own| !own.is_running())
+        crate::tabs::discovery(studio.connect.as_ref().unwrap()).is_some_and(|own| !own.is_running())
     });
-    let discovery = desk.studio.connect.as_ref().unwrap().discovery.clone().unwrap();
+    let discovery = crate::tabs::discovery(desk.studio.connect.as_ref().unwrap()).cloned().unwrap();
     let names: Vec<&str> = discovery.devices().iter().map(|own| own.name.as_str()).collect();
     assert_eq!(names, ["HIPERDRIVE HUB-4", "a switch"], "ours come first");
-    desk.connect(connect::Action::ChooseDevice(0));
+    desk.connect(crate::tabs::choose_answer(0));
     assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.7:44818");
-    desk.connect(connect::Action::ChooseDevice(1));
+    desk.connect(crate::tabs::choose_answer(1));
     assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222");
-    desk.connect(connect::Action::ChooseDevice(2));
+    desk.connect(crate::tabs::choose_answer(2));
     assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222", "there is none");
 }
 

@@ -2,6 +2,7 @@
 //! 250 ms rightly stops what it moves, and so does a test whose thread a busy computer does not let run. Whatever else ends
 //! an act ends the test.
 
+use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::{Severity, Studio};

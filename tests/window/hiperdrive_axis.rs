@@ -4,6 +4,7 @@
 mod bench;
 mod foreign;
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, Language, ReviewAction, Settings, Severity};

@@ -1,9 +1,10 @@
 //! The window closes, or the system ends the program, while a drive moves: it stops first, is switched off, and its connection
 //! is closed; whatever is asked comes after that (issue 21.1). The drive itself is asked.
 
+use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::{Action, Tab};
+use encoder_studio::app::Action;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, State, StatusBit};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Motor};
@@ -127,7 +128,7 @@ fn a_session_that_is_closed_behind_a_motion() {
     let other = desk.studio.devices().iter().find(|own| own.id() != id).map(|own| own.id());
     if let Some(other) = other {
         desk.act(Action::CloseSession(other));
-        assert!(desk.studio.settings.tab == Tab::Hiperdrive && unit(&desk).moves.is_under_way());
+        assert!(desk.studio.settings.tab == crate::tabs::HIPERDRIVE && unit(&desk).moves.is_under_way());
     }
     desk.act(Action::CloseSession(id));
     desk.act(Action::Close);

@@ -2,6 +2,7 @@
 //! else changes meanwhile.
 
 use crate::hiperdrive::command;
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 

@@ -1,9 +1,10 @@
 //! Each drive of a hub for itself: what is typed for one, what is said of it, and what it does while another one is shown.
 
+use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::{AccessKitNode, Queryable};
-use encoder_studio::app::{Action, Language, Severity, Studio, Tab};
+use encoder_studio::app::{Action, Language, Severity, Studio};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
 use encoder_studio::devices::hiperdrive::state::explain;
@@ -182,7 +183,7 @@ fn a_speed_that_waits_is_told_from_the_one_that_is_sent() {
 
 /// A hub on the screen, with its drives in hand.
 fn on_screen() -> Screen {
-    let mut screen = Screen::opened_in(Tab::Hiperdrive, HUB, [1280.0, 900.0]);
+    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, HUB, [1280.0, 900.0]);
     screen.until("it is read", |studio| {
         studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.status.is_some())
     });

@@ -1,6 +1,7 @@
 //! Keys and drives: what a key holds, what it stops, and that one which repeats itself begins nothing (issue 21.2). The events
 //! are those that the window system delivers; egui calls the first repetition after a change of the window a first press.
 
+use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};

@@ -2,10 +2,11 @@
 //! ends it. The drive itself is asked whether it stands.
 
 use crate::hiperdrive::command;
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::{Action, Severity, Studio, Tab, connect};
+use encoder_studio::app::{Action, Severity, Studio, connect};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
@@ -114,7 +115,7 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
     type Cover = fn(&mut Desk);
     let covers: [(&str, Cover); 14] = [
         ("focus", |desk| desk.act(Action::LetGo)),
-        ("tab", |desk| desk.act(Action::ShowTab(Tab::Biss))),
+        ("tab", |desk| desk.act(Action::ShowTab(crate::tabs::BISS))),
         ("dialog", |desk| desk.connect(connect::Action::Open)),
         // With the act that asks, not with the dialog's picture: the system may take half a second for that.
         ("file dialog", |desk| desk.act(Action::AskOpen)),
@@ -164,7 +165,7 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
 fn a_move_goes_on_in_another_tab_and_ends_by_stop() {
     let mut desk = in_control("sim:");
     let goes_on = while_it_moves(&mut desk, |desk| {
-        desk.act(Action::ShowTab(Tab::Biss));
+        desk.act(Action::ShowTab(crate::tabs::BISS));
         desk.act(Action::LetGo);
         for _ in 0..400 {
             desk.studio.poll();
@@ -176,7 +177,7 @@ fn a_move_goes_on_in_another_tab_and_ends_by_stop() {
     desk.act(Action::Escape);
     until_standing(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
-    assert!(desk.studio.shown().is_none() || desk.studio.settings.tab == Tab::Biss);
+    assert!(desk.studio.shown().is_none() || desk.studio.settings.tab == crate::tabs::BISS);
 }
 
 #[test]
@@ -259,7 +260,7 @@ fn a_run_ends_at_once_where_its_panel_is_out_of_sight() {
     let mut desk = in_control("sim:");
     let run = Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(&mut desk, |_| run, "it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
-    desk.act(Action::ShowTab(Tab::Biss));
+    desk.act(Action::ShowTab(crate::tabs::BISS));
     until_standing(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
 }
@@ -326,8 +327,8 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
     desk.act(Action::StopMotion);
     assert!(unit(&desk).may_jog(ONE, up).is_err());
     drive(&mut desk, Motor::FreeOutward(up));
-    desk.act(Action::ShowTab(Tab::Ssi));
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::SSI));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     assert!(unit(&desk).may_jog(ONE, up).is_err());
 }
 

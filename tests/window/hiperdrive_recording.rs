@@ -1,6 +1,7 @@
 //! What is recorded of HIPERDRIVE drives outlives whatever is changed on the page.
 
 use crate::hiperdrive::command;
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 

@@ -1,6 +1,7 @@
 //! What rules a drive in hand is looked at again and again, whatever is polled and shown; where it cannot be, nothing moves.
 
 use crate::hiperdrive::command;
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::Opener;
 use std::net::Ipv4Addr;
@@ -9,7 +10,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::{Action, Severity, Studio, Tab, World};
+use encoder_studio::app::{Action, Severity, Studio, World};
 use encoder_studio::devices::hiperdrive::jobs::Way;
 use encoder_studio::devices::hiperdrive::procedures::Station;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, State, Value};
@@ -122,7 +123,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
         ..outside.world()
     };
     let mut desk = Desk { studio: Studio::new(world, Arc::new(|| {})), outside };
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open("sim:");
     until_read(&mut desk);
     act(&mut desk, Hiperdrive::Take);
@@ -239,7 +240,7 @@ fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
 /// A drive that is locked for two reasons has one place at which its limits are confirmed.
 #[test]
 fn limits_are_confirmed_at_one_place() {
-    let mut screen = Screen::opened_in(Tab::Hiperdrive, "sim:", [1280.0, 900.0]);
+    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let is_ready = |studio: &Studio, open: bool| {
         let own = studio.hiperdrive();
         own.is_some_and(|own| own.survey.is_some() && own.session.is_ready() && own.moves.is_open() == open)

@@ -1,12 +1,13 @@
 //! STOP and Esc as a person presses them in a fright: the motion ends with the first press, and nothing else with the next.
 
+use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::{Action, Studio, Tab};
+use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::hiperdrive::jobs::DriveView;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{OutData, State};
@@ -21,7 +22,7 @@ use crate::support::LONG;
 pub(crate) fn in_hand() -> Screen {
     let mut screen = Screen::begun([1280.0, 900.0]);
     screen.click("live.start");
-    screen.act(Action::ShowTab(Tab::Hiperdrive));
+    screen.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     screen.act(Action::Connect(Connect::Open));
     screen.act(Action::Connect(Connect::Use("sim:".to_owned())));
     screen.act(Action::Connect(Connect::Connect));
@@ -236,7 +237,7 @@ fn escape_that_is_held_stops_what_begins_meanwhile() {
 
 /// A drive that is watched here, and moved by another master.
 fn moved_by_somebody_else() -> Screen {
-    let mut screen = Screen::opened_in(Tab::Hiperdrive, "sim:", [1280.0, 900.0]);
+    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
     screen.until("it is read", own);
     let target = screen.studio().hiperdrive().unwrap().target.clone().unwrap();

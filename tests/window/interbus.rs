@@ -1,11 +1,12 @@
 //! The INTERBUS tab by actions: what is read and when, parameters and cams beside what is wanted, a write with its review,
 //! tables of cams, and what is asked before a running machine is disturbed.
 
+use crate::tabs::Tabs as _;
 use std::time::Duration;
 
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Tab};
+use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity};
 use encoder_studio::devices::interbus::profile::Scale;
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, ReadOut, StartupMode};
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit, Encoder};
@@ -17,7 +18,7 @@ const CAMS: &str = "sim:?steps=3600&revolutions=1&cams=demo";
 
 fn connected(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Interbus));
+    desk.act(Action::ShowTab(crate::tabs::INTERBUS));
     desk.open(link);
     desk
 }

@@ -1,5 +1,6 @@
 //! Sessions that are closed, opened again or dead: what still ends there is told, and waited for within limits.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};

@@ -1,5 +1,6 @@
 //! Stopping half-way, pulling the cable, exchanging the encoder: what is edited stays, and never goes onto another one.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::time::Duration;

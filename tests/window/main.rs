@@ -45,6 +45,7 @@ mod signals_widgets;
 mod ssi;
 mod state;
 mod support;
+mod tabs;
 mod texts;
 mod two_windows;
 mod unhurried;

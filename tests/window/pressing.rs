@@ -17,12 +17,12 @@ const SIZE: [f32; 2] = [1280.0, 900.0];
 
 /// Each kind of device at a cable: its tab, its link, its place in the world of the test, and a command of its reading.
 const KINDS: [(Tab, &str, &str, u8); 4] = [
-    (Tab::Hiperface, "serial", PORT, 0x52),
-    (Tab::Biss, "serial", KIT, 0x01),
+    (crate::tabs::HIPERFACE, "serial", PORT, 0x52),
+    (crate::tabs::BISS, "serial", KIT, 0x01),
     // Function 4 reads a word.
-    (Tab::Interbus, "modbus", GATE, 4),
+    (crate::tabs::INTERBUS, "modbus", GATE, 4),
     // The service that gets an attribute.
-    (Tab::Hiperdrive, "enip", DRIVE, 0x0E),
+    (crate::tabs::HIPERDRIVE, "enip", DRIVE, 0x0E),
 ];
 
 /// What can be pressed or typed into, by its name, where only one has it: which widget it is.
@@ -61,12 +61,12 @@ fn what_appears_elsewhere_exchanges_no_button() {
         let mut screen = Screen::opened_in(tab, &format!("{scheme}:{port}"), SIZE);
         ready(&mut screen);
         let id = screen.studio().shown().unwrap().id();
-        if tab == Tab::Interbus {
+        if tab == crate::tabs::INTERBUS {
             // Else it is not read.
             screen.act(Action::device(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
-        for page in encoder_studio::kinds::TABS.page_words(tab) {
+        for page in encoder_studio::kinds::program().tabs.page_words(tab) {
             screen.click(page);
             let before = widgets(&screen);
             screen.act(Action::NoThread("told".to_owned()));

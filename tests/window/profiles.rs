@@ -1,5 +1,6 @@
 //! Profiles: saved as the encoder is, opened beside it, edited without one.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 
@@ -9,7 +10,7 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, PendingEdits, Severity, Studio};
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::program;
 use encoder_studio::profile::Document;
 use encoder_studio::store::read_text;
 
@@ -33,8 +34,11 @@ fn open(desk: &mut Desk, path: &std::path::Path) {
 #[test]
 fn a_saved_profile_is_the_encoder() {
     let (desk, path) = saved();
-    let profile =
-        Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap().body.into_profile::<HiperfaceProfile>().unwrap();
+    let profile = Document::parse(&read_text(&path).unwrap(), program().studio.formats)
+        .unwrap()
+        .body
+        .into_profile::<HiperfaceProfile>()
+        .unwrap();
     assert_eq!(profile.identity.serial_number, "GB0450179");
     assert_eq!(profile.fields, desk.encoder().staged.device());
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..], desk.wire().field(0));
@@ -60,8 +64,11 @@ fn a_profile_of_an_encoder_holds_what_it_has_and_says_what_is_not_in_it() {
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", saved);
     assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_without"]));
-    let profile =
-        Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap().body.into_profile::<HiperfaceProfile>().unwrap();
+    let profile = Document::parse(&read_text(&path).unwrap(), program().studio.formats)
+        .unwrap()
+        .body
+        .into_profile::<HiperfaceProfile>()
+        .unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..2], *b"EM");
     let words = desk.studio.services.log.standing().unwrap().texts[1].words(encoder_studio::app::Language::English);
     assert!(words.contains('2'), "{words}");
@@ -161,8 +168,11 @@ fn a_profile_read_again_keeps_its_edits() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "(");
     desk.act(Action::Resolve(Resolve::KeepMine));
     desk.until("the edit is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
-    let profile =
-        Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap().body.into_profile::<HiperfaceProfile>().unwrap();
+    let profile = Document::parse(&read_text(&path).unwrap(), program().studio.formats)
+        .unwrap()
+        .body
+        .into_profile::<HiperfaceProfile>()
+        .unwrap();
     assert_eq!(profile.fields[0].bytes.as_ref().unwrap()[..3], *b"XND");
 }
 
@@ -316,7 +326,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
-    let document = Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap();
+    let document = Document::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap();
     assert!(document.note.as_ref().is_some_and(|note| note.contains("did not answer")), "{:?}", document.note);
     let profile = document.body.into_profile::<HiperfaceProfile>().unwrap();
     assert_eq!((profile.fields, &profile.identity.serial_number[..]), (fields, "GB0450179"), "without the edit");

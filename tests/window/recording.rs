@@ -1,5 +1,6 @@
 //! What is recorded of a polled encoder, and what can be done with it.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::time::Duration;

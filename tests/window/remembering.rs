@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use encoder_studio::app::{Action, Language, Settings, Severity, Tab, Theme};
+use encoder_studio::app::{Action, Language, Settings, Severity, Theme};
 
 use crate::support::{Desk, OTHER_PORT, PORT};
 
@@ -33,7 +33,7 @@ fn looks_language_layout_and_links_survive() {
     let desk = desk.crash();
     assert_eq!(desk.studio.settings, settings);
     assert_eq!(
-        settings.links(Tab::Hiperface),
+        settings.links(crate::tabs::HIPERFACE),
         [format!("serial:{OTHER_PORT}"), format!("serial:{PORT}"), "sim:".to_owned()]
     );
     assert_eq!((settings.theme, settings.language, settings.size), (Theme::Light, Language::German, Some((1500, 900))));
@@ -46,7 +46,7 @@ fn a_link_that_did_not_open_is_not_remembered() {
     desk.open("serial:/dev/nothing");
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
     assert_eq!(desk.told(Severity::Error), ["link.not_found"]);
-    assert!(desk.studio.settings.links(Tab::Hiperface).is_empty());
+    assert!(desk.studio.settings.links(crate::tabs::HIPERFACE).is_empty());
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn broken_settings_are_told_and_left_until_something_changes() {
         let words = desk.studio.services.log.standing().unwrap().texts[0].words(Language::English);
         assert!(words.contains(&path.display().to_string()) && words.contains(&aside.display().to_string()), "{words}");
         let language = if broken.starts_with(b"(") { Language::German } else { Language::English };
-        let mut expected = Settings::default();
+        let mut expected = Settings::of(encoder_studio::kinds::program().studio);
         expected.language = language;
         assert_eq!(desk.studio.settings, expected);
         assert_eq!(fs::read(&path).unwrap(), broken);
@@ -92,9 +92,9 @@ fn settings_that_cannot_be_read_are_left() {
 fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
-    let mut settings = Settings::default();
+    let mut settings = Settings::of(encoder_studio::kinds::program().studio);
     (settings.theme, settings.size) = (Theme::Light, Some((1500, 900)));
-    settings.use_link(Tab::Hiperface, "tcp:host:1");
+    settings.use_link(crate::tabs::HIPERFACE, "tcp:host:1");
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
     let mut desk = desk.crash();
@@ -116,7 +116,7 @@ fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
     let mut desk = Desk::fresh("codes=0:9D");
     desk.open("sim:?codes=0:9D&margin=21");
     desk.until_read();
-    assert_eq!(desk.studio.settings.links(Tab::Hiperface), ["sim:?margin=21"]);
+    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), ["sim:?margin=21"]);
     kept(&mut desk);
     let log = crate::support::log(&desk.studio);
     assert!(!log.contains("9D"), "{log}");

@@ -1,6 +1,7 @@
 //! Saving into a file that is open: what others wrote there meanwhile is asked about, and what a person wrote between the
 //! entries stays.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
 //! The real window on a desk of the test's own, used by its accessible labels, which are asked of the table of texts.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
@@ -9,7 +10,7 @@ use egui_kittest::{Harness, Node};
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::{Action, Language, Look, Studio, Tab, Text};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder};
-use encoder_studio::kinds::TABS;
+use encoder_studio::kinds::program;
 use encoder_studio::link::LinkUrl;
 use encoder_studio::ui::{Window, install_fonts};
 
@@ -43,7 +44,7 @@ impl Screen {
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
-            Shown(Window::new(studio, Look::built_in().unwrap(), TABS))
+            Shown(Window::new(studio, Look::built_in().unwrap(), program().tabs))
         });
         Screen { harness, outside }
     }

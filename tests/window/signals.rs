@@ -1,5 +1,6 @@
 //! The Signals tab without drawing: captures are read, corrected, refused and given up, and what is shown stays.
 
+use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -7,7 +8,7 @@ use encoder_studio::analysis::capture::{Delimiter, TimeUnit};
 use encoder_studio::analysis::diagnosis::{Finding, What};
 use encoder_studio::analysis::quality::{Family, Finding as Parameter};
 use encoder_studio::analysis::wires::Wire;
-use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio, Tab};
+use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
 use encoder_studio::signals::state::{Action as Signals, Column, Example, Origin, Place, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
@@ -15,13 +16,13 @@ use crate::support::{Desk, Outside};
 
 impl Desk {
     pub(crate) fn signals(&mut self, action: Signals) {
-        self.act(Action::Signals(action));
+        self.act(Action::tool(action));
     }
 
     /// Polls until nothing is read any more.
     #[track_caller]
     pub(crate) fn until_measured(&mut self) {
-        self.until("the capture is read", |studio| studio.signals.reading().is_none());
+        self.until("the capture is read", |studio| studio.signals().reading().is_none());
     }
 
     fn file(&self, name: &str, text: &str) -> PathBuf {
@@ -39,7 +40,7 @@ impl Desk {
 
     #[track_caller]
     fn problem(&self) -> &'static str {
-        self.studio.signals.problem().expect("there is a problem").id()
+        self.studio.signals().problem().expect("there is a problem").id()
     }
 }
 
@@ -54,7 +55,7 @@ pub(crate) fn circle(periods: usize) -> String {
 }
 
 fn shown(studio: &Studio) -> Option<&Origin> {
-    studio.signals.measurement().map(|own| &own.origin)
+    studio.signals().measurement().map(|own| &own.origin)
 }
 
 #[test]
@@ -65,21 +66,21 @@ fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
     desk.open_capture(&path);
     assert_eq!(
         (desk.studio.settings.tab, shown(&desk.studio)),
-        (Tab::Signals, Some(&Origin::Table(Place::File(path.clone()))))
+        (crate::tabs::SIGNALS, Some(&Origin::Table(Place::File(path.clone()))))
     );
-    let measurement = desk.studio.signals.measurement().unwrap().clone();
+    let measurement = desk.studio.signals().measurement().unwrap().clone();
     let analysis = measurement.analysis.as_ref().unwrap();
     assert!((analysis.ellipse.amplitude_v - 0.5).abs() < 1e-9);
     // 100 steps of 10 µs are a period.
     assert!((analysis.frequency_hz().unwrap() - 1000.0).abs() < 1e-6);
-    assert_eq!(desk.studio.signals.findings(), []);
+    assert_eq!(desk.studio.signals().findings(), []);
     desk.act(Action::AskOpen);
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::OpenCapture));
     let other = desk.file("table.txt", &circle(2));
     desk.act(Action::Typed(FileQuestion::OpenCapture, other.clone()));
     desk.until_measured();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(other))));
-    desk.act(Action::ShowTab(Tab::Hiperface));
+    desk.act(Action::ShowTab(crate::tabs::HIPERFACE));
     desk.act(Action::AskOpen);
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Open));
 }
@@ -89,10 +90,10 @@ fn the_examples_are_as_good_as_their_names() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
-    assert_eq!(desk.studio.signals.findings(), []);
+    assert_eq!(desk.studio.signals().findings(), []);
     desk.signals(Signals::Example(Example::WithErrors));
     desk.until_measured();
-    let found = desk.studio.signals.findings();
+    let found = desk.studio.signals().findings();
     for (label, wanted) in [
         ("offset", (|own| matches!(own, What::Limit(Parameter::OffsetCosine(_)))) as fn(&What) -> bool),
         ("gain", |own| matches!(own, What::Limit(Parameter::GainRatio(_)))),
@@ -104,7 +105,7 @@ fn the_examples_are_as_good_as_their_names() {
     // 0.8928 V is within 0.8 … 1.2 V.
     desk.signals(Signals::SetFamily(Family::AfsAfm60));
     desk.until("it is judged again", |studio| {
-        let found = studio.signals.findings();
+        let found = studio.signals().findings();
         !found.is_empty() && !found.iter().any(|own| is_amplitude(&own.what))
     });
 }
@@ -132,12 +133,12 @@ fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
         assert_eq!(desk.problem(), told, "{name}");
         assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::Healthy))), "{name}");
         let lines = text.lines().next().map(str::to_owned).into_iter().collect::<Vec<_>>();
-        assert_eq!(desk.studio.signals.table().unwrap().head.first().cloned().unwrap_or_default(), lines.concat());
+        assert_eq!(desk.studio.signals().table().unwrap().head.first().cloned().unwrap_or_default(), lines.concat());
     }
     let problem = {
         let path = desk.outside.path("broken.csv");
         desk.open_capture(&path);
-        desk.studio.signals.problem().unwrap().terminal()
+        desk.studio.signals().problem().unwrap().terminal()
     };
     // The header is row 1, and 0.05 ms is the sixth sample.
     assert!(problem.contains("row 7, column 2"), "{problem}");
@@ -147,7 +148,7 @@ fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
     assert!(desk.studio.services.log.standing().is_none(), "it stands beside its cause");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
-    assert!(desk.studio.signals.problem().is_none());
+    assert!(desk.studio.signals().problem().is_none());
 }
 
 #[test]
@@ -155,9 +156,9 @@ fn what_was_found_out_is_corrected_and_found_out_again() {
     let mut desk = Desk::fresh("");
     let path = desk.file("columns.csv", "a;b;c;d;e\n0;1;2,5;3;2,5\n1;2;2,5;4;2,5\n2;1;2,5;5;2,5\n");
     desk.open_capture(&path);
-    let capture = |desk: &Desk| desk.studio.signals.measurement().unwrap().capture.clone();
+    let capture = |desk: &Desk| desk.studio.signals().measurement().unwrap().capture.clone();
     assert_eq!(capture(&desk).cosine_v, [2.5, 2.5, 2.5]);
-    let table = desk.studio.signals.table().unwrap();
+    let table = desk.studio.signals().table().unwrap();
     assert_eq!((table.delimiter(), table.width()), (Some(Delimiter::Semicolon), 5));
     for (action, cosine) in [
         (Signals::SetColumn(Column::Cosine, Some(4)), [3.0, 4.0, 5.0]),
@@ -185,7 +186,7 @@ fn what_was_found_out_is_corrected_and_found_out_again() {
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(path))), "what was read last is still shown");
     desk.signals(Signals::Detect);
     desk.until_measured();
-    assert!(desk.studio.signals.problem().is_none());
+    assert!(desk.studio.signals().problem().is_none());
 }
 
 #[test]
@@ -201,7 +202,7 @@ fn data_without_an_ellipse_are_shown_and_refused_with_the_reason() {
     ] {
         let path = desk.file(name, &text);
         desk.open_capture(&path);
-        let measurement = desk.studio.signals.measurement().unwrap();
+        let measurement = desk.studio.signals().measurement().unwrap();
         assert!(measurement.raw.is_some() && measurement.corrected.is_none(), "{name}");
         assert_eq!(measurement.refusal(Language::English).map(|why| why.id()), Some(told), "{name}");
     }
@@ -216,10 +217,10 @@ fn reading_is_given_up_and_a_stale_capture_is_dropped() {
     desk.act(Action::Open(large.clone()));
     assert!(desk.studio.can_stop());
     desk.act(Action::Escape);
-    assert!(desk.studio.signals.reading().is_some_and(encoder_studio::signals::state::Reading::is_cancelled));
+    assert!(desk.studio.signals().reading().is_some_and(encoder_studio::signals::state::Reading::is_cancelled));
     desk.until_measured();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::Healthy))));
-    assert_eq!(desk.studio.signals.table().unwrap().place, Place::Example(Example::Healthy));
+    assert_eq!(desk.studio.signals().table().unwrap().place, Place::Example(Example::Healthy));
     assert_eq!(desk.told(Severity::Note), ["signal.cancelled"]);
     assert!(!desk.studio.can_stop());
     // The later one counts, whichever is read sooner.
@@ -239,7 +240,7 @@ fn periods_stay_within_what_can_be() {
     let mut desk = Desk { studio: Outside::new("").studio(), outside: Outside::new("") };
     for (wanted, taken) in [(0, 1), (512, 512), (u32::MAX, 65_536)] {
         desk.signals(Signals::SetPeriods(wanted));
-        assert_eq!(desk.studio.signals.periods(), Some(taken));
+        assert_eq!(desk.studio.signals().periods(), Some(taken));
     }
 }
 
@@ -247,13 +248,13 @@ fn periods_stay_within_what_can_be() {
 fn a_capture_is_put_aside_and_stays_while_others_come() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Keep);
-    assert!(desk.studio.signals.comparison().is_none(), "there is nothing to keep");
+    assert!(desk.studio.signals().comparison().is_none(), "there is nothing to keep");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
     desk.signals(Signals::Keep);
     desk.signals(Signals::Example(Example::WithErrors));
     desk.until_measured();
-    let kept = |studio: &Studio| studio.signals.comparison().map(|own| own.origin.clone());
+    let kept = |studio: &Studio| studio.signals().comparison().map(|own| own.origin.clone());
     assert_eq!(kept(&desk.studio), Some(Origin::Table(Place::Example(Example::Healthy))));
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::WithErrors))));
     desk.signals(Signals::DropComparison);
@@ -273,7 +274,7 @@ impl Desk {
         wanted: impl Fn(&encoder_studio::analysis::signal_analysis::Analysis) -> bool,
     ) {
         self.until(what, |studio| {
-            let shown = studio.signals.measurement().filter(|own| own.origin == Origin::Virtual);
+            let shown = studio.signals().measurement().filter(|own| own.origin == Origin::Virtual);
             shown.and_then(|own| own.analysis.as_ref().ok()).is_some_and(&wanted)
         });
     }
@@ -284,11 +285,11 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Periods, 512.0));
     desk.source(SourceAction::Start);
-    assert_eq!(desk.studio.signals.periods(), Some(512));
+    assert_eq!(desk.studio.signals().periods(), Some(512));
     assert!(desk.studio.can_stop());
     // 512 periods a revolution at one revolution a second, in 0.2 s at 100 kHz.
     desk.until_live("it is measured", |own| own.samples == 20_000 && (own.frequency_hz().unwrap() - 512.0).abs() < 0.1);
-    assert!(is_good(desk.studio.signals.findings()), "{:?}", desk.studio.signals.findings());
+    assert!(is_good(desk.studio.signals().findings()), "{:?}", desk.studio.signals().findings());
     desk.source(SourceAction::Set(Quantity::OffsetSine, 0.05));
     desk.source(SourceAction::Set(Quantity::PhaseError, -7.0));
     desk.until_live("the errors are seen", |own| {
@@ -299,7 +300,7 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
     // What the receiver sees of a channel with an open wire is no signal.
     desk.source(SourceAction::SetOpenWire(Some(Wire::Sin)));
     desk.until("the open wire is refused", |studio| {
-        studio.signals.measurement().is_some_and(|own| own.analysis.is_err())
+        studio.signals().measurement().is_some_and(|own| own.analysis.is_err())
     });
     desk.source(SourceAction::Reset);
     desk.until_live("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
@@ -316,17 +317,17 @@ fn what_is_held_stays_and_what_is_stopped_comes_no_more() {
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |own| own.ellipse.offset_cosine_v.abs() < 1e-3);
     desk.source(SourceAction::Hold(true));
-    let held = desk.studio.signals.measurement().unwrap().clone();
+    let held = desk.studio.signals().measurement().unwrap().clone();
     desk.source(SourceAction::Set(Quantity::OffsetCosine, 0.1));
     let began = std::time::Instant::now();
     desk.until("a second has passed", |_| began.elapsed().as_millis() > 1_000);
-    assert!(std::sync::Arc::ptr_eq(&held, desk.studio.signals.measurement().unwrap()));
+    assert!(std::sync::Arc::ptr_eq(&held, desk.studio.signals().measurement().unwrap()));
     desk.source(SourceAction::Hold(false));
     desk.until_live("it goes on", |own| (own.ellipse.offset_cosine_v - 0.1).abs() < 1e-3);
-    assert_eq!(desk.studio.signals.source().lost(), 0);
+    assert_eq!(desk.studio.signals().source().lost(), 0);
     desk.act(Action::Escape);
-    assert!(!desk.studio.signals.source().is_running() && !desk.studio.can_stop());
-    let last = desk.studio.signals.measurement().unwrap().clone();
+    assert!(!desk.studio.signals().source().is_running() && !desk.studio.can_stop());
+    let last = desk.studio.signals().measurement().unwrap().clone();
     let wakes = || desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);
     // A task that is under way may still come back.
     let began = std::time::Instant::now();
@@ -339,7 +340,7 @@ fn what_is_held_stays_and_what_is_stopped_comes_no_more() {
         assert!(began.elapsed() < crate::support::LONG, "something wakes the window although nothing runs");
     }
     desk.studio.poll();
-    assert!(std::sync::Arc::ptr_eq(&last, desk.studio.signals.measurement().unwrap()));
+    assert!(std::sync::Arc::ptr_eq(&last, desk.studio.signals().measurement().unwrap()));
 }
 
 #[test]
@@ -347,14 +348,14 @@ fn a_setting_out_of_range_is_refused_and_changes_nothing() {
     let mut desk = Desk::fresh("");
     for value in [3.0, -1.0, f64::NAN, f64::INFINITY] {
         desk.source(SourceAction::Set(Quantity::Amplitude, value));
-        assert_eq!(desk.studio.signals.source().problem().unwrap().id(), "source.out_of_range", "{value}");
-        assert_eq!(desk.studio.signals.source().settings().amplitude_v, 0.5);
+        assert_eq!(desk.studio.signals().source().problem().unwrap().id(), "source.out_of_range", "{value}");
+        assert_eq!(desk.studio.signals().source().settings().amplitude_v, 0.5);
     }
     desk.source(SourceAction::Set(Quantity::Amplitude, 0.4));
-    assert!(desk.studio.signals.source().problem().is_none());
+    assert!(desk.studio.signals().source().problem().is_none());
     for (wanted, taken) in [(0, 10), (u32::MAX, 10_000)] {
         desk.source(SourceAction::SetWindow(wanted));
-        assert_eq!(desk.studio.signals.source().window_ms(), taken);
+        assert_eq!(desk.studio.signals().source().window_ms(), taken);
     }
 }
 
@@ -365,10 +366,10 @@ fn a_window_that_nobody_draws_loses_samples_and_says_how_many() {
     desk.source(SourceAction::Start);
     // At most 200 000 samples wait: a fifth of a second at 1 MHz.
     let began = std::time::Instant::now();
-    while desk.studio.signals.source().lost() == 0 && began.elapsed() < crate::support::LONG {
+    while desk.studio.signals().source().lost() == 0 && began.elapsed() < crate::support::LONG {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    assert!(desk.studio.signals.source().lost() > 0);
+    assert!(desk.studio.signals().source().lost() > 0);
     // In a build for tests nobody keeps up with that.
     desk.source(SourceAction::Set(Quantity::Rate, 50_000.0));
     desk.until_live("it goes on", |own| own.samples == 10_000);
@@ -382,11 +383,11 @@ fn a_file_takes_the_place_of_the_virtual_encoder() {
     let path = desk.file("circle.csv", &circle(4));
     desk.act(Action::Open(path.clone()));
     desk.until_measured();
-    assert!(!desk.studio.signals.source().is_running());
+    assert!(!desk.studio.signals().source().is_running());
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(path))));
     desk.source(SourceAction::Start);
     desk.until_live("it is measured again", |_| true);
-    assert!(desk.studio.signals.table().is_none());
+    assert!(desk.studio.signals().table().is_none());
 }
 
 #[test]
@@ -394,13 +395,17 @@ fn the_scope_shows_a_capture_and_the_virtual_encoder_and_is_written_as_a_table_t
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
-    let recorder = |studio: &Studio| studio.recorder(encoder_studio::app::Desk::Signals).unwrap().recorded();
+    let recorder =
+        |studio: &Studio| studio.recorder(encoder_studio::app::Desk::Tool(crate::tabs::SIGNALS)).unwrap().recorded();
     let (from, to) = recorder(&desk.studio).unwrap();
     // 401 rows with a header: 400 samples 5 µs apart.
     assert_eq!(to.nanoseconds_since(from), 399 * 5_000);
     let path = desk.outside.path("scope.csv");
-    let question =
-        FileQuestion::Table { desk: encoder_studio::app::Desk::Signals, visible: false, suggested: path.clone() };
+    let question = FileQuestion::Table {
+        desk: encoder_studio::app::Desk::Tool(crate::tabs::SIGNALS),
+        visible: false,
+        suggested: path.clone(),
+    };
     desk.act(Action::Chosen(question, path.clone()));
     desk.until("it is written", |studio| {
         studio.services.log.notices().any(|notice| notice.texts.iter().any(|text| text.id() == "recorder.written"))
@@ -411,8 +416,8 @@ fn the_scope_shows_a_capture_and_the_virtual_encoder_and_is_written_as_a_table_t
     });
     desk.act(Action::Stop);
     desk.open_capture(&path);
-    assert!(desk.studio.signals.problem().is_none(), "{:?}", desk.studio.signals.problem());
-    let measurement = desk.studio.signals.measurement().unwrap();
+    assert!(desk.studio.signals().problem().is_none(), "{:?}", desk.studio.signals().problem());
+    let measurement = desk.studio.signals().measurement().unwrap();
     assert_eq!(measurement.capture.sine_v.len(), 400);
     // 2 kHz in healthy.csv.
     assert!((measurement.analysis.as_ref().unwrap().frequency_hz().unwrap() - 2_000.0).abs() < 1.0);
@@ -430,9 +435,9 @@ fn what_became_worse_since_the_kept_capture_is_told() {
             What::InterferenceRose { frequency_hz, .. } => (frequency_hz - 8_000.0).abs() < 5.0,
             _ => false,
         };
-        studio.signals.changes().is_some_and(|own| own.worse.iter().any(rose))
+        studio.signals().changes().is_some_and(|own| own.worse.iter().any(rose))
     });
-    let measurement = desk.studio.signals.measurement().unwrap();
+    let measurement = desk.studio.signals().measurement().unwrap();
     let peak = measurement.spectra.as_ref().unwrap().sine.peaks[1];
     assert!((peak.frequency_hz - 8_000.0).abs() < 2.0 && (peak.amplitude_v - 0.02).abs() < 1e-3, "{peak:?}");
 }

@@ -1,11 +1,12 @@
 //! Sine and cosine through an adapter: the virtual one and one behind a network, what is shown of them, and what is said
 //! where there is none.
 
+use crate::tabs::Tabs as _;
 use std::time::Instant;
 
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
-use encoder_studio::app::{Action, Desk as Of, Severity, Studio, Tab};
+use encoder_studio::app::{Action, Desk as Of, Severity, Studio};
 use encoder_studio::buses::bridge::protocol::Request;
 use encoder_studio::signals::state::{Action as Signals, Origin, SourceAction, SourceKind};
 
@@ -21,7 +22,7 @@ fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
 
 /// Samples in the scope, and how many of them do not join the one before; the first of all joins nothing.
 fn recorded(studio: &Studio) -> (u64, usize) {
-    let recorder = studio.recorder(Of::Signals).unwrap();
+    let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.lines()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
     (history.all().end, history.all().filter(is_break).count())
@@ -32,9 +33,9 @@ fn recorded(studio: &Studio) -> (u64, usize) {
 fn the_virtual_adapter_is_measured_like_a_capture() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?bridge=on&rpm=6", 50_000);
-    let measured = |studio: &Studio| studio.signals.measurement().is_some_and(|own| own.analysis.is_ok());
+    let measured = |studio: &Studio| studio.signals().measurement().is_some_and(|own| own.analysis.is_ok());
     desk.until("it is measured", measured);
-    let signals = &desk.studio.signals;
+    let signals = &desk.studio.signals();
     let measurement = signals.measurement().unwrap();
     let name = "virtual adapter".to_owned();
     assert_eq!(measurement.origin, Origin::Adapter { name, is_virtual: true });
@@ -44,13 +45,13 @@ fn the_virtual_adapter_is_measured_like_a_capture() {
         measurement.levels_v.is_none() && measurement.capture.wires.is_none(),
         "there are two signals, not four wires"
     );
-    assert_eq!(desk.studio.recorder(Of::Signals).unwrap().lines().len(), 3);
+    assert_eq!(desk.studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap().lines().len(), 3);
     let streaming = signals.source().streaming().unwrap();
     assert_eq!((streaming.period_ns, streaming.full_scale_microvolt), (20_000, 1_250_000));
     assert_eq!((signals.source().lost(), signals.source().kind()), (0, SourceKind::Adapter));
     desk.signals(Signals::Source(SourceAction::Stop));
-    assert!(!desk.studio.signals.source().is_running());
-    assert!(desk.studio.signals.measurement().is_some(), "what was measured last stays");
+    assert!(!desk.studio.signals().source().is_running());
+    assert!(desk.studio.signals().measurement().is_some(), "what was measured last stays");
     assert!(desk.told(Severity::Warning).is_empty());
 }
 
@@ -61,7 +62,7 @@ fn an_adapter_behind_a_network_streams_without_a_gap_and_is_told_to_stop() {
     for round in 1..=3 {
         begin(&mut desk, &served.link(), 20_000);
         desk.until("a second of it is there", |studio| recorded(studio).0 > 20_000);
-        assert_eq!((recorded(&desk.studio).1, desk.studio.signals.source().lost()), (0, 0), "{round}");
+        assert_eq!((recorded(&desk.studio).1, desk.studio.signals().source().lost()), (0, 0), "{round}");
         desk.signals(Signals::Source(SourceAction::Stop));
         // The next start waits until this one has given the wire back.
     }
@@ -88,11 +89,11 @@ fn a_connection_that_is_closed_is_told_and_can_be_begun_again() {
     begin(&mut desk, &served.link(), 20_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
     served.cut();
-    desk.until("it is told", |studio| !studio.signals.source().is_running());
+    desk.until("it is told", |studio| !studio.signals().source().is_running());
     assert_eq!(desk.told(Severity::Error), ["link.lost"]);
-    assert_eq!(desk.studio.signals.source().adapter_problem().map(|text| text.id()), Some("link.lost"));
+    assert_eq!(desk.studio.signals().source().adapter_problem().map(|text| text.id()), Some("link.lost"));
     desk.signals(Signals::Source(SourceAction::StartAdapter));
-    assert!(desk.studio.signals.source().adapter_problem().is_none());
+    assert!(desk.studio.signals().source().adapter_problem().is_none());
     desk.until("samples come again", |studio| recorded(studio).0 > 100);
 }
 
@@ -111,13 +112,13 @@ fn what_is_wrong_is_said_where_the_link_stands() {
     ] {
         let mut desk = Desk::fresh("");
         begin(&mut desk, link, 10_000);
-        desk.until("it is told", |studio| studio.signals.source().adapter_problem().is_some());
-        let source = desk.studio.signals.source();
+        desk.until("it is told", |studio| studio.signals().source().adapter_problem().is_some());
+        let source = desk.studio.signals().source();
         assert_eq!(source.adapter_problem().map(|text| text.id()), Some(problem), "{link}");
         assert!(!source.is_running(), "{link}");
         assert_eq!(desk.told(Severity::Error), if asked { vec![problem] } else { vec![] }, "{link}");
         desk.signals(Signals::Source(SourceAction::SetLink("sim:".to_owned())));
-        assert!(desk.studio.signals.source().adapter_problem().is_none(), "another link is another try");
+        assert!(desk.studio.signals().source().adapter_problem().is_none(), "another link is another try");
     }
 }
 
@@ -129,8 +130,8 @@ fn the_adapter_that_was_asked_is_remembered_and_one_that_is_none_is_not() {
     desk.act(Action::Close);
     desk.until("the window may close", Studio::may_close);
     let desk = desk.crash();
-    assert_eq!(desk.studio.signals.source().link(), "sim:?rpm=60");
-    assert!(!desk.studio.signals.source().is_running());
+    assert_eq!(desk.studio.signals().source().link(), "sim:?rpm=60");
+    assert!(!desk.studio.signals().source().is_running());
 }
 
 /// The virtual adapter with `supply=switched` gives its encoder nothing until it is told to; 0.3 W at 8 V are 37 mA.
@@ -138,7 +139,7 @@ fn the_adapter_that_was_asked_is_remembered_and_one_that_is_none_is_not() {
 fn the_encoder_is_supplied_as_it_was_chosen_and_only_then() {
     let mut desk = Desk::fresh("");
     let amplitude = |studio: &Studio| {
-        let recorder = studio.recorder(Of::Signals).unwrap();
+        let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
         let vector = recorder.lines().iter().find(|line| line.name.id() == "scope.vector").unwrap();
         let last = recorder.history(vector).unwrap().all().end.checked_sub(1)?;
         Some(recorder.history(vector).unwrap().sample(vector.column(), last)?.value.to_f64())
@@ -147,12 +148,12 @@ fn the_encoder_is_supplied_as_it_was_chosen_and_only_then() {
         desk.signals(Signals::Source(SourceAction::SetSupply(supply)));
         begin(&mut desk, "sim:?supply=switched&rpm=6", 10_000);
         desk.until("samples come", |studio| recorded(studio).0 > 100);
-        assert_eq!(desk.studio.signals.source().streaming().unwrap().supplied, supplied);
+        assert_eq!(desk.studio.signals().source().streaming().unwrap().supplied, supplied);
         assert!((amplitude(&desk.studio).unwrap() - volts).abs() < 0.01, "{supply:?}");
     }
     begin(&mut desk, "sim:?rpm=6", 10_000);
-    desk.until("it is told", |studio| studio.signals.source().adapter_problem().is_some());
-    assert_eq!(desk.studio.signals.source().adapter_problem().map(|text| text.id()), Some("adapter.no_supply"));
+    desk.until("it is told", |studio| studio.signals().source().adapter_problem().is_some());
+    assert_eq!(desk.studio.signals().source().adapter_problem().map(|text| text.id()), Some("adapter.no_supply"));
 }
 
 #[test]
@@ -161,27 +162,27 @@ fn what_runs_goes_on_while_another_link_is_refused_and_the_virtual_encoder_takes
     begin(&mut desk, "sim:?rpm=6", 10_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
     begin(&mut desk, "tcp:host:1", 10_000);
-    let source = desk.studio.signals.source();
+    let source = desk.studio.signals().source();
     assert!(source.is_running() && source.adapter_problem().is_some());
     desk.signals(Signals::Source(SourceAction::Start));
-    let source = desk.studio.signals.source();
+    let source = desk.studio.signals().source();
     assert_eq!((source.is_running(), source.kind()), (true, SourceKind::Encoder));
     desk.until("it is measured", |studio| {
-        studio.signals.measurement().is_some_and(|own| own.origin == Origin::Virtual)
+        studio.signals().measurement().is_some_and(|own| own.origin == Origin::Virtual)
     });
-    assert_eq!(desk.studio.recorder(Of::Signals).unwrap().lines().len(), 7, "the wires are back");
+    assert_eq!(desk.studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap().lines().len(), 7, "the wires are back");
 }
 
 #[test]
 fn the_adapter_is_chosen_started_held_and_stopped() {
     for size in [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]] {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
-        screen.act(Action::ShowTab(Tab::Signals));
+        screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.click("adapter.open");
         screen.look_at_signals();
-        screen.act(Action::Signals(Signals::Source(SourceAction::SetLink("bridge:/dev/there-is-none".to_owned()))));
+        screen.act(Action::tool(Signals::Source(SourceAction::SetLink("bridge:/dev/there-is-none".to_owned()))));
         screen.click("adapter.start");
-        screen.until("it is told", |studio| studio.signals.source().adapter_problem().is_some());
+        screen.until("it is told", |studio| studio.signals().source().adapter_problem().is_some());
         assert!(screen.shows("/dev/there-is-none does not exist."));
         screen.look_at_signals();
         screen.click("adapter.close");
@@ -192,19 +193,19 @@ fn the_adapter_is_chosen_started_held_and_stopped() {
         let began = Instant::now();
         screen.until("it is measured", |studio| {
             assert!(began.elapsed() < LONG);
-            studio.signals.measurement().is_some_and(|own| matches!(own.origin, Origin::Adapter { .. }))
+            studio.signals().measurement().is_some_and(|own| matches!(own.origin, Origin::Adapter { .. }))
         });
         assert!(!screen.has_button("adapter.start"), "the card is closed when the adapter runs");
         assert!(screen.shows(&screen.say("signals.virtual_adapter")) && screen.shows(&screen.say("shell.virtual")));
         assert!(screen.shows(&screen.say("virtual.running")));
         screen.look_at_signals();
         screen.click("virtual.hold");
-        assert!(screen.studio().signals.source().is_held());
+        assert!(screen.studio().signals().source().is_held());
         screen.click("shell.stop");
         assert!(screen.shows(&screen.say("virtual.stopped")));
         assert!(screen.has_button("virtual.again"));
-        screen.act(Action::Signals(Signals::Source(SourceAction::StartAdapter)));
-        assert_eq!(screen.studio().signals.source().kind(), SourceKind::Adapter);
-        assert!(screen.studio().signals.source().is_running());
+        screen.act(Action::tool(Signals::Source(SourceAction::StartAdapter)));
+        assert_eq!(screen.studio().signals().source().kind(), SourceKind::Adapter);
+        assert!(screen.studio().signals().source().is_running());
     }
 }

@@ -1,9 +1,10 @@
 //! A capture beside a reference encoder and with an absolute position: DNL, INL and the offset, as state and drawn.
 
+use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
 
 use encoder_studio::analysis::revolution::RevolutionError;
-use encoder_studio::app::{Action, Tab};
+use encoder_studio::app::Action;
 use encoder_studio::signals::state::{Action as Signals, Column, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
@@ -33,11 +34,11 @@ fn the_reference_column_and_the_periods_tell_dnl_and_inl() {
     desk.signals(Signals::SetPeriods(100));
     desk.act(Action::Open(path));
     desk.until_measured();
-    let told = |desk: &Desk| desk.studio.signals.measurement().unwrap().nonlinearities.clone();
+    let told = |desk: &Desk| desk.studio.signals().measurement().unwrap().nonlinearities.clone();
     assert!(matches!(told(&desk), Some(Err(RevolutionError::Periods { given: 100, .. }))));
     desk.signals(Signals::SetPeriods(64));
     desk.until("it is told", |studio| {
-        let told = studio.signals.measurement().and_then(|own| own.nonlinearities.as_ref());
+        let told = studio.signals().measurement().and_then(|own| own.nonlinearities.as_ref());
         told.is_some_and(|told| told.as_ref().is_ok_and(|told| (told.raw.integral_deg - 0.01).abs() < 1e-4))
     });
     desk.signals(Signals::SetColumn(Column::ReferenceAngle, None));
@@ -45,7 +46,7 @@ fn the_reference_column_and_the_periods_tell_dnl_and_inl() {
     assert_eq!(told(&desk), None);
     desk.signals(Signals::SetColumn(Column::Absolute, Some(4)));
     desk.until_measured();
-    assert_eq!(desk.studio.signals.problem().unwrap().id(), "signal.not_whole");
+    assert_eq!(desk.studio.signals().problem().unwrap().id(), "signal.not_whole");
 }
 
 #[test]
@@ -57,7 +58,7 @@ fn the_virtual_encoder_has_a_reference() {
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Eccentricity, 72.0)));
     desk.signals(Signals::Source(SourceAction::Start));
     desk.until("INL is told", |studio| {
-        let told = studio.signals.measurement().and_then(|own| own.nonlinearities.as_ref());
+        let told = studio.signals().measurement().and_then(|own| own.nonlinearities.as_ref());
         // 72 seconds of arc are 0.02°.
         told.is_some_and(|told| told.as_ref().is_ok_and(|told| (told.corrected.integral_deg - 0.02).abs() < 1e-3))
     });
@@ -66,12 +67,12 @@ fn the_virtual_encoder_has_a_reference() {
 #[test]
 fn both_are_shown_and_the_offset_is_taken_over() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), [1280.0, 1400.0]);
-    screen.act(Action::ShowTab(Tab::Signals));
+    screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("reference.csv");
     std::fs::write(&path, table()).unwrap();
-    screen.act(Action::Signals(Signals::SetPeriods(64)));
+    screen.act(Action::tool(Signals::SetPeriods(64)));
     screen.act(Action::Open(path));
-    screen.until("it is read", |studio| studio.signals.measurement().is_some());
+    screen.until("it is read", |studio| studio.signals().measurement().is_some());
     screen.look_at_signals();
     screen.click("page.error");
     // An offset of 1 % is ±0.573° / 64 = 0.00895°, an eccentricity of 0.01° 36″; 50 samples a period add a little.
@@ -80,9 +81,9 @@ fn both_are_shown_and_the_offset_is_taken_over() {
     screen.click("page.synchronise");
     assert!(screen.shows("All samples of reference.csv"));
     screen.click("synchronise.use_captured");
-    assert_eq!(screen.studio().signals.synchronise().form.offset, "2.50");
-    screen.act(Action::Signals(Signals::Example(encoder_studio::signals::state::Example::Healthy)));
-    screen.until("it is read", |studio| studio.signals.measurement().is_some_and(|own| own.nonlinearities.is_none()));
+    assert_eq!(screen.studio().signals().synchronise().form.offset, "2.50");
+    screen.act(Action::tool(Signals::Example(encoder_studio::signals::state::Example::Healthy)));
+    screen.until("it is read", |studio| studio.signals().measurement().is_some_and(|own| own.nonlinearities.is_none()));
     assert!(screen.shows(&screen.say("synchronise.not_captured")));
     screen.click("page.error");
     assert!(screen.shows(&screen.say("nonlinearity.no_reference")));

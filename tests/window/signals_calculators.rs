@@ -1,8 +1,9 @@
 //! The calculators of the Signals tab as a person uses them: typed and read.
 
+use crate::tabs::Tabs as _;
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::{Action, Language, Tab};
+use encoder_studio::app::{Action, Language};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::screen::Screen;
@@ -14,7 +15,7 @@ const TALL: [f32; 2] = [1400.0, 1600.0];
 impl Screen {
     fn calculator(page: &'static str) -> Self {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), TALL);
-        screen.act(Action::ShowTab(Tab::Signals));
+        screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.click(page);
         screen
     }
@@ -92,29 +93,29 @@ fn both_positions_are_read_from_the_encoder_that_is_shown() {
     screen.until("the encoder is read", |studio| {
         studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
     });
-    screen.act(Action::ShowTab(Tab::Signals));
+    screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.click("page.synchronise");
     for count in [1, 2] {
         screen.click("synchronise.read");
-        screen.until("it is read", |studio| studio.signals.synchronise().readings() == count);
+        screen.until("it is read", |studio| studio.signals().synchronise().readings() == count);
     }
-    let form = &screen.studio().signals.synchronise().form;
+    let form = &screen.studio().signals().synchronise().form;
     assert_eq!((form.absolute.as_str(), form.periods.as_str(), form.turns.as_str()), ("0xC98", "128", "4096"));
     assert_eq!((form.sine_v.as_str(), form.cosine_v.as_str()), ("-0.5010", "-0.0024"));
     // 24 − 32 · 0.749 224 = 0.0248
     assert!(screen.shows("100.74924") && screen.shows("0.02/32"));
     screen.click("synchronise.use");
-    assert_eq!(screen.studio().signals.synchronise().form.offset, "0.02");
+    assert_eq!(screen.studio().signals().synchronise().form.offset, "0.02");
     screen.click("synchronise.forget");
-    assert_eq!(screen.studio().signals.synchronise().readings(), 0);
+    assert_eq!(screen.studio().signals().synchronise().readings(), 0);
 }
 
 #[test]
 fn a_shaft_that_turns_is_no_reading() {
     let mut desk = Desk::begun("rpm=60");
     desk.ask(Hiperface::ReadRest);
-    desk.until("it is told", |studio| studio.signals.synchronise().problem.is_some());
-    let state = desk.studio.signals.synchronise();
+    desk.until("it is told", |studio| studio.signals().synchronise().problem.is_some());
+    let state = desk.studio.signals().synchronise();
     assert_eq!((state.problem.as_ref().unwrap().id(), state.readings()), ("encoder.moving", 0));
     assert!(desk.encoder().commutation.problem.is_none(), "it was not asked there");
 }

@@ -1,5 +1,6 @@
 //! The virtual encoder without drawing: held, stopped, set anew and started while something else is under way.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
 use encoder_studio::app::{Action, Desk as Of, Studio};
@@ -11,7 +12,7 @@ use crate::support::Desk;
 
 /// Samples in the scope, and which of them do not join the one before.
 fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
-    let recorder = studio.recorder(Of::Signals).unwrap();
+    let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.lines()[0]).unwrap();
     let is_break = |at: &u64| history.sample(0, *at).is_some_and(|own| own.flags.contains(Flags::BREAK));
     (history.all().end, history.all().filter(is_break).collect())
@@ -39,37 +40,43 @@ fn what_passed_while_it_was_held_is_a_gap_in_the_scope() {
 fn periods_are_not_assumed() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
-    desk.until("it is measured", |studio| studio.signals.reading().is_none() && studio.signals.measurement().is_some());
-    let judged = |studio: &Studio| studio.signals.measurement().and_then(|own| own.judge.periods);
-    assert_eq!((desk.studio.signals.periods(), judged(&desk.studio)), (None, None));
+    desk.until("it is measured", |studio| {
+        studio.signals().reading().is_none() && studio.signals().measurement().is_some()
+    });
+    let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.judge.periods);
+    assert_eq!((desk.studio.signals().periods(), judged(&desk.studio)), (None, None));
     desk.signals(Signals::SetPeriods(512));
     desk.signals(Signals::Example(Example::WithErrors));
-    desk.until("it is measured", |studio| studio.signals.reading().is_none() && studio.signals.measurement().is_some());
-    assert_eq!(desk.studio.signals.periods(), Some(512), "what was typed stays");
+    desk.until("it is measured", |studio| {
+        studio.signals().reading().is_none() && studio.signals().measurement().is_some()
+    });
+    assert_eq!(desk.studio.signals().periods(), Some(512), "what was typed stays");
     desk.signals(Signals::Source(SourceAction::Start));
-    assert!(desk.studio.signals.periods().is_some());
+    assert!(desk.studio.signals().periods().is_some());
     desk.signals(Signals::Source(SourceAction::Stop));
     desk.signals(Signals::Example(Example::Healthy));
-    desk.until("it is measured", |studio| studio.signals.reading().is_none() && studio.signals.measurement().is_some());
-    assert_eq!(desk.studio.signals.periods(), None);
+    desk.until("it is measured", |studio| {
+        studio.signals().reading().is_none() && studio.signals().measurement().is_some()
+    });
+    assert_eq!(desk.studio.signals().periods(), None);
 }
 
 #[test]
 fn periods_of_the_source_count_for_what_is_shown_also_while_it_stands() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Start));
-    desk.until("it is measured", |studio| studio.signals.measurement().is_some());
+    desk.until("it is measured", |studio| studio.signals().measurement().is_some());
     desk.signals(Signals::Source(SourceAction::Stop));
-    let judged = |studio: &Studio| studio.signals.measurement().and_then(|own| own.judge.periods);
+    let judged = |studio: &Studio| studio.signals().measurement().and_then(|own| own.judge.periods);
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, 512.0)));
     desk.until("it is judged again", |studio| judged(studio) == Some(512));
     desk.signals(Signals::SetPeriods(16));
     desk.until("it is judged again", |studio| judged(studio) == Some(16));
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Periods, -1.0)));
-    assert_eq!(desk.studio.signals.periods(), Some(16), "what is refused changes nothing");
+    assert_eq!(desk.studio.signals().periods(), Some(16), "what is refused changes nothing");
     desk.signals(Signals::Source(SourceAction::Reset));
-    assert_eq!(desk.studio.signals.source().settings().periods, 1024.0);
-    assert_eq!(desk.studio.signals.periods(), Some(1024));
+    assert_eq!(desk.studio.signals().source().settings().periods, 1024.0);
+    assert_eq!(desk.studio.signals().periods(), Some(1024));
     desk.until("it is judged again", |studio| judged(studio) == Some(1024));
 }
 
@@ -79,14 +86,14 @@ fn lost_samples_are_told_until_the_next_start() {
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000_000.0)));
     desk.signals(Signals::Source(SourceAction::Start));
     let began = std::time::Instant::now();
-    while desk.studio.signals.source().lost() == 0 && began.elapsed() < crate::support::LONG {
+    while desk.studio.signals().source().lost() == 0 && began.elapsed() < crate::support::LONG {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     desk.signals(Signals::Source(SourceAction::Stop));
-    assert!(desk.studio.signals.source().lost() > 0);
+    assert!(desk.studio.signals().source().lost() > 0);
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000.0)));
     desk.signals(Signals::Source(SourceAction::Start));
-    assert_eq!(desk.studio.signals.source().lost(), 0);
+    assert_eq!(desk.studio.signals().source().lost(), 0);
 }
 
 #[test]
@@ -95,15 +102,15 @@ fn a_file_that_is_being_read_does_not_take_the_place_of_a_source_started_meanwhi
     let path = desk.outside.path("large.csv");
     std::fs::write(&path, circle(2_000)).unwrap();
     desk.act(Action::Open(path));
-    assert!(desk.studio.signals.reading().is_some());
+    assert!(desk.studio.signals().reading().is_some());
     desk.signals(Signals::Source(SourceAction::Start));
-    assert!(desk.studio.signals.reading().is_none());
+    assert!(desk.studio.signals().reading().is_none());
     let began = std::time::Instant::now();
     desk.until("a file would have been read", |studio| {
-        assert!(studio.signals.source().is_running());
-        began.elapsed().as_secs() >= 2 && studio.signals.measurement().is_some()
+        assert!(studio.signals().source().is_running());
+        began.elapsed().as_secs() >= 2 && studio.signals().measurement().is_some()
     });
-    assert_eq!(desk.studio.signals.measurement().unwrap().origin, Origin::Virtual);
+    assert_eq!(desk.studio.signals().measurement().unwrap().origin, Origin::Virtual);
 }
 
 #[test]
@@ -113,13 +120,13 @@ fn a_kept_capture_keeps_no_samples() {
     std::fs::write(&path, circle(1_500)).unwrap();
     desk.act(Action::Open(path));
     desk.until_measured();
-    let samples = std::sync::Arc::downgrade(&desk.studio.signals.measurement().unwrap().capture);
+    let samples = std::sync::Arc::downgrade(&desk.studio.signals().measurement().unwrap().capture);
     desk.signals(Signals::Keep);
     desk.signals(Signals::Example(encoder_studio::signals::state::Example::Healthy));
     desk.until_measured();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
     // A circle of 100 samples a period.
-    assert_eq!(desk.studio.signals.comparison().unwrap().analysis.as_ref().unwrap().samples, 150_001);
+    assert_eq!(desk.studio.signals().comparison().unwrap().analysis.as_ref().unwrap().samples, 150_001);
 }
 
 #[test]
@@ -129,11 +136,11 @@ fn a_kept_capture_is_judged_by_the_limits_that_are_chosen() {
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 0.42)));
     desk.signals(Signals::SetFamily(Family::AfsAfm60));
     desk.signals(Signals::Source(SourceAction::Start));
-    desk.until("it is measured", |studio| studio.signals.measurement().is_some());
+    desk.until("it is measured", |studio| studio.signals().measurement().is_some());
     desk.signals(Signals::Keep);
     desk.signals(Signals::Source(SourceAction::Stop));
     desk.signals(Signals::SetFamily(Family::Hiperface));
-    desk.until("it is judged again", |studio| !studio.signals.findings().is_empty());
-    let changes = desk.studio.signals.changes().unwrap();
+    desk.until("it is judged again", |studio| !studio.signals().findings().is_empty());
+    let changes = desk.studio.signals().changes().unwrap();
     assert!(changes.worse.is_empty(), "it is the same capture: {changes:?}");
 }

@@ -1,8 +1,9 @@
 //! The Signals tab's real widgets, by their accessible labels.
 
+use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::{Action, Language, Tab, Theme};
+use encoder_studio::app::{Action, Language, Theme};
 use encoder_studio::signals::state::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
@@ -13,8 +14,8 @@ const SIZES: [[f32; 2]; 3] = [[1280.0, 800.0], [1024.0, 640.0], [960.0, 540.0]];
 
 impl Screen {
     fn signals(&mut self, action: Signals) {
-        self.act(Action::Signals(action));
-        self.until("it is read", |studio| studio.signals.reading().is_none());
+        self.act(Action::tool(action));
+        self.until("it is read", |studio| studio.signals().reading().is_none());
     }
 
     #[track_caller]
@@ -23,7 +24,7 @@ impl Screen {
             for theme in [Theme::Dark, Theme::Light] {
                 self.act(Action::SetLanguage(language));
                 self.act(Action::SetTheme(theme));
-                for page in encoder_studio::kinds::TABS.page_words(Tab::Signals) {
+                for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::SIGNALS) {
                     self.click(page);
                     self.check_language();
                 }
@@ -38,7 +39,7 @@ impl Screen {
 fn every_page_is_drawn_at_every_size_with_a_capture_and_without() {
     for size in SIZES {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
-        screen.act(Action::ShowTab(Tab::Signals));
+        screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.look_at_signals();
         assert!(screen.shows(&screen.say("signals.nothing")));
         assert!(!screen.shows(&screen.say("shell.empty")), "it needs no session");
@@ -64,14 +65,14 @@ fn the_tab_is_reached_by_key_and_by_click_and_filled_by_an_example() {
     let mut screen = Screen::begun(SIZES[0]);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Num6);
     screen.steps();
-    assert_eq!(screen.studio().settings.tab, Tab::Signals);
+    assert_eq!(screen.studio().settings.tab, crate::tabs::SIGNALS);
     assert!(!screen.has_button("page.memory") && screen.has_button("page.quality"));
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Num1);
     screen.steps();
     assert!(screen.has_button("page.memory") && !screen.has_button("page.quality"));
     screen.click("tab.signals");
     screen.click("signals.example_errors");
-    screen.until("it is read", |studio| studio.signals.measurement().is_some());
+    screen.until("it is read", |studio| studio.signals().measurement().is_some());
     assert!(screen.shows("outside 0.9 … 1.1 V"));
     // 2 · 0.5 / 1.12 V and 40 mV of 0.5 V, as the example was made.
     assert!(screen.shows("0.8928 V") && screen.shows("8.00 %"));
@@ -83,7 +84,7 @@ fn the_tab_is_reached_by_key_and_by_click_and_filled_by_an_example() {
 #[test]
 fn the_figure_tells_its_value_and_is_shown_corrected() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
-    screen.act(Action::ShowTab(Tab::Signals));
+    screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(Example::WithErrors));
     let value = |screen: &Screen| {
         let label = screen.say("quality.lissajous");
@@ -104,11 +105,11 @@ fn the_figure_tells_its_value_and_is_shown_corrected() {
 #[test]
 fn a_failed_capture_is_said_on_every_page() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
-    screen.act(Action::ShowTab(Tab::Signals));
+    screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("broken.csv");
     std::fs::write(&path, "t,sin,cos\n0,1,2\n1,oops,3\n").unwrap();
     screen.act(Action::Open(path));
-    screen.until("it is refused", |studio| studio.signals.problem().is_some());
+    screen.until("it is refused", |studio| studio.signals().problem().is_some());
     for page in ["page.scope", "page.quality", "page.error", "page.synchronise", "page.input_circuit"] {
         screen.click(page);
         assert!(screen.shows("row 3, column 2"), "{page}");
@@ -118,7 +119,7 @@ fn a_failed_capture_is_said_on_every_page() {
 #[test]
 fn periods_are_typed_and_refused_in_words() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
-    screen.act(Action::ShowTab(Tab::Signals));
+    screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(Example::Healthy));
     let label = screen.say("quality.periods_per_turn");
     let type_in = |screen: &mut Screen, text: &str| {
@@ -135,19 +136,19 @@ fn periods_are_typed_and_refused_in_words() {
         screen.key(Key::Enter);
     };
     type_in(&mut screen, "512");
-    assert_eq!(screen.studio().signals.periods(), Some(512));
+    assert_eq!(screen.studio().signals().periods(), Some(512));
     type_in(&mut screen, "0");
-    assert_eq!(screen.studio().signals.periods(), Some(512));
+    assert_eq!(screen.studio().signals().periods(), Some(512));
     assert!(screen.shows("\"0\" is no whole number from 1 to 65536."));
     type_in(&mut screen, "64");
-    assert_eq!(screen.studio().signals.periods(), Some(64));
+    assert_eq!(screen.studio().signals().periods(), Some(64));
     assert!(!screen.shows("is no whole number"));
 }
 
 #[test]
 fn a_capture_is_kept_and_compared_in_two_columns() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
-    screen.act(Action::ShowTab(Tab::Signals));
+    screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(Example::WithErrors));
     screen.click("compare.keep");
     assert!(!screen.is_enabled("compare.keep"), "it would be compared with itself");
@@ -160,14 +161,14 @@ fn a_capture_is_kept_and_compared_in_two_columns() {
     screen.click("page.error");
     assert!(screen.shows(&screen.say("error.kept_raw")));
     screen.click("compare.drop");
-    assert!(screen.studio().signals.comparison().is_none());
+    assert!(screen.studio().signals().comparison().is_none());
     assert!(!screen.shows(&screen.say("error.kept_raw")));
 }
 
 #[test]
 fn a_pair_of_voltages_is_looked_up_both_ways() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
-    screen.act(Action::ShowTab(Tab::Signals));
+    screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(Example::Healthy));
     screen.click("page.error");
     // Section 3: 7.93e-5 rad with 32 intervals, 16.27 bits. The arctangent of 0.25 / 0.433 is 30.0007°.
@@ -178,10 +179,10 @@ fn a_pair_of_voltages_is_looked_up_both_ways() {
 fn the_virtual_encoder_is_started_set_held_and_stopped() {
     for size in SIZES {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
-        screen.act(Action::ShowTab(Tab::Signals));
+        screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.click("virtual.start");
         let measured = |studio: &encoder_studio::app::Studio| {
-            studio.signals.measurement().is_some_and(|own| own.origin == Origin::Virtual)
+            studio.signals().measurement().is_some_and(|own| own.origin == Origin::Virtual)
         };
         screen.until("it is measured", measured);
         assert!(screen.shows(&screen.say("shell.virtual")) && screen.shows(&screen.say("virtual.running")));
@@ -192,15 +193,15 @@ fn the_virtual_encoder_is_started_set_held_and_stopped() {
         screen.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 7.0)));
         assert!(screen.shows("Amplitude: 7 is outside 0 … 2 V."));
         screen.click("virtual.hold");
-        assert!(screen.studio().signals.source().is_held());
+        assert!(screen.studio().signals().source().is_held());
         screen.click("virtual.go_on");
-        assert!(!screen.studio().signals.source().is_held());
+        assert!(!screen.studio().signals().source().is_held());
         screen.click("shell.stop");
-        assert!(!screen.studio().signals.source().is_running());
+        assert!(!screen.studio().signals().source().is_running());
         assert!(screen.shows(&screen.say("virtual.stopped")) && screen.has_button("virtual.again"));
         screen.click("signals.source");
         screen.click("signals.example_healthy");
-        screen.until("it is read", |studio| studio.signals.table().is_some());
+        screen.until("it is read", |studio| studio.signals().table().is_some());
         assert!(!screen.shows(&screen.say("shell.virtual")) && !screen.has_button("virtual.settings"));
     }
 }

@@ -1,9 +1,10 @@
 //! The SSI tab by actions: a layout on the drawing board, an encoder behind the virtual adapter, the search for a layout.
 
+use crate::tabs::Tabs as _;
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity, Tab};
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
 use encoder_studio::devices::ssi::protocol::{Code, Doubt, Place, Range};
 use encoder_studio::devices::ssi::state::strip::Handle;
@@ -14,14 +15,14 @@ use crate::support::Desk;
 /// The tab of a desk on which nothing was connected.
 fn layout() -> Desk {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.settle();
     desk
 }
 
 fn connected(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.open(link);
     desk.until("the adapter has told who it is", |studio| {
         studio.ssi().is_some_and(|own| own.identity.is_some() && own.session.is_ready() && own.last().is_some())
@@ -261,7 +262,7 @@ fn the_layout_is_found_live_and_taken() {
 fn a_layout_of_a_profile_is_taken_for_an_encoder() {
     let mut desk = connected("sim:?ssi=ahm36&rpm=6");
     let live = encoder(&desk).session.id;
-    desk.act(Action::NewLayout);
+    desk.act(Action::New(crate::tabs::SSI));
     edit(&mut desk, Edit::Family("ttk70".to_owned()));
     command(&mut desk, DeviceCommand::WriteInto(live));
     assert_eq!(encoder(&desk).session.id, live);
@@ -277,7 +278,7 @@ fn a_layout_of_a_profile_is_taken_for_an_encoder() {
 fn each_new_layout_has_a_name_and_a_draft_of_its_own() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("ttk70".to_owned()));
-    desk.act(Action::NewLayout);
+    desk.act(Action::New(crate::tabs::SSI));
     edit(&mut desk, Edit::Family("kh53".to_owned()));
     desk.settle();
     assert_eq!(desk.studio.devices().iter().map(|own| own.name()).collect::<Vec<_>>(), ["layout.ron", "layout-2.ron"]);
@@ -287,7 +288,7 @@ fn each_new_layout_has_a_name_and_a_draft_of_its_own() {
         desk.act(Action::Confirm);
     }
     for family in ["ttk70", "kh53"] {
-        desk.act(Action::NewLayout);
+        desk.act(Action::New(crate::tabs::SSI));
         desk.until("what was begun is back", |studio| {
             studio.ssi().unwrap().designer.family().is_some_and(|own| own.key == family)
         });
@@ -324,7 +325,7 @@ fn an_encoder_is_called_by_its_family() {
 #[test]
 fn an_adapter_without_ssi_is_named() {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.open("sim:?version=2");
     desk.until("it is told", |studio| {
         studio.shown().is_some_and(|own| matches!(own.phase(), Phase::Silent(_) | Phase::Lost(_)))
@@ -393,7 +394,7 @@ fn families_of_the_users_own_are_known_and_broken_ones_told() {
     let text = std::fs::read_to_string(source).unwrap();
     std::fs::write(folder.join("mine.ron"), text.replace("key: \"ahm36\"", "key: \"mine\"")).unwrap();
     std::fs::write(folder.join("broken.ron"), "(key: ").unwrap();
-    desk.act(Action::ShowTab(Tab::Ssi));
+    desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.until("it is known", |studio| studio.ssi().unwrap().designer.families().named("mine").is_some());
     edit(&mut desk, Edit::Family("mine".to_owned()));
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "mine");

@@ -4,7 +4,7 @@ use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, JobEnd, Severity, Tab};
+use encoder_studio::app::{Action, JobEnd, Severity};
 use encoder_studio::devices::hiperface::protocol::FreeMemory;
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::link::{Direction, LinkUrl};
@@ -28,7 +28,7 @@ fn it_begins_with_the_virtual_encoder_read_and_polling_off() {
     assert_eq!(encoder.session.line().unwrap().polling(), None);
     assert!(!desk.studio.can_stop() && !desk.studio.is_live());
     assert!(desk.told(Severity::Warning).is_empty());
-    assert_eq!(desk.studio.settings.links(Tab::Hiperface), ["sim:"]);
+    assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), ["sim:"]);
 }
 
 #[test]

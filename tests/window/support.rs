@@ -1,5 +1,6 @@
 //! A desk for the window's state: a studio in a world of the test's own, with two cables and a link that hangs for ever.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::{Given, Opener};
 use std::collections::BTreeMap;
@@ -21,7 +22,7 @@ use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder, Review, ReviewState};
 use encoder_studio::devices::interbus::jobs as interbus;
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::program;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::store::{Folders, Store};
 use encoder_studio::worker::Session;
@@ -151,7 +152,7 @@ impl Outside {
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
             folders: Folders::at(&self.path("work"), &self.path("home")),
-            ..World::real(self.store(), FORMATS)
+            ..World::real(self.store(), program().studio)
         }
     }
 

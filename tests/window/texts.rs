@@ -1,6 +1,7 @@
 //! Every text that comes up in these tests is complete in both languages: it is in the table, each place of it is filled
 //! in, and no name of the table stands twice.
 
+use crate::tabs::Tabs as _;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
@@ -91,10 +92,10 @@ pub(crate) fn check_all(studio: &Studio) {
         if let Some(Err(why)) = &dialog.ports {
             check(why);
         }
-        dialog.search.iter().filter_map(|search| search.end.as_ref()).for_each(check);
+        crate::tabs::search(dialog).into_iter().filter_map(|search| search.end.as_ref()).for_each(check);
     }
-    studio.signals.problem().into_iter().for_each(check);
-    studio.signals.source().problem().into_iter().for_each(check);
+    studio.signals().problem().into_iter().for_each(check);
+    studio.signals().source().problem().into_iter().for_each(check);
     studio.devices().iter().filter_map(|own| own.get()).for_each(check_encoder);
 }
 

@@ -2,17 +2,18 @@
 //! what the other writes, and limits that are unconfirmed in one lock the other.
 
 use crate::hiperdrive::command;
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use encoder_studio::app::{Action, Language, Settings, Studio, Tab, Theme, World};
+use encoder_studio::app::{Action, Language, Settings, Studio, Theme, World};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure, Motor};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::program;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
 
@@ -53,7 +54,7 @@ fn says(desk: &Desk, words: &[&str]) -> bool {
 }
 
 fn with_drives(desk: &mut Desk) {
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open(HUB);
     until_read(desk);
 }
@@ -86,10 +87,10 @@ fn is_locked(desk: &Desk) -> bool {
 fn what_each_window_has_changed_survives_the_others_write() {
     let (mut first, mut second) = two();
     first.act(Action::SetTheme(Theme::Light));
-    first.studio.settings.use_link(Tab::Hiperface, "tcp:first:1");
+    first.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:first:1");
     second.act(Action::SetLanguage(Language::German));
     second.act(Action::KeepSize(1500, 900));
-    second.studio.settings.use_link(Tab::Hiperface, "tcp:second:1");
+    second.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:second:1");
     let all = ["Light", "German", "1500", "tcp:first:1", "tcp:second:1"];
     together([&mut first, &mut second], "both are kept", |first, _| says(first, &all));
     first.act(Action::KeepLayout("(a layout)".to_owned()));
@@ -97,7 +98,7 @@ fn what_each_window_has_changed_survives_the_others_write() {
     let kept = found(&first);
     assert_eq!((kept.theme, kept.language, kept.size), (Theme::Light, Language::German, Some((1500, 900))));
     assert_eq!(kept.layout.as_deref(), Some("(a layout)"));
-    let mut links = kept.links(Tab::Hiperface).to_vec();
+    let mut links = kept.links(crate::tabs::HIPERFACE).to_vec();
     links.sort();
     assert_eq!(links, ["tcp:first:1", "tcp:second:1"]);
     // Nothing changes under the hands of a person.
@@ -188,7 +189,7 @@ fn process(desk: &Desk, test: &str, name: &str) -> Child {
 
 fn studio_of_process() -> (Studio, String) {
     let folder = env::var_os(FOLDER).expect("run by a test of this module");
-    let world = World::real(Store::at(folder.as_ref()), FORMATS);
+    let world = World::real(Store::at(folder.as_ref()), program().studio);
     (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
 }
 
@@ -199,7 +200,7 @@ fn a_process_that_uses_links() {
     let path = Store::at(env::var_os(FOLDER).unwrap().as_ref()).settings_path();
     for number in 0..6 {
         let link = format!("tcp:{name}:{number}");
-        studio.settings.use_link(Tab::Hiperface, &link);
+        studio.settings.use_link(crate::tabs::HIPERFACE, &link);
         let began = Instant::now();
         while !fs::read_to_string(&path).is_ok_and(|text| text.contains(&link)) {
             assert!(began.elapsed() < LONG, "{link}");
@@ -216,7 +217,7 @@ fn processes_that_write_at_once_lose_nothing() {
     for mut window in windows {
         assert!(window.wait().unwrap().success());
     }
-    let mut links = found(&desk).links(Tab::Hiperface).to_vec();
+    let mut links = found(&desk).links(crate::tabs::HIPERFACE).to_vec();
     links.sort();
     let expected = ["one", "two"].iter().flat_map(|name| (0..6).map(move |number| format!("tcp:{name}:{number}")));
     assert_eq!(links, expected.collect::<Vec<_>>());
@@ -228,7 +229,7 @@ fn a_process_that_writes_for_ever() {
     let (mut studio, name) = studio_of_process();
     for number in 0_u32.. {
         studio.act(Action::KeepSize(number, 900));
-        studio.settings.use_link(Tab::Biss, &format!("tcp:{name}:{}", number % 7));
+        studio.settings.use_link(crate::tabs::BISS, &format!("tcp:{name}:{}", number % 7));
         studio.poll();
     }
 }
@@ -251,7 +252,9 @@ fn a_process_that_is_killed_leaves_a_whole_file_and_no_lock() {
         window.wait().unwrap();
         let text = fs::read_to_string(&path).unwrap();
         let kept = Settings::parse(&text).expect("a whole file");
-        assert!(kept.size.is_some() && kept.links(Tab::Biss).iter().all(|link| link.starts_with("tcp:killed:")));
+        assert!(
+            kept.size.is_some() && kept.links(crate::tabs::BISS).iter().all(|link| link.starts_with("tcp:killed:"))
+        );
         let layout = format!("(layout {round})");
         desk.act(Action::KeepLayout(layout.clone()));
         desk.until("it is written", |_| fs::read_to_string(&path).is_ok_and(|text| text.contains(&layout)));

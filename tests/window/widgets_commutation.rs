@@ -1,5 +1,6 @@
 //! The commutation page as a person uses it: ticked, typed and clicked.
 
+use crate::tabs::Tabs as _;
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, Language};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;

@@ -1,12 +1,13 @@
 //! Lamps, network and the set-up of an axis as a person uses them: clicked, typed, and said in both languages.
 
+use crate::tabs::Tabs as _;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Node;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
-use encoder_studio::app::{Action, Language, ReviewAction, Studio, Tab, Text, connect};
+use encoder_studio::app::{Action, Language, ReviewAction, Studio, Text, connect};
 use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
@@ -20,7 +21,7 @@ use crate::screen::Screen;
 const TALL: [f32; 2] = [1280.0, 2400.0];
 
 fn page(link: &str, page: &'static str) -> Screen {
-    let mut screen = Screen::opened_in(Tab::Hiperdrive, link, TALL);
+    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, TALL);
     screen.until("it is read", |studio| {
         studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
     });

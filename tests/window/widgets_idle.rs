@@ -1,5 +1,6 @@
 //! Keys, dropped files and the close button of the system; and a window that has nothing to show asks for no picture.
 
+use crate::tabs::Tabs as _;
 use std::time::Duration;
 
 use egui::{Key, Modifiers, ViewportEvent, ViewportId};
@@ -20,7 +21,7 @@ fn next_picture(screen: &Screen) -> Duration {
 #[test]
 fn a_window_with_nothing_to_show_asks_for_no_picture() {
     let mut screen = Screen::begun(SIZE);
-    for page in encoder_studio::kinds::TABS.page_words(encoder_studio::app::Tab::Hiperface) {
+    for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE) {
         screen.click(page);
         for _ in 0..30 {
             screen.harness.step();

@@ -1,10 +1,11 @@
 //! The cam page as a person uses it: by pointer, by key, typed and pasted; chart and table say the same.
 
+use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::{Action, Language, PendingEdits, Tab};
+use encoder_studio::app::{Action, Language, PendingEdits};
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber};
 use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
 
@@ -23,7 +24,7 @@ fn cam(number: u8) -> CamNumber {
 
 /// The cam page of an encoder with 3600 steps a turn and cams of 450 steps in program 1.
 fn page() -> Screen {
-    let mut screen = Screen::opened_in(Tab::Interbus, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
+    let mut screen = Screen::opened_in(crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
     screen.until("it is read", |studio| {
         studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
     });

@@ -1,12 +1,14 @@
 //! Every page, at both sizes, in both themes and languages: it is drawn, and what leads on is in reach.
 
+use crate::tabs::Tabs as _;
 use egui::{Key, Rect, Role, Vec2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, FileQuestion, Language, Studio, Tab, Theme};
+use encoder_studio::app::{Action, FileQuestion, Language, Studio, Theme};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::interbus::state::Action as Interbus;
 use encoder_studio::devices::ssi::state::{Action as Ssi, Edit, Field, Input};
 
@@ -25,7 +27,7 @@ fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
         for theme in [Theme::Dark, Theme::Light] {
             screen.act(Action::SetLanguage(language));
             screen.act(Action::SetTheme(theme));
-            for page in encoder_studio::kinds::TABS.page_words(screen.studio().settings.tab) {
+            for page in encoder_studio::kinds::program().tabs.page_words(screen.studio().settings.tab) {
                 screen.click(page);
                 screen.check_language();
                 for id in ALWAYS {
@@ -54,7 +56,7 @@ fn every_page_is_drawn_with_the_virtual_encoder() {
 #[test]
 fn every_page_is_drawn_with_a_virtual_biss_encoder() {
     for (link, size) in [("sim:?bridge=on", LARGE), ("sim:?errors=0x12&temperature=120", SMALL)] {
-        let mut screen = Screen::opened_in(Tab::Biss, link, size);
+        let mut screen = Screen::opened_in(crate::tabs::BISS, link, size);
         screen.until("it is read", |studio| {
             studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
         });
@@ -69,7 +71,7 @@ fn registers_that_were_never_saved_are_told_with_the_way_back() {
     let outside = Outside::new("");
     outside.wire(KIT).enter(&[("0x6B", 0x2A), ("0x6A", 0x04), ("0x00:0x1A", 0x02), ("0x24:0x10", 0x5A)]);
     let mut studio = outside.studio();
-    studio.settings.tab = Tab::Biss;
+    studio.settings.tab = crate::tabs::BISS;
     studio.begin(Some(format!("serial:{KIT}").parse().unwrap()), None);
     let mut screen = Screen::of(outside, studio, SMALL);
     let is_read = |studio: &Studio| studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some());
@@ -104,7 +106,7 @@ fn a_position_that_is_refused_leaves_the_panel_within_the_window() {
 fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
     for (link, size) in [("sim:?ssi=afm60,code=gray&rpm=6", LARGE), ("sim:?ssi=kh53&ssi-error=overspeed-or-gap", SMALL)]
     {
-        let mut screen = Screen::opened_in(Tab::Ssi, link, size);
+        let mut screen = Screen::opened_in(crate::tabs::SSI, link, size);
         screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.last().is_some()));
         let id = screen.studio().ssi().unwrap().session.id;
         screen.act(Action::device(id, Ssi::Check));
@@ -117,7 +119,7 @@ fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
 fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
     for (link, size) in [("sim:?steps=3600&revolutions=1&cams=demo&rpm=6", LARGE), ("sim:?program=3&cams=demo", SMALL)]
     {
-        let mut screen = Screen::opened_in(Tab::Interbus, link, size);
+        let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);
         screen.until("it is read", |studio| {
             studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
         });
@@ -130,7 +132,7 @@ fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
 
 #[test]
 fn every_page_is_drawn_of_an_interbus_encoder_that_may_not_be_disturbed() {
-    let mut screen = Screen::opened_in(Tab::Interbus, &format!("modbus:{GATE}"), SMALL);
+    let mut screen = Screen::opened_in(crate::tabs::INTERBUS, &format!("modbus:{GATE}"), SMALL);
     screen.until("a word is read", |studio| studio.interbus().is_some_and(|own| own.record.last().is_some()));
     look_at_everything(&mut screen, SMALL);
 }
@@ -138,7 +140,7 @@ fn every_page_is_drawn_of_an_interbus_encoder_that_may_not_be_disturbed() {
 #[test]
 fn every_page_of_an_ssi_layout_is_drawn() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
-    screen.act(Action::ShowTab(Tab::Ssi));
+    screen.act(Action::ShowTab(crate::tabs::SSI));
     look_at_everything(&mut screen, SMALL);
     // Any frame, with all that one can have.
     let id = screen.studio().ssi().unwrap().session.id;
@@ -158,7 +160,7 @@ fn every_page_of_an_ssi_layout_is_drawn() {
 
 #[test]
 fn every_page_is_drawn_with_a_biss_encoder_that_is_not_there() {
-    let mut screen = Screen::opened_in(Tab::Biss, "serial:/dev/nothing", SMALL);
+    let mut screen = Screen::opened_in(crate::tabs::BISS, "serial:/dev/nothing", SMALL);
     screen.until("it is told", |studio| studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_))));
     look_at_everything(&mut screen, SMALL);
 }
@@ -247,7 +249,7 @@ fn the_connection_dialog_opens_by_click_and_closes_with_escape() {
             .type_text("serial:/dev/enc7");
         screen.steps();
         assert!(screen.is_enabled("connect.connect"));
-        assert_eq!(screen.studio().connect.as_ref().unwrap().form.port, "/dev/enc7");
+        assert_eq!(screen.studio().connect.as_ref().unwrap().form::<LinkForm>().unwrap().port, "/dev/enc7");
         screen.key(Key::Escape);
         assert!(screen.studio().connect.is_none());
         assert!(!screen.shows(&screen.say("connect.title")));
@@ -261,7 +263,7 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
     screen.act(Action::Connect(Connect::Use(format!("serial:{PORT}"))));
     screen.click("find.start");
     screen.until("it is over", |studio| {
-        let search = studio.connect.as_ref().and_then(|dialog| dialog.search.as_ref());
+        let search = studio.connect.as_ref().and_then(|dialog| crate::tabs::search(dialog));
         search.is_some_and(|search| !search.is_running())
     });
     let choose = screen.words(&crate::texts::text("find.choose").with("address", "44h"));
@@ -274,7 +276,7 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
 #[test]
 fn f1_helps_and_escape_closes_it() {
     let mut screen = Screen::begun(SMALL);
-    for (page, help) in encoder_studio::kinds::TABS.page_words(Tab::Hiperface).into_iter().zip([
+    for (page, help) in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE).into_iter().zip([
         "help.encoder",
         "help.memory",
         "help.values",
@@ -297,7 +299,7 @@ fn f1_helps_and_escape_closes_it() {
 #[test]
 fn the_language_and_the_theme_are_a_click_away() {
     let mut screen = Screen::begun(LARGE);
-    let pages = encoder_studio::kinds::TABS.page_words(Tab::Hiperface);
+    let pages = encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE);
     let english: Vec<String> = pages.iter().map(|page| screen.say(page)).collect();
     screen.click("shell.language");
     assert_eq!(screen.studio().settings.language, Language::German);

@@ -1,5 +1,6 @@
 //! The plot in the window: its tools by their labels, its chart by the pointer and the keyboard.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
 

@@ -1,5 +1,6 @@
 //! The keys and the dialog with which an open profile is saved.
 
+use crate::tabs::Tabs as _;
 use std::fs;
 
 use egui::{Key, Modifiers};

@@ -1,10 +1,11 @@
 //! The pages of the SSI tab, used as a person uses them: by keys and by what is typed.
 
+use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::Action;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::{Action, Tab};
 use encoder_studio::devices::ssi::state::{Action as Ssi, Try};
 
 use crate::screen::Screen;
@@ -14,7 +15,7 @@ const SIZE: [f32; 2] = [1280.0, 800.0];
 
 fn layout() -> Screen {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SIZE);
-    screen.act(Action::ShowTab(Tab::Ssi));
+    screen.act(Action::ShowTab(crate::tabs::SSI));
     screen
 }
 
@@ -35,7 +36,7 @@ fn a_boundary_that_was_just_moved_is_taken_back_by_key() {
 
 #[test]
 fn words_that_come_while_one_types_are_not_taken_for_what_was_typed() {
-    let mut screen = Screen::opened_in(Tab::Ssi, "sim:?ssi=afs60&rpm=6", SIZE);
+    let mut screen = Screen::opened_in(crate::tabs::SSI, "sim:?ssi=afs60&rpm=6", SIZE);
     screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_following()));
     let id = screen.studio().ssi().unwrap().session.id;
     let last = |screen: &Screen| screen.studio().ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame;

@@ -1,5 +1,6 @@
 //! The way of a byte through the real widgets: edited, reviewed, written, read back; STOP and the questions beside it.
 
+use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;

@@ -1,5 +1,6 @@
 //! Edit, review, write, see the read-back; and nothing is written without that.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, PendingEdits, Severity, Text};
@@ -8,7 +9,7 @@ use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
 use encoder_studio::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState, forms, rules};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::program;
 use encoder_studio::profile::Document;
 use encoder_studio::store::{DeviceKey, Outcome, read_text};
 
@@ -57,7 +58,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     desk.write();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
     let backup = committed.backup.clone().unwrap();
-    let profile = Document::parse(&read_text(&backup).unwrap(), FORMATS)
+    let profile = Document::parse(&read_text(&backup).unwrap(), program().studio.formats)
         .unwrap()
         .body
         .into_profile::<HiperfaceProfile>()
@@ -276,7 +277,7 @@ fn what_comes_late_for_another_encoder_is_dropped() {
     desk.act(Action::Done(Done::Listed(id, other.clone(), listed)));
     assert_eq!(desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
     let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
-    let document = Box::new(Document::parse(&read_text(&path).unwrap(), FORMATS).unwrap());
+    let document = Box::new(Document::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap());
     desk.act(Action::Done(Done::Backup { session: id, of: other, path, result: Ok(document) }));
     assert!(desk.encoder().review.is_none() && !desk.encoder().session.is_busy());
 }

@@ -1,22 +1,24 @@
 //! The connection dialog, carried out.
 
+use super::context::{FinderContext, Next};
+use super::form::AnyForm;
 use super::{Action, Connect, list_ports};
-use crate::app::FileQuestion;
-use crate::app::Text;
+use crate::app::payload::{Payload, WrongKind};
 use crate::app::studio::Studio;
 use crate::app::tab::Tab;
+use crate::app::{FileQuestion, Text};
 
 impl Studio {
     pub(in crate::app) fn act_connect(&mut self, action: Action) {
         match action {
             Action::Open => {
-                let device = match self.settings.tab {
-                    Tab::Signals => self.shown().map_or(Tab::Hiperface, |device| device.tab()),
-                    tab => tab,
-                };
+                let kinds = self.services.world.kinds;
+                let tab = Some(self.settings.tab).filter(|tab| kinds.of_tab(*tab).is_some());
+                let shown = || self.shown().map(|device| device.tab());
+                let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
                 // What was used before comes first.
                 let last = |tab| self.settings.links(tab).first().and_then(|link| link.parse().ok());
-                self.connect = Some(Connect::new(device, last));
+                self.connect = Some(Connect::new(kinds, device, last));
                 self.list_ports();
             }
             Action::Close => self.close_dialog(),
@@ -28,23 +30,15 @@ impl Studio {
             }
             Action::Device(device) => {
                 self.end_search();
-                self.edit(|connect| (connect.device, connect.search, connect.typed) = (device, None, None));
+                self.edit(|connect| (connect.device, connect.typed) = (device, None));
                 self.list_ports();
             }
-            Action::Edit(form) => self.edit(|connect| (connect.form, connect.typed) = (*form, None)),
-            Action::EditBiss(form) => self.edit(|connect| (connect.biss, connect.typed) = (*form, None)),
-            Action::EditSsi(form) => self.edit(|connect| (connect.ssi, connect.typed) = (*form, None)),
-            Action::EditInterbus(form) => self.edit(|connect| (connect.interbus, connect.typed) = (*form, None)),
-            Action::EditHiperdrive(form) => self.edit(|connect| (connect.hiperdrive, connect.typed) = (*form, None)),
-            Action::Discover => self.discover(),
-            Action::ChooseDevice(at) => self.choose_device(at),
+            Action::Edit(entries) => self.take_entries(entries),
+            Action::Find(action) => self.find(action),
             Action::Use(link) => self.edit(|connect| connect.take(link)),
             Action::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
             Action::Recording(path) => self.edit(|connect| {
-                let path = path.display().to_string();
-                (connect.form.file, connect.biss.file) = (path.clone(), path.clone());
-                (connect.ssi.file, connect.interbus.file) = (path.clone(), path.clone());
-                connect.hiperdrive.file = path;
+                connect.forms_mut().for_each(|form| form.set_file(path.display().to_string()));
                 connect.typed = None;
             }),
             Action::Connect => {
@@ -59,13 +53,11 @@ impl Studio {
                     Err(problem) => self.refuse(problem),
                 }
             }
-            Action::Search(options) => self.search_for(options),
             Action::StopSearch => {
-                if let Some(search) = self.connect.as_mut().and_then(|connect| connect.search.as_mut()) {
-                    search.stop();
+                if let Some(connect) = &mut self.connect {
+                    connect.stop();
                 }
             }
-            Action::Choose(at) => self.choose(at),
         }
     }
 
@@ -76,6 +68,70 @@ impl Studio {
         }
     }
 
+    fn take_entries(&mut self, entries: Payload) {
+        let Some(connect) = &mut self.connect else { return };
+        let form = connect.forms_mut().find(|form| form.is_of_form(&entries));
+        if form.is_none_or(|form| form.edit(entries).is_err()) {
+            return self.refuse_kind(None);
+        }
+        self.edit(|connect| connect.typed = None);
+    }
+
+    /// Asks what looks for devices.
+    fn find(&mut self, action: Payload) {
+        let is_its = |form: &dyn AnyForm| form.is_of_finder(&action);
+        let Some((tab, place)) = self.place_of_form(is_its) else { return };
+        let mut fills_in = Ok(false);
+        self.with_finder(tab, place, |form, context| fills_in = form.find(action, context));
+        match fills_in {
+            Ok(true) => self.edit(|connect| connect.typed = None),
+            Ok(false) => {}
+            Err(WrongKind) => self.refuse_kind(None),
+        }
+    }
+
+    /// The user says that no other master is on the line of the form.
+    pub(in crate::app) fn find_confirmed(&mut self) {
+        let Some(device) = self.connect.as_ref().map(|connect| connect.device) else { return };
+        let at = |connect: &Connect| connect.forms.iter().position(|(tab, _)| *tab == device);
+        if let Some(place) = self.connect.as_ref().and_then(at) {
+            self.with_finder(device, place, |form, context| form.confirmed(context));
+        }
+    }
+
+    /// A task of a search has come back.
+    pub(in crate::app) fn finder_done(&mut self, tab: Tab, done: Payload) {
+        let Some(kind) = self.services.world.kinds.of_tab(tab) else { return self.refuse_kind(None) };
+        let forms = self.connect.as_mut().map(|connect| &mut connect.forms);
+        let form = forms.and_then(|forms| forms.iter_mut().find(|(own, _)| *own == tab));
+        let form = form.map(|(_, form)| form.as_mut() as &mut dyn AnyForm);
+        if kind.finder_done(form, done, &mut self.services).is_err() {
+            self.refuse_kind(None);
+        }
+    }
+
+    fn place_of_form(&self, is_it: impl Fn(&dyn AnyForm) -> bool) -> Option<(Tab, usize)> {
+        let forms = &self.connect.as_ref()?.forms;
+        forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
+    }
+
+    /// Hands the rest of the studio to a form of the dialog, and does what that asks for.
+    fn with_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
+        let Some(mut connect) = self.connect.take() else { return };
+        let link = connect.url();
+        let mut context = FinderContext::new(self, link);
+        if let Some((_, form)) = connect.forms.get_mut(place) {
+            act(form.as_mut(), &mut context);
+        }
+        let Next { found, problem } = context.into_next();
+        connect.problem = problem;
+        self.connect = Some(connect);
+        if let Some(url) = found {
+            self.close_dialog();
+            self.open_found(tab, url);
+        }
+    }
+
     /// Looks for the serial ports; those used before for this kind of device come first.
     fn list_ports(&self) {
         if let Some(connect) = &self.connect {
@@ -83,14 +139,20 @@ impl Studio {
         }
     }
 
-    pub(crate) fn refuse(&mut self, problem: Text) {
+    fn refuse(&mut self, problem: Text) {
         if let Some(connect) = &mut self.connect {
             connect.problem = Some(problem);
         }
     }
 
+    fn end_search(&mut self) {
+        if let Some(connect) = &mut self.connect {
+            connect.forms_mut().for_each(|form| drop(form.end(&mut self.services)));
+        }
+    }
+
     /// Closes the dialog; its search ends.
-    pub(crate) fn close_dialog(&mut self) {
+    pub(in crate::app) fn close_dialog(&mut self) {
         self.end_search();
         self.connect = None;
     }

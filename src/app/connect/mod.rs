@@ -1,7 +1,9 @@
-//! The connection dialog: a link as a form, the ports of this machine, and the search for an encoder whose settings nobody
-//! remembers.
+//! The connection dialog: a link as a form, the ports of this machine, and what looks for devices. It knows no kind of
+//! device: each brings its form.
 
 mod act;
+pub mod context;
+pub mod form;
 pub(crate) mod parameters;
 mod ports;
 pub(crate) mod target;
@@ -9,18 +11,17 @@ pub(crate) mod target;
 pub use ports::{Offer, offered_ports};
 pub use target::is_missing;
 
+use std::any::Any;
 use std::path::PathBuf;
 
+use form::{AnyForm, Finder, FormModel};
+
+use super::kinds::Kinds;
+use super::payload::Payload;
 use super::services::Services;
 use super::tab::Tab;
 use super::{Text, explain};
 use crate::app::action::Done;
-use crate::devices::biss::state::BissForm;
-use crate::devices::hiperdrive::state::{Discovery, HiperdriveForm};
-use crate::devices::hiperface::procedures::find::FindOptions;
-use crate::devices::hiperface::state::{LinkForm, Search};
-use crate::devices::interbus::state::InterbusForm;
-use crate::devices::ssi::state::SsiForm;
 use crate::link::LinkUrl;
 
 /// What can be done in the dialog.
@@ -33,20 +34,10 @@ pub enum Action {
     ListPorts,
     /// Another kind of device.
     Device(Tab),
-    /// The form for a HIPERFACE encoder was edited.
-    Edit(Box<LinkForm>),
-    /// The form for a BiSS encoder was edited.
-    EditBiss(Box<BissForm>),
-    /// The form for an SSI encoder was edited.
-    EditSsi(Box<SsiForm>),
-    /// The form for an INTERBUS encoder was edited.
-    EditInterbus(Box<InterbusForm>),
-    /// The form for HIPERDRIVE drives was edited.
-    EditHiperdrive(Box<HiperdriveForm>),
-    /// Ask who is there in this network.
-    Discover,
-    /// Fill in the device that answered.
-    ChooseDevice(usize),
+    /// The form of a kind of device was edited; see [`Action::edit`].
+    Edit(Payload),
+    /// What looks for devices is asked for something; see [`Action::find`].
+    Find(Payload),
     /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),
     /// Ask for a recording.
@@ -55,61 +46,59 @@ pub enum Action {
     Recording(PathBuf),
     /// Connect as the form says.
     Connect,
-    /// Look for encoders on the line of the form.
-    Search(FindOptions),
     /// End the search.
     StopSearch,
-    /// Connect to an encoder that was found.
-    Choose(usize),
+}
+
+impl Action {
+    /// Returns the action that takes an edited form.
+    pub fn edit<F: FormModel>(form: F) -> Self {
+        Action::Edit(Payload::of(form))
+    }
+
+    /// Returns an action of what looks for devices.
+    pub fn find<S: Finder>(action: S::Action) -> Self {
+        Action::Find(Payload::of(action))
+    }
 }
 
 /// The dialog.
 pub struct Connect {
     /// The kind of device.
     pub device: Tab,
-    /// The link to a HIPERFACE encoder as a form.
-    pub form: LinkForm,
-    /// The link to a BiSS encoder as a form.
-    pub biss: BissForm,
-    /// The link to an SSI encoder as a form.
-    pub ssi: SsiForm,
-    /// The link to an INTERBUS encoder as a form.
-    pub interbus: InterbusForm,
-    /// The link to HIPERDRIVE drives as a form.
-    pub hiperdrive: HiperdriveForm,
-    /// Who has answered in this network.
-    pub discovery: Option<Discovery>,
+    kinds: Kinds,
+    forms: Vec<(Tab, Box<dyn AnyForm>)>,
     /// The link as it was typed, until the form is edited; `None`: it is what the form stands for.
     pub typed: Option<String>,
     /// The ports of this machine; `None` while they are being looked for.
     pub ports: Option<Result<Vec<Offer>, Text>>,
     /// Why what was asked for was not done.
     pub problem: Option<Text>,
-    /// The search.
-    pub search: Option<Search>,
 }
 
 impl Connect {
     /// For a kind of device; `last` gives the link that was used last for one.
-    pub(super) fn new(device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
-        let form = LinkForm::from_url(&last(Tab::Hiperface).unwrap_or_else(LinkUrl::sim));
-        let biss = BissForm::from_url(&last(Tab::Biss).unwrap_or_else(BissForm::usual));
-        let ssi = SsiForm::from_url(&last(Tab::Ssi).unwrap_or_else(SsiForm::usual));
-        let interbus = InterbusForm::from_url(&last(Tab::Interbus).unwrap_or_else(InterbusForm::usual));
-        let hiperdrive = HiperdriveForm::from_url(&last(Tab::Hiperdrive).unwrap_or_else(HiperdriveForm::usual));
-        Connect {
-            device,
-            form,
-            biss,
-            ssi,
-            interbus,
-            hiperdrive,
-            discovery: None,
-            typed: None,
-            ports: None,
-            problem: None,
-            search: None,
-        }
+    pub(super) fn new(kinds: Kinds, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
+        let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.form(last(kind.tab())))).collect();
+        Connect { device, kinds, forms, typed: None, ports: None, problem: None }
+    }
+
+    /// Returns the form of that type.
+    pub fn form<F: Any>(&self) -> Option<&F> {
+        self.forms.iter().find_map(|(_, form)| form.form().downcast_ref())
+    }
+
+    /// Returns what looks for devices, of that type.
+    pub fn finder<S: Any>(&self) -> Option<&S> {
+        self.forms.iter().find_map(|(_, form)| form.finder().downcast_ref())
+    }
+
+    fn own(&self) -> Option<&dyn AnyForm> {
+        self.forms.iter().find(|(tab, _)| *tab == self.device).map(|(_, form)| form.as_ref())
+    }
+
+    fn forms_mut(&mut self) -> impl Iterator<Item = &mut Box<dyn AnyForm>> {
+        self.forms.iter_mut().map(|(_, form)| form)
     }
 
     /// The link that was typed, else the one that the form stands for.
@@ -119,39 +108,28 @@ impl Connect {
     pub fn url(&self) -> Result<LinkUrl, Text> {
         match &self.typed {
             Some(link) => self.read(link),
-            None => match self.device {
-                Tab::Biss => self.biss.url(),
-                Tab::Ssi => self.ssi.url(),
-                Tab::Interbus => self.interbus.url(),
-                Tab::Hiperdrive => self.hiperdrive.url(),
-                Tab::Hiperface | Tab::Signals => self.form.url(),
-            },
+            None => self.own().map_or_else(|| Err(Text::new("session.wrong_kind")), AnyForm::url),
         }
     }
 
     /// Why this is no link to the kind of device that is chosen, or the link.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
         let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
-        target::checked(url, |url| self.device.check(url))
+        target::checked(url, |url| self.kinds.of_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
     }
 
     /// A link was typed; the form follows it where it can be used.
     pub(super) fn take(&mut self, link: String) {
-        if let Ok(url) = self.read(&link) {
-            match self.device {
-                Tab::Biss => self.biss = BissForm::from_url(&url),
-                Tab::Ssi => self.ssi = SsiForm::from_url(&url),
-                Tab::Interbus => self.interbus = InterbusForm::from_url(&url),
-                Tab::Hiperdrive => self.hiperdrive = HiperdriveForm::from_url(&url),
-                Tab::Hiperface | Tab::Signals => self.form = LinkForm::from_url(&url),
-            }
+        let (device, url) = (self.device, self.read(&link));
+        if let (Ok(url), Some((_, form))) = (url, self.forms.iter_mut().find(|(tab, _)| *tab == device)) {
+            form.take(&url);
         }
         self.typed = Some(link);
     }
 
-    /// A search for an encoder runs.
+    /// A search for a device runs, on the wire of the form.
     pub fn is_searching(&self) -> bool {
-        self.search.as_ref().is_some_and(Search::is_running)
+        self.forms.iter().any(|(_, form)| form.is_running())
     }
 
     /// The link as text: as it was typed, else as the form stands for it; empty where it stands for none.
@@ -164,13 +142,17 @@ impl Connect {
 
     /// What a link to a device of the chosen kind looks like.
     pub fn example(&self) -> &'static str {
-        match self.device {
-            Tab::Biss if self.biss.is_on_the_bus() => "bridge:/dev/ttyUSB0",
-            Tab::Ssi => "bridge:/dev/ttyUSB0",
-            Tab::Interbus => "modbus:192.168.1.10",
-            Tab::Hiperdrive => "enip:192.168.1.10",
-            Tab::Hiperface | Tab::Biss | Tab::Signals => "serial:/dev/ttyUSB0",
-        }
+        self.own().map(AnyForm::example).unwrap_or_default()
+    }
+
+    /// Looks what searches have come to.
+    pub(super) fn pump(&mut self) {
+        self.forms_mut().for_each(|form| form.pump());
+    }
+
+    /// Stops searches.
+    pub(super) fn stop(&mut self) {
+        self.forms_mut().for_each(|form| form.stop());
     }
 }
 

@@ -22,7 +22,7 @@ use crate::worker;
 type Job<T> = <<T as OnDesk>::Device as worker::Device>::Job;
 
 /// A device, or a profile of one, with everything that is known of it.
-pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
+pub trait DeviceModel: OnLine + Drafted + 'static {
     /// The tab that shows it.
     const TAB: Tab;
 
@@ -199,7 +199,7 @@ pub(crate) trait DeviceModel: OnLine + Drafted + 'static {
 pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
 /// What an action of a device may use beside the device.
-pub(crate) struct ActContext<'a> {
+pub struct ActContext<'a> {
     /// The log, tasks, questions.
     pub(crate) services: &'a mut Services,
     /// The other devices that are open.
@@ -232,7 +232,7 @@ impl<'a> ActContext<'a> {
 }
 
 /// Motion that was asked for in this window. Stop and let-go go this way alone, never as an action of a kind.
-pub(crate) trait MotionControl {
+pub trait MotionControl {
     /// Stops everything that moves.
     fn stop(&mut self);
 
@@ -269,7 +269,7 @@ pub(crate) trait MotionControl {
 }
 
 /// A memory that is written through a review, and saved and restored as a profile.
-pub(crate) trait DeviceMemory {
+pub trait DeviceMemory {
     /// Reviews the write of the edits.
     fn review_edits(&mut self, services: &mut Services);
 

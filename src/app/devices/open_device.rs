@@ -22,7 +22,6 @@ use crate::store::FileError;
 pub type AnyDevice = dyn OpenDevice;
 
 /// What is asked of every device. `DeviceModel` is what a kind implements; this follows from it.
-#[allow(private_interfaces, reason = "devices within this crate alone see these types")]
 pub trait OpenDevice: Any {
     /// Returns what is the same of every session.
     fn state(&self) -> &SessionState;
@@ -128,7 +127,6 @@ pub trait OpenDevice: Any {
     fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services);
 }
 
-#[allow(private_interfaces, reason = "as in the trait")]
 impl<M: DeviceModel> OpenDevice for M {
     fn state(&self) -> &SessionState {
         self.session()

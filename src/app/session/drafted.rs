@@ -15,7 +15,7 @@ const NOT_SAVED: &str = "session.not_saved";
 type Edits<T> = <<T as OnDesk>::Device as Kind>::Edits;
 
 /// Whoever is shown in a session and can be edited.
-pub(crate) trait Drafted: OnDesk {
+pub trait Drafted: OnDesk {
     /// The type and the serial number of the device that was read: another type may have the same number. An empty number
     /// where the device does not say who it is; `None` where nothing has been read.
     fn type_and_serial(&self) -> Option<(String, String)>;

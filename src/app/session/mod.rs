@@ -62,6 +62,16 @@ pub enum Source {
     },
 }
 
+impl Source {
+    /// Returns the name to begin with of what is in no file yet.
+    pub(in crate::app) fn suggested(&self) -> Option<PathBuf> {
+        match self {
+            Source::New { suggested } => Some(suggested.clone()),
+            Source::Link(_) | Source::File { .. } => None,
+        }
+    }
+}
+
 /// How it stands with the connection.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Phase {

@@ -3,7 +3,7 @@
 use super::{Kind, Session};
 
 /// Whoever is shown in a session. What is the same for all rests on this.
-pub(crate) trait OnDesk {
+pub trait OnDesk {
     /// Its kind.
     type Device: Kind;
 

@@ -16,7 +16,7 @@ type Sample<T> = <<T as OnDesk>::Device as Device>::Sample;
 type Doing<T> = <<T as OnDesk>::Device as Device>::Doing;
 
 /// How what was asked for on a line came to an early end.
-pub(crate) enum Cut<'e, E> {
+pub enum Cut<'e, E> {
     /// As the user wished.
     Cancelled(&'e E),
     /// It failed.
@@ -26,7 +26,7 @@ pub(crate) enum Cut<'e, E> {
 }
 
 /// Whoever is at the end of a line.
-pub(crate) trait OnLine: OnDesk {
+pub trait OnLine: OnDesk {
     /// Samples, and how many were dropped before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 

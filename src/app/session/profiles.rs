@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use super::{Guard, ProfileFile, Saving, SessionState, Source};
-use crate::app::FileQuestion;
 use crate::app::action::Done;
 use crate::app::documents::{document_of, read_document, read_profile};
 use crate::app::services::Services;
-use crate::app::{Action, Severity, Text, explain};
+use crate::app::{Action, FileQuestion, Severity, Text, explain};
 use crate::profile::{Body, Document};
 use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, StatusEntry, Store};
 
@@ -46,8 +45,8 @@ impl SessionState {
     pub(crate) fn read_file_again(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
-        let (path, store, formats) = (path.clone(), services.world.store.clone(), services.world.formats);
-        services.tasks.run("read", move || read_document(path, &store, formats));
+        let (path, store, kinds) = (path.clone(), services.world.store.clone(), services.world.kinds);
+        services.tasks.run("read", move || read_document(path, &store, kinds));
         true
     }
 
@@ -69,7 +68,7 @@ impl SessionState {
         };
         let (document, may_lose, is_merged) = (Box::new(document), false, false);
         let saving = Saving { session: self.id, path, document, remarks, opened, may_lose, is_merged };
-        let formats = services.world.formats;
+        let formats = services.world.kinds.formats;
         services.tasks.run("save", move || saving.run(formats));
     }
 
@@ -84,7 +83,7 @@ impl SessionState {
 
     /// Reads a backup of a device, as a task.
     pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
-        let (session, formats) = (self.id, services.world.formats);
+        let (session, formats) = (self.id, services.world.kinds.formats);
         services.tasks.run("backup", move || {
             let result = read_profile(&path, formats).map(Box::new);
             Action::Done(Done::Backup { session, of, path, result })

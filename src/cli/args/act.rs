@@ -7,7 +7,7 @@ use crate::cli::commands::OwnOptions;
 use crate::cli::{Failure, Result};
 
 #[derive(Args)]
-pub(crate) struct Do {
+pub struct Do {
     /// The kind of device.
     pub(in crate::cli) device: String,
     /// What to do.

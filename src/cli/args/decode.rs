@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::commands::OwnOptions;
 
 #[derive(Args)]
-pub(crate) struct Decode {
+pub struct Decode {
     /// The kind of device that the bytes came from or went to, or a protocol.
     pub(in crate::cli) protocol: String,
     /// A frame as hex bytes; several frames as one argument each.

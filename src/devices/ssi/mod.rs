@@ -8,3 +8,8 @@ pub mod protocol;
 pub mod sim;
 pub mod state;
 pub mod views;
+
+use crate::kinds::Kind;
+
+/// The kind, for the list of kinds.
+pub const KIND: Kind = Kind { view: &views::SsiView, commands: &commands::SsiCommands };

@@ -1,13 +1,13 @@
 //! Profiles over texts of a person, of every kind.
 
-use super::FORMATS;
+use super::program;
 use crate::profile::{Carried, Document};
 
 /// The ready-made profiles, by their kinds.
 fn ready_made() -> Vec<(&'static str, String)> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
     let mut found = Vec::new();
-    for kind in FORMATS.kinds() {
+    for kind in program().studio.formats.kinds() {
         for file in std::fs::read_dir(root.join(kind)).unwrap() {
             found.push((kind, std::fs::read_to_string(file.unwrap().path()).unwrap()));
         }
@@ -25,10 +25,11 @@ fn commented(kind: &str) -> String {
 /// Issue 22.26: a save of what was not changed leaves the text as it is, for every kind, whatever its line ends are.
 #[test]
 fn what_is_not_changed_stays_as_it_is_written() {
-    for kind in FORMATS.kinds() {
+    for kind in program().studio.formats.kinds() {
         let text = commented(kind);
         for text in [text.replace('\n', "\r\n"), text] {
-            let carried = Document::parse(&text, FORMATS).unwrap().emit_over(&text, FORMATS);
+            let carried =
+                Document::parse(&text, program().studio.formats).unwrap().emit_over(&text, program().studio.formats);
             assert_eq!(carried, Carried { text, lost: Vec::new() });
         }
     }
@@ -43,9 +44,9 @@ fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
             let lines = text.lines().enumerate().map(|(at, line)| format!("{line}{line_end}// own {at}.{line_end}"));
             let commented: String = lines.collect();
             for (_, other) in all.iter().filter(|(own, _)| own == kind) {
-                let document = Document::parse(other, FORMATS).unwrap();
-                let carried = document.emit_over(&commented, FORMATS);
-                assert_eq!(Document::parse(&carried.text, FORMATS).unwrap().emit(), document.emit());
+                let document = Document::parse(other, program().studio.formats).unwrap();
+                let carried = document.emit_over(&commented, program().studio.formats);
+                assert_eq!(Document::parse(&carried.text, program().studio.formats).unwrap().emit(), document.emit());
                 for at in 0..text.lines().count() {
                     let own = format!("own {at}.");
                     let stays = carried.text.contains(&format!("// {own}"));
@@ -55,7 +56,9 @@ fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
                     assert!(!carried.text.replace("\r\n", "").contains('\n'));
                 }
             }
-            let own = Document::parse(text, FORMATS).unwrap().emit_over(&commented, FORMATS);
+            let own = Document::parse(text, program().studio.formats)
+                .unwrap()
+                .emit_over(&commented, program().studio.formats);
             assert_eq!(own, Carried { text: commented, lost: Vec::new() });
         }
     }
@@ -118,17 +121,17 @@ proptest::proptest! {
         picks in proptest::collection::vec(0_usize..9, 1..200),
     ) {
         let mut all = ready_made();
-        all.extend(FORMATS.kinds().map(|kind| (kind, commented(kind))));
+        all.extend(program().studio.formats.kinds().map(|kind| (kind, commented(kind))));
         let (kind, text) = &all[from % all.len()];
         let others: Vec<&String> = all.iter().filter(|(own, _)| own == kind).map(|(_, text)| text).collect();
-        let document = Document::parse(others[to % others.len()], FORMATS).unwrap();
+        let document = Document::parse(others[to % others.len()], program().studio.formats).unwrap();
         let (spaced, comments) = spaced(text, &picks);
-        let before = Document::parse(&spaced, FORMATS).unwrap();
-        proptest::prop_assert_eq!(before.emit(), Document::parse(text, FORMATS).unwrap().emit());
-        let same = before.emit_over(&spaced, FORMATS);
+        let before = Document::parse(&spaced, program().studio.formats).unwrap();
+        proptest::prop_assert_eq!(before.emit(), Document::parse(text, program().studio.formats).unwrap().emit());
+        let same = before.emit_over(&spaced, program().studio.formats);
         proptest::prop_assert_eq!(same, Carried { text: spaced.clone(), lost: Vec::new() });
-        let carried = document.emit_over(&spaced, FORMATS);
-        proptest::prop_assert_eq!(Document::parse(&carried.text, FORMATS).unwrap().emit(), document.emit());
+        let carried = document.emit_over(&spaced, program().studio.formats);
+        proptest::prop_assert_eq!(Document::parse(&carried.text, program().studio.formats).unwrap().emit(), document.emit());
         for at in 0..comments {
             let own = format!("own {at}.");
             let stays = carried.text.contains(&own);

@@ -1,5 +1,6 @@
 //! The state of the Signals tab, and what can be done with it.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::reading::{self, Reading};
@@ -11,8 +12,10 @@ use crate::analysis::capture::Wishes;
 use crate::analysis::diagnosis::{Changes, Finding, compare};
 use crate::analysis::quality::Family;
 use crate::app::number::MOST_PERIODS;
+use crate::app::recorder::Recorder;
 use crate::app::services::Services;
-use crate::app::{Severity, SineCosineSource, Studio, Tab, Text, explain, recorder};
+use crate::app::{Payload, Severity, SineCosineSource, Text, Tool, ToolContext, WrongKind, explain, recorder};
+use crate::link::LinkUrl;
 use crate::signals::state::TEXTS;
 use crate::store::ReadCaptureError;
 
@@ -56,24 +59,55 @@ impl Default for Signals {
     }
 }
 
-impl Studio {
-    /// Does what is asked of the Signals tab. An adapter gets its wire first, and is remembered.
-    pub(crate) fn act_signals(&mut self, action: Action) {
-        if action != Action::Source(SourceAction::StartAdapter) {
-            return self.signals.act(action, &mut self.services);
+impl Tool for Signals {
+    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), WrongKind> {
+        match action.open()? {
+            Action::Source(SourceAction::StartAdapter) => self.begin_with_adapter(context),
+            action => Signals::act(self, action, context.services()),
         }
-        let earlier = match self.signals.source.adapter_url() {
-            Some(url) => self.free_wire(&url, "session.let_go_for_signals"),
-            None => Ok(None),
-        };
-        match earlier {
-            Ok(earlier) => self.signals.start_adapter(earlier, &mut self.services),
-            Err(why) => self.signals.source.refuse(why),
-        }
-        let source = &self.signals.source;
-        if source.adapter_problem().is_none() {
-            self.settings.use_link(Tab::Signals, source.link());
-        }
+        Ok(())
+    }
+
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind> {
+        Signals::done(self, done.open()?, services);
+        Ok(())
+    }
+
+    fn pump(&mut self, services: &mut Services) {
+        Signals::pump(self, services);
+    }
+
+    fn can_stop(&self) -> bool {
+        self.reading.is_some() || self.source.is_running()
+    }
+
+    fn stop(&mut self, services: &mut Services) {
+        self.source.stop(services);
+        self.give_up();
+    }
+
+    fn recorder(&self) -> &Recorder {
+        &self.scope.recorder
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.scope.recorder
+    }
+
+    fn follow(&mut self, source: &mut dyn SineCosineSource) {
+        self.synchronise.follow(source);
+    }
+
+    fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
+        self.source.free_wire(url, services);
+    }
+
+    fn takes(&self, path: &Path) -> bool {
+        path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+    }
+
+    fn open(&mut self, path: PathBuf, services: &mut Services) {
+        Signals::act(self, Action::Open(path), services);
     }
 }
 
@@ -81,6 +115,21 @@ impl Signals {
     /// With the links to adapters that were used, the latest first.
     pub(crate) fn at(links: &[String]) -> Self {
         Signals { source: Source::at(links.first()), ..Signals::default() }
+    }
+
+    /// An adapter gets its wire first, and is remembered.
+    fn begin_with_adapter(&mut self, context: &mut ToolContext<'_>) {
+        let earlier = match self.source.adapter_url() {
+            Some(url) => context.free_wire(&url, TEXTS.text("session.let_go_for_signals")),
+            None => Ok(None),
+        };
+        match earlier {
+            Ok(earlier) => self.start_adapter(earlier, context.services()),
+            Err(why) => self.source.refuse(why),
+        }
+        if self.source.adapter_problem().is_none() {
+            context.use_link(self.source.link());
+        }
     }
 
     /// By whose limits is judged.
@@ -96,11 +145,6 @@ impl Signals {
     /// Absolute and analogue position brought together.
     pub fn synchronise(&self) -> &Synchronise {
         &self.synchronise
-    }
-
-    /// Takes what a device has read at rest for this tab.
-    pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
-        self.synchronise.follow(source);
     }
 
     /// The capture that is shown.
@@ -138,10 +182,6 @@ impl Signals {
         &self.scope
     }
 
-    pub(crate) fn scope_mut(&mut self) -> &mut Scope {
-        &mut self.scope
-    }
-
     /// What there is to look at, the worst first.
     pub fn findings(&self) -> &[Finding] {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
@@ -152,17 +192,6 @@ impl Signals {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.by_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
         Some(compare(&before, &own.diagnosis))
-    }
-
-    /// There is something to stop.
-    pub(crate) fn can_stop(&self) -> bool {
-        self.reading.is_some() || self.source.is_running()
-    }
-
-    /// Stops all that runs.
-    pub(crate) fn stop(&mut self, services: &mut Services) {
-        self.source.stop(services);
-        self.give_up();
     }
 
     /// Another number of periods a revolution: what is shown is judged again.
@@ -190,8 +219,8 @@ impl Signals {
     /// Does what is asked.
     pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
-            Action::Open(path) => self.open(Place::File(path), services),
-            Action::Example(example) => self.open(Place::Example(example), services),
+            Action::Open(path) => self.open_at(Place::File(path), services),
+            Action::Example(example) => self.open_at(Place::Example(example), services),
             Action::SetDelimiter(delimiter) => self.wish(services, |wishes| wishes.delimiter = Some(delimiter)),
             Action::SetDecimalComma(comma) => self.wish(services, |wishes| wishes.decimal_comma = Some(comma)),
             Action::SetTimeUnit(unit) => self.wish(services, |wishes| wishes.time_unit = Some(unit)),
@@ -327,7 +356,7 @@ impl Signals {
         }
     }
 
-    fn open(&mut self, place: Place, services: &mut Services) {
+    fn open_at(&mut self, place: Place, services: &mut Services) {
         let settled = self.settled();
         if std::mem::take(&mut self.periods_of_source) {
             self.periods = None;

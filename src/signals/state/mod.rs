@@ -23,6 +23,28 @@ mod texts;
 
 pub use texts::TEXTS;
 
+use crate::app::{Tab, Tool, ToolAction, ToolKind};
+
+/// The tab that shows it.
+pub(crate) const TAB: Tab = Tab::named("Signals");
+
+/// The Signals tab, for the list of tools.
+pub(crate) struct SignalsKind;
+
+impl ToolKind for SignalsKind {
+    fn tab(&self) -> Tab {
+        TAB
+    }
+
+    fn begin(&self, links: &[String]) -> Box<dyn Tool> {
+        Box::new(Signals::at(links))
+    }
+}
+
+impl ToolAction for Action {
+    const TAB: Tab = TAB;
+}
+
 pub use act::Signals;
 pub use action::{Action, Done, Failed, Read};
 pub use beside::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};

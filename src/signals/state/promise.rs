@@ -1,6 +1,6 @@
 //! Tasks of the Signals tab. Each comes back, also one that could not be started or broke off: nothing waits for ever.
 
-use super::Done;
+use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
 use crate::app::tasks::{Mailbox, Tasks};
 
@@ -26,7 +26,7 @@ impl Drop for Promise {
 }
 
 fn action(done: Done) -> Action {
-    Action::Done(StudioDone::Signals(done))
+    Action::Done(StudioDone::tool(TAB, done))
 }
 
 /// Runs something on a thread; `failed` comes back instead of what it gives where it gives nothing.
@@ -58,7 +58,10 @@ mod tests {
         let began = std::time::Instant::now();
         loop {
             match tasks.next() {
-                Some(Action::Done(StudioDone::Signals(Done::Failed(failed)))) => return Some(failed),
+                Some(Action::Done(StudioDone::Tool(_, done))) => match done.open() {
+                    Ok(Done::Failed(failed)) => return Some(failed),
+                    other => panic!("{:?}", other.is_ok()),
+                },
                 Some(_) => {}
                 None if began.elapsed().as_secs() > 20 => return None,
                 None => std::thread::sleep(std::time::Duration::from_millis(1)),

@@ -16,7 +16,7 @@ const LINK: f32 = 280.0;
 
 /// Draws the card. True: it is not needed any more.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut Vec<Action>) -> bool {
-    let mut ask = |action: SourceAction| actions.push(Action::Signals(Signals::Source(action)));
+    let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);
     let aside = |ui: &mut Ui| {
         closed = icon_button(ui, true, icons::X, &say(skin, "adapter.close")).clicked();

@@ -16,9 +16,9 @@ mod virtual_encoder;
 
 use egui::Ui;
 
-use crate::app::{Action, SineCosineSource, Studio, Tab, Text};
+use crate::app::{Action, SineCosineSource, Studio, Text, ToolKind};
 use crate::signals::state::input_circuit::Form as Circuit;
-use crate::signals::state::{Signals, TEXTS};
+use crate::signals::state::{Signals, SignalsKind, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, place_of};
 use crate::ui::{Skin, icons, page};
 
@@ -93,8 +93,8 @@ pub(crate) struct View {
 pub(crate) struct SignalsView;
 
 impl ToolView for SignalsView {
-    fn tab(&self) -> Tab {
-        Tab::Signals
+    fn kind(&self) -> &'static dyn ToolKind {
+        &SignalsKind
     }
 
     fn title(&self) -> &'static str {
@@ -122,7 +122,9 @@ impl ToolPages for View {
     }
 
     fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-        page_ui(ui, skin, &studio.signals, studio.sine_cosine(), self, actions);
+        if let Some(signals) = studio.tool() {
+            page_ui(ui, skin, signals, studio.sine_cosine(), self, actions);
+        }
     }
 }
 

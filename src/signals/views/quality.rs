@@ -226,7 +226,7 @@ fn values(
         entry(ui, skin, &word, |ui| {
             let families = Family::ALL.map(|own| (own, own.name().to_owned()));
             if choice(ui, &word, &mut family, families) {
-                actions.push(Action::Signals(Signals_::SetFamily(family)));
+                actions.push(Action::tool(Signals_::SetFamily(family)));
             }
         });
         periods_ui(ui, skin, signals, &mut view.periods, actions);
@@ -249,7 +249,7 @@ pub(super) fn periods_ui(
     entry(ui, skin, &word, |ui| {
         let shown = signals.periods().map(|periods| periods.to_string()).unwrap_or_default();
         settled_entry(ui, draft, &shown, 72.0, &word, |text| {
-            actions.push(Action::Signals(Signals_::SetPeriods(forms::periods(text)?)));
+            actions.push(Action::tool(Signals_::SetPeriods(forms::periods(text)?)));
             Ok(())
         });
         let usual = say(skin, "quality.periods_usual");
@@ -257,7 +257,7 @@ pub(super) fn periods_ui(
             for periods in USUAL_PERIODS {
                 if ui.selectable_label(signals.periods() == Some(periods), periods.to_string()).clicked() {
                     *draft = None;
-                    actions.push(Action::Signals(Signals_::SetPeriods(periods)));
+                    actions.push(Action::tool(Signals_::SetPeriods(periods)));
                     ui.close();
                 }
             }

@@ -5,7 +5,7 @@ use egui::{Ui, vec2};
 use super::numbers::with_unit;
 use super::{View, quality, source};
 use crate::app::{Action, Desk, explain};
-use crate::signals::state::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, TEXTS, Unit, dbv};
+use crate::signals::state::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, TAB, TEXTS, Unit, dbv};
 use crate::signals::views::say;
 use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
@@ -49,7 +49,7 @@ fn trace(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut ScopeView, acti
                     None => "scope.nothing",
                 },
             );
-            plot::plot_ui(ui, skin, &scope.recorder, Desk::Signals, &mut view.plot, &empty, actions);
+            plot::plot_ui(ui, skin, &scope.recorder, Desk::Tool(TAB), &mut view.plot, &empty, actions);
         });
         if scope.recorder.counts() {
             paragraph(ui, skin.caption(say(skin, "scope.counts")));

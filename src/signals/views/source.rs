@@ -85,7 +85,7 @@ fn reading(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action
         }
         let word = say(skin, if reading.is_cancelled() { "shell.stopping" } else { "shell.cancel" });
         if enabled_button(ui, !reading.is_cancelled(), icons::X, &word).clicked() {
-            actions.push(Action::Signals(Signals_::Cancel));
+            actions.push(Action::tool(Signals_::Cancel));
         }
     });
     ui.add_space(skin.space.between);
@@ -191,7 +191,7 @@ fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
 /// Starting, holding and stopping what runs, and its settings.
 fn source_buttons(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
     let source = signals.source();
-    let mut ask = |action| actions.push(Action::Signals(Signals_::Source(action)));
+    let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
     let Some(kind) = live(signals) else { return };
     if source.is_running() {
         if button(ui, icons::STOP, &say(skin, "virtual.stop")).clicked() {
@@ -229,7 +229,7 @@ fn keep_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action
     let same =
         signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));
     if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(say(skin, "compare.keep_hint")).clicked() {
-        actions.push(Action::Signals(Signals_::Keep));
+        actions.push(Action::tool(Signals_::Keep));
     }
 }
 
@@ -244,7 +244,7 @@ fn compared(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Actio
         ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
         ui.add(egui::Label::new(skin.label(skin.words(&text))).truncate());
         if icon_button(ui, true, icons::X, &say(skin, "compare.drop")).clicked() {
-            actions.push(Action::Signals(Signals_::DropComparison));
+            actions.push(Action::tool(Signals_::DropComparison));
         }
     });
 }
@@ -259,7 +259,7 @@ fn source_menu(ui: &mut Ui, skin: &Skin, view: &mut View, actions: &mut Vec<Acti
             chosen = Some(Action::AskOpen);
         }
         if button(ui, icons::WAVE_SINE, &say(skin, "virtual.start")).clicked() {
-            chosen = Some(Action::Signals(Signals_::Source(SourceAction::Start)));
+            chosen = Some(Action::tool(Signals_::Source(SourceAction::Start)));
         }
         if button(ui, icons::PLUGS, &say(skin, "adapter.open")).clicked() {
             view.adapter = true;
@@ -268,7 +268,7 @@ fn source_menu(ui: &mut Ui, skin: &Skin, view: &mut View, actions: &mut Vec<Acti
         ui.label(skin.caption(say(skin, "signals.examples")));
         for example in Example::ALL {
             if button(ui, icons::FILE_TEXT, &say(skin, example.word())).clicked() {
-                chosen = Some(Action::Signals(Signals_::Example(example)));
+                chosen = Some(Action::tool(Signals_::Example(example)));
             }
         }
         if let Some(chosen) = chosen {
@@ -294,7 +294,7 @@ fn nothing(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions
             actions.push(Action::AskOpen);
         }
         if button(ui, icons::WAVE_SINE, &say(skin, "virtual.start")).clicked() {
-            actions.push(Action::Signals(Signals_::Source(SourceAction::Start)));
+            actions.push(Action::tool(Signals_::Source(SourceAction::Start)));
         }
         if button(ui, icons::PLUGS, &say(skin, "adapter.open")).clicked() {
             view.adapter = true;
@@ -303,7 +303,7 @@ fn nothing(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions
         ui.label(skin.caption(say(skin, "signals.try_example")));
         for example in Example::ALL {
             if button(ui, icons::WAVE_SINE, &say(skin, example.word())).clicked() {
-                actions.push(Action::Signals(Signals_::Example(example)));
+                actions.push(Action::tool(Signals_::Example(example)));
             }
         }
     });

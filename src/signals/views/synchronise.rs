@@ -66,7 +66,7 @@ pub(super) fn page_ui(
 }
 
 fn ask(action: Page) -> Action {
-    Action::Signals(Signals::Synchronise(action))
+    Action::tool(Signals::Synchronise(action))
 }
 
 fn typed(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) {

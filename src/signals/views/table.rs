@@ -38,7 +38,7 @@ const TIME_UNITS: [(TimeUnit, &str); 4] = [
 
 /// Draws the card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, actions: &mut Vec<Action>) {
-    let mut wish = |action: Signals| actions.push(Action::Signals(action));
+    let mut wish = |action: Signals| actions.push(Action::tool(action));
     let mut again = false;
     let aside = |ui: &mut Ui| {
         again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "columns.detect")).clicked();

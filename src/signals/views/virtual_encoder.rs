@@ -53,7 +53,7 @@ const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
 
 /// Draws the card.
 pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut Vec<Action>) {
-    let mut ask = |action: SourceAction| actions.push(Action::Signals(Signals::Source(action)));
+    let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let mut reset = false;
     let aside = |ui: &mut Ui| {
         reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "virtual.reset")).clicked();

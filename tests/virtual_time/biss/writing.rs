@@ -9,7 +9,7 @@ use encoder_studio::devices::biss::procedures::procedure::{Failure, Outcome};
 use encoder_studio::devices::biss::procedures::write::Left;
 use encoder_studio::devices::biss::profile::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
 use encoder_studio::devices::biss::protocol::{Filter, PresetValue};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::program;
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::store::{Entry, Logbook, Outcome as Noted, read_text};
 use encoder_studio::worker::NotBegun;
@@ -81,7 +81,7 @@ fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
 
     // The before-image gives it back.
     let text = read_text(&committed.backup.unwrap()).unwrap();
-    let kept = Document::parse(&text, FORMATS).unwrap();
+    let kept = Document::parse(&text, program().studio.formats).unwrap();
     assert_eq!(kept.note.as_deref(), Some("before-image of a write"));
     let kept = kept.body.into_profile::<BissProfile>().unwrap();
     assert_eq!((kept.banks().count(), kept.bank(0x24).unwrap().bytes), (1, [0; 64]));

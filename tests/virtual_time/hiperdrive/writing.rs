@@ -5,7 +5,7 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::procedures::{Asked, Error, LimitsSeen};
 use encoder_studio::devices::hiperdrive::profile::{HiperdriveProfile, PlanError, RestoreOptions, Service};
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, Range, Value};
-use encoder_studio::kinds::FORMATS;
+use encoder_studio::kinds::program;
 use encoder_studio::link::Clock;
 use encoder_studio::profile::Document;
 use encoder_studio::store::read_text;
@@ -34,7 +34,7 @@ fn what_differs_is_written_read_back_and_saved_once() {
     let now = stand.clock.now();
     stand.target.with(|station| station.power_cycle(now));
     assert_eq!(stand.value(166), 200);
-    let before = Document::parse(&read_text(&done.backup.unwrap()).unwrap(), FORMATS).unwrap();
+    let before = Document::parse(&read_text(&done.backup.unwrap()).unwrap(), program().studio.formats).unwrap();
     assert_eq!(before.body.get::<HiperdriveProfile>().unwrap().image.get(number(166)), Some(350));
     let done = stand.change(Change::Write(image(&[(24, 7)]))).unwrap();
     assert!(done.backup.is_none() && stand.sets().len() == 3, "what is so already is not written");

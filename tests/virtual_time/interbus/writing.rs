@@ -11,7 +11,6 @@ use encoder_studio::devices::interbus::procedures::write::Left;
 use encoder_studio::devices::interbus::profile::InterbusProfile;
 use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue, Op, RestoreOptions};
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, StartupMode};
-use encoder_studio::kinds::FORMATS;
 use encoder_studio::link::{Cancel, Clock};
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::store::{DeviceKey, Logbook, Store, read_text};
@@ -70,7 +69,8 @@ fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
         // The session knows the gear from then on.
         assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
         let backup = done.backup.unwrap();
-        let document = Document::parse(&read_text(&backup).unwrap(), FORMATS).unwrap();
+        let document =
+            Document::parse(&read_text(&backup).unwrap(), encoder_studio::kinds::program().studio.formats).unwrap();
         assert_eq!(document.body.get::<InterbusProfile>().unwrap().image.parameters.preset, 10);
     }
 }

@@ -1,8 +1,9 @@
 //! A desk on which axes are set up: steps, writes that go well and that do not, jogs.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
-use encoder_studio::app::{Action, ReviewAction, Tab};
+use encoder_studio::app::{Action, ReviewAction};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
 use encoder_studio::devices::hiperdrive::sim::Hindrance;
 use encoder_studio::devices::hiperdrive::state::axis::{Action as Run, Axis, Button, Entries, Place, Seen, Step};
@@ -64,7 +65,7 @@ pub(super) fn until_ready(desk: &mut Desk) {
 
 pub(super) fn begun(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open(link);
     until_ready(&mut desk);
     desk.settle();
@@ -206,7 +207,7 @@ pub(super) fn control(desk: &mut Desk) {
 /// A drive with 400 steps a turn of 4 mm, whose limits are to be confirmed.
 pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = Desk::fresh("");
-    desk.act(Action::ShowTab(Tab::Hiperdrive));
+    desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open(link);
     until_ready(&mut desk);
     desk.settle();

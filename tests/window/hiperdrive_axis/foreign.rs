@@ -1,5 +1,6 @@
 //! Another master sets the reference again, at another place, to the number that it has: no parameter changes by it.
 
+use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::devices::hiperdrive::protocol::ParameterNumber;
 use encoder_studio::sim::Faults;

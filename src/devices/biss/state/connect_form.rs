@@ -1,6 +1,7 @@
 //! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
 
 use crate::app::Text;
+use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
 use crate::bits::ByteOrder;
@@ -105,16 +106,17 @@ impl Default for BissForm {
     }
 }
 
-impl BissForm {
-    /// The virtual encoder as the window begins with it: behind an adapter, so that everything can be seen.
-    pub fn usual() -> LinkUrl {
+impl FormModel for BissForm {
+    type Finder = NoFinder<Self>;
+
+    // The virtual encoder as the window begins with it: behind an adapter, so that everything can be seen.
+    fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set(BRIDGE.0, BRIDGE.1);
         url
     }
 
-    /// The form filled in as a link says.
-    pub fn from_url(url: &LinkUrl) -> Self {
+    fn from_url(url: &LinkUrl) -> Self {
         let mut form = BissForm { behind_adapter: false, ..BissForm::default() };
         let target = url.target.as_str();
         let network = match url.scheme {
@@ -140,6 +142,20 @@ impl BissForm {
         form
     }
 
+    fn url(&self) -> Result<LinkUrl, Text> {
+        checked(self.parameters().link(self.target()?)?, check)
+    }
+
+    fn set_file(&mut self, file: String) {
+        self.file = file;
+    }
+
+    fn example(&self) -> &'static str {
+        if self.is_on_the_bus() { "bridge:/dev/ttyUSB0" } else { "serial:/dev/ttyUSB0" }
+    }
+}
+
+impl BissForm {
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfter::LEFT_ON.0 {
@@ -185,14 +201,6 @@ impl BissForm {
         };
         value.clone_into(entry);
         true
-    }
-
-    /// The link that the entries stand for. What is as usual is left out.
-    ///
-    /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
-    pub fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
     }
 
     /// The encoder is reached over its bus.

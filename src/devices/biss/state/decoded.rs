@@ -86,6 +86,7 @@ fn quantity(value: f64, unit: &str) -> Text {
 
 #[cfg(test)]
 mod tests {
+    use crate::app::session::Session;
     use std::sync::Arc;
 
     use super::*;
@@ -104,7 +105,7 @@ mod tests {
     /// Reference 4: every register that needs more than its number to be understood.
     #[test]
     fn every_register_of_the_reference_says_what_it_means() {
-        let mut encoder = Encoder::at_link(SessionId::default(), "sim:".parse().unwrap());
+        let mut encoder = Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap()));
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
         encoder.describe(Some(Arc::new(kit.clone())));
         for register in kit.registers() {

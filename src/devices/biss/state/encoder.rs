@@ -11,16 +11,13 @@ use super::review::Review;
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
-use crate::app::studio::SessionId;
+use crate::app::session::{Drafted, Saved, Session, Source};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::procedures::{Identity, Status, Survey};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
-use crate::devices::biss::protocol::{Description, Descriptions, DeviceMode, Eds, EdsBank, EdsError};
+use crate::devices::biss::protocol::{Description, DeviceMode, Eds, EdsBank, EdsError};
 use crate::devices::biss::state::explain as words;
-use crate::link::LinkUrl;
-use crate::profile::Document;
 use crate::sim::Motor;
 
 /// A BiSS encoder, or a profile of one.
@@ -57,12 +54,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// An encoder at a link that is being opened.
-    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
-        Encoder::with(Session::at_link(id, url))
-    }
-
-    fn with(session: Session<Biss>) -> Self {
+    pub(super) fn with(session: Session<Biss>) -> Self {
         Encoder {
             session,
             survey: None,
@@ -80,24 +72,6 @@ impl Encoder {
             seen: BTreeSet::new(),
             read_after: BTreeSet::new(),
         }
-    }
-
-    /// A profile of an encoder.
-    pub(crate) fn in_file(
-        id: SessionId,
-        file: ProfileFile,
-        document: Document,
-        types: &Descriptions,
-        services: &Services,
-    ) -> Self {
-        let mut encoder = Encoder::with(Session::in_file(id, file, document.clone()));
-        if let Some(profile) = document.body.get::<BissProfile>() {
-            let described = types.named(&profile.identity.description).or_else(|| types.iter().last()).cloned();
-            encoder.describe(described.map(Arc::new));
-            encoder.take_profile(profile);
-        }
-        encoder.load_draft(services);
-        encoder
     }
 
     /// What its registers are, from now on.

@@ -9,6 +9,7 @@ mod encoder;
 pub mod explain;
 pub mod forms;
 mod guide;
+mod kind;
 mod log;
 mod mark;
 mod meaning;

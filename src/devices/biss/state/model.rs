@@ -10,7 +10,7 @@ use crate::app::{ActContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
 use crate::devices::biss::jobs::{Biss, BissJob};
 
 impl DeviceModel for Encoder {
-    const TAB: Tab = Tab::Biss;
+    const TAB: Tab = Tab::named("Biss");
     type Action = Action;
     type Done = Infallible;
 

@@ -7,11 +7,10 @@ use crate::devices::biss::state::TEXTS;
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
-use crate::app::Recording;
-use crate::app::Text;
 use crate::app::explain::plain;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::app::{Recording, Text};
 use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample, WatchedReading};
 use crate::devices::biss::protocol::{Decoded, Decoding, Register};
 use crate::devices::biss::state::explain as words;

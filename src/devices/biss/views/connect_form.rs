@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::connect::Connect as Dialog;
 use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissWay};
 use crate::devices::biss::views::say;
@@ -20,14 +20,6 @@ pub(crate) struct BissConnectForm;
 impl TypedConnectForm for BissConnectForm {
     type Form = BissForm;
     type Memory = ();
-
-    fn form(dialog: &Dialog) -> &BissForm {
-        &dialog.biss
-    }
-
-    fn edit(form: BissForm) -> Connect {
-        Connect::EditBiss(Box::new(form))
-    }
 
     fn form_ui(
         ui: &mut Ui,

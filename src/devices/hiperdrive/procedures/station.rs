@@ -8,9 +8,8 @@ use std::time::Duration;
 
 use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
 use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
-use crate::link::Replies;
 use crate::link::line::LineState;
-use crate::link::{Query, UrlError};
+use crate::link::{Query, Replies, UrlError};
 use crate::units::Moment;
 
 /// Link parameters that describe the connection and nothing of a virtual device.

@@ -1,6 +1,8 @@
 //! What a person fills in to connect a HIPERDRIVE, and the link it stands for. Nothing is opened here.
 
+use super::discovery::DiscoveryFinder;
 use crate::app::Text;
+use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::devices::hiperdrive::jobs::check;
@@ -82,14 +84,15 @@ impl VirtualHub {
     }
 }
 
-impl HiperdriveForm {
-    /// The virtual drive as the window begins with it: an adapter.
-    pub fn usual() -> LinkUrl {
+impl FormModel for HiperdriveForm {
+    type Finder = DiscoveryFinder;
+
+    // The virtual drive as the window begins with it: an adapter.
+    fn usual() -> LinkUrl {
         LinkUrl::sim()
     }
 
-    /// The form filled in as a link says.
-    pub fn from_url(url: &LinkUrl) -> Self {
+    fn from_url(url: &LinkUrl) -> Self {
         let way = match url.scheme {
             Scheme::Sim => HiperdriveWay::Virtual,
             Scheme::Replay => HiperdriveWay::Replay,
@@ -105,6 +108,20 @@ impl HiperdriveForm {
         form
     }
 
+    fn url(&self) -> Result<LinkUrl, Text> {
+        checked(self.parameters().link(self.target()?)?, check)
+    }
+
+    fn set_file(&mut self, file: String) {
+        self.file = file;
+    }
+
+    fn example(&self) -> &'static str {
+        "enip:192.168.1.10"
+    }
+}
+
+impl HiperdriveForm {
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == HiperdriveWay::Virtual;
@@ -126,14 +143,6 @@ impl HiperdriveForm {
         };
         value.clone_into(entry);
         true
-    }
-
-    /// The link that the entries stand for. What is as usual is left out.
-    ///
-    /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
-    pub fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {

@@ -4,10 +4,13 @@ use std::fmt;
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 
-use super::connect_form::HiperdriveWay;
-use crate::app::Text;
-use crate::app::action::Done;
-use crate::app::studio::Studio;
+use super::connect_form::{HiperdriveForm, HiperdriveWay};
+use super::unit::Unit;
+use crate::app::action::{Action, Done};
+use crate::app::connect::context::FinderContext;
+use crate::app::connect::form::Finder;
+use crate::app::services::Services;
+use crate::app::{DeviceModel, Text};
 use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
 use crate::devices::hiperdrive::procedures::{Error, Found, discover};
 use crate::devices::hiperdrive::state::explain as words;
@@ -92,41 +95,64 @@ fn ask_all() -> Result<Vec<Found>, Error> {
     discover(&mut shout, &*clock, &Cancel::default())
 }
 
-impl Studio {
-    /// Asks who is there, as a task.
-    pub(crate) fn discover(&mut self) {
-        let number = self.new_number();
-        let Some(connect) = &mut self.connect else { return };
-        connect.discovery = Some(Discovery { number, found: None });
-        connect.problem = None;
-        let given = self.services.world.given.get::<Discover>().cloned();
-        self.services.tasks.run("discover", move || {
-            let found = given.map_or_else(ask_all, |discover| (discover.0)());
-            let found = found.map(|found| found.iter().map(FoundDevice::of).collect());
-            let found = found.map_err(|error| words::device(&error));
-            crate::app::Action::Done(Done::FoundDrives(number, found))
-        });
+/// Asks who is there in this network.
+#[derive(Default)]
+pub struct DiscoveryFinder {
+    /// The question, and its answers.
+    pub discovery: Option<Discovery>,
+}
+
+/// What can be done with the answers.
+pub enum DiscoveryAction {
+    /// Ask who is there.
+    Discover,
+    /// Fill in the device that answered; it is connected by the button for that.
+    Choose(usize),
+}
+
+/// Devices that answer, or why nobody could be asked.
+pub struct Answers {
+    number: u32,
+    found: Result<Vec<FoundDevice>, Text>,
+}
+
+impl Finder for DiscoveryFinder {
+    type Form = HiperdriveForm;
+    type Action = DiscoveryAction;
+    type Done = Answers;
+
+    fn act(&mut self, action: DiscoveryAction, form: &mut HiperdriveForm, context: &mut FinderContext<'_>) {
+        match action {
+            DiscoveryAction::Discover => {
+                let number = context.new_number();
+                self.discovery = Some(Discovery { number, found: None });
+                let services = context.services();
+                let given = services.world.given.get::<Discover>().cloned();
+                services.tasks.run("discover", move || {
+                    let found = given.map_or_else(ask_all, |discover| (discover.0)());
+                    let found = found.map(|found| found.iter().map(FoundDevice::of).collect());
+                    let found = found.map_err(|error| words::device(&error));
+                    Action::Done(Done::finder::<DiscoveryFinder>(Unit::TAB, Answers { number, found }))
+                });
+            }
+            DiscoveryAction::Choose(at) => {
+                let devices = self.discovery.as_ref().map(Discovery::devices).unwrap_or_default();
+                let Some(device) = devices.get(at) else { return };
+                form.way = HiperdriveWay::Network;
+                form.host = device.address.to_string();
+                form.tcp_port = if device.port == EXPLICIT_PORT { String::new() } else { device.port.to_string() };
+            }
+        }
     }
 
-    /// Answers have come. Those of HIPERDRIVE come first.
-    pub(crate) fn found_drives(&mut self, number: u32, found: Result<Vec<FoundDevice>, Text>) {
-        let discovery = self.connect.as_mut().and_then(|connect| connect.discovery.as_mut());
+    /// Those of HIPERDRIVE come first.
+    fn done(finder: Option<&mut Self>, done: Answers, _services: &mut Services) {
+        let Answers { number, found } = done;
+        let discovery = finder.and_then(|finder| finder.discovery.as_mut());
         let Some(discovery) = discovery.filter(|own| own.number == number) else { return };
         discovery.found = Some(found.map(|mut found| {
             found.sort_by_key(|own| !own.is_hiperdrive);
             found
         }));
-    }
-
-    /// Fills in the device that answered; it is connected by the button for that.
-    pub(crate) fn choose_device(&mut self, at: usize) {
-        let Some(connect) = &mut self.connect else { return };
-        let found = connect.discovery.as_ref().and_then(|own| own.devices().get(at)).cloned();
-        let Some(device) = found else { return };
-        let form = &mut connect.hiperdrive;
-        form.way = HiperdriveWay::Network;
-        form.host = device.address.to_string();
-        form.tcp_port = if device.port == EXPLICIT_PORT { String::new() } else { device.port.to_string() };
-        (connect.typed, connect.problem) = (None, None);
     }
 }

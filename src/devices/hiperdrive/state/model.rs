@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 
 impl DeviceModel for Unit {
-    const TAB: Tab = Tab::Hiperdrive;
+    const TAB: Tab = Tab::named("Hiperdrive");
     type Action = Action;
     type Done = Infallible;
 

@@ -15,9 +15,7 @@ use super::staged::{Mark, Staged};
 use super::unsaved::Unsaved;
 use crate::app::check::CheckLine;
 use crate::app::line::Line;
-use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
-use crate::app::studio::SessionId;
+use crate::app::session::{Phase, Session, Source};
 use crate::app::{Marks, PendingEdits, Recording, Text};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperdrive::procedures::{
@@ -28,8 +26,6 @@ use crate::devices::hiperdrive::protocol::{
     Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
 };
 use crate::devices::hiperdrive::sim::Target;
-use crate::link::LinkUrl;
-use crate::profile::Document;
 use crate::units::Moment;
 
 /// An adapter or a hub with its drives, or a profile of one.
@@ -88,12 +84,7 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// A device at a link that is being opened.
-    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
-        Unit::with(Session::at_link(id, url), Staged::default())
-    }
-
-    fn with(session: Session<Hiperdrive>, staged: Staged) -> Self {
+    pub(super) fn with(session: Session<Hiperdrive>, staged: Staged) -> Self {
         Unit {
             session,
             survey: None,
@@ -122,23 +113,6 @@ impl Unit {
             looks_at_errors: false,
             looks_at_all: false,
         }
-    }
-
-    /// A profile of a device.
-    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
-        let staged = match document.body.get::<HiperdriveProfile>() {
-            Some(profile) => {
-                let mut staged = Staged::of_profile(profile.image.clone());
-                let drives = profile.identity.drives.iter();
-                staged.know(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
-                staged
-            }
-            None => Staged::default(),
-        };
-        let mut unit = Unit::with(Session::in_file(id, file, document), staged);
-        unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
-        unit.load_draft(services);
-        unit
     }
 
     /// The profile, where this is one.

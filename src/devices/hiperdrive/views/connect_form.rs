@@ -4,7 +4,9 @@ use egui::Ui;
 
 use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::app::{Action, Text};
-use crate::devices::hiperdrive::state::{Discovery, HiperdriveForm, HiperdriveWay, TEXTS, VirtualHub};
+use crate::devices::hiperdrive::state::{
+    Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveWay, TEXTS, VirtualHub,
+};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
@@ -17,14 +19,6 @@ pub(crate) struct HiperdriveConnectForm;
 impl TypedConnectForm for HiperdriveConnectForm {
     type Form = HiperdriveForm;
     type Memory = ();
-
-    fn form(dialog: &Dialog) -> &HiperdriveForm {
-        &dialog.hiperdrive
-    }
-
-    fn edit(form: HiperdriveForm) -> Connect {
-        Connect::EditHiperdrive(Box::new(form))
-    }
 
     fn form_ui(
         ui: &mut Ui,
@@ -53,7 +47,8 @@ impl TypedConnectForm for HiperdriveConnectForm {
                 );
                 interval(ui, skin, form);
                 ui.add_space(skin.space.inside);
-                discovery(ui, skin, dialog.discovery.as_ref(), actions);
+                let finder = dialog.finder::<DiscoveryFinder>();
+                discovery(ui, skin, finder.and_then(|own| own.discovery.as_ref()), actions);
             }
             HiperdriveWay::Replay => recording(ui, skin, &mut form.file, actions),
         }
@@ -110,7 +105,7 @@ fn discovery(ui: &mut Ui, skin: &Skin, discovery: Option<&Discovery>, actions: &
     ui.horizontal(|ui| {
         let word = say(skin, "connect.discover");
         if enabled_button(ui, !is_running, icons::MAGNIFYING_GLASS, &word).clicked() {
-            actions.push(Action::Connect(Connect::Discover));
+            actions.push(Action::Connect(Connect::find::<DiscoveryFinder>(DiscoveryAction::Discover)));
         }
         if is_running {
             spinner(ui, skin);
@@ -126,7 +121,7 @@ fn discovery(ui: &mut Ui, skin: &Skin, discovery: Option<&Discovery>, actions: &
         ui.horizontal(|ui| {
             let words = TEXTS.text("connect.use_device").with("address", device.address);
             if button(ui, icons::PLUGS_CONNECTED, &skin.words(&words)).clicked() {
-                actions.push(Action::Connect(Connect::ChooseDevice(at)));
+                actions.push(Action::Connect(Connect::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))));
             }
             ui.label(&device.name);
             let serial = Text::new("check.serial").with("number", device.serial_number);

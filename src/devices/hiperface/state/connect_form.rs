@@ -3,7 +3,9 @@
 
 use std::time::Duration;
 
+use super::search::SearchFinder;
 use crate::app::Text;
+use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{entered, filled, host_and_port, parted, refused};
 use crate::devices::hiperface::jobs::check;
@@ -97,14 +99,14 @@ impl Default for LinkForm {
     }
 }
 
-impl LinkForm {
-    /// The virtual encoders to choose from, the usual one first.
-    pub fn models() -> impl Iterator<Item = &'static str> {
-        MODELS.iter().map(|model| model.name)
+impl FormModel for LinkForm {
+    type Finder = SearchFinder;
+
+    fn usual() -> LinkUrl {
+        LinkUrl::sim()
     }
 
-    /// The form filled in as a link says.
-    pub fn from_url(url: &LinkUrl) -> Self {
+    fn from_url(url: &LinkUrl) -> Self {
         let mut form = LinkForm::default();
         let target = url.target.clone();
         match url.scheme {
@@ -120,6 +122,28 @@ impl LinkForm {
         }
         form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
+    }
+
+    fn url(&self) -> Result<LinkUrl, Text> {
+        let target = self.target()?;
+        let url = self.parameters()?.link(target)?;
+        check(&url).map_err(|error| self.refused(&url, &error))?;
+        Ok(url)
+    }
+
+    fn set_file(&mut self, file: String) {
+        self.file = file;
+    }
+
+    fn example(&self) -> &'static str {
+        "serial:/dev/ttyUSB0"
+    }
+}
+
+impl LinkForm {
+    /// The virtual encoders to choose from, the usual one first.
+    pub fn models() -> impl Iterator<Item = &'static str> {
+        MODELS.iter().map(|model| model.name)
     }
 
     /// Fills in the entry of a parameter; false where there is none that can show it.
@@ -149,17 +173,6 @@ impl LinkForm {
             _ => return false,
         }
         true
-    }
-
-    /// The link that the entries stand for. What is as usual is left out.
-    ///
-    /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
-    pub fn url(&self) -> Result<LinkUrl, Text> {
-        let target = self.target()?;
-        let url = self.parameters()?.link(target)?;
-        check(&url).map_err(|error| self.refused(&url, &error))?;
-        Ok(url)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {

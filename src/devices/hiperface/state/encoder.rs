@@ -9,17 +9,14 @@ use super::rest::RestAsked;
 use super::review::Review;
 use super::{Staged, rules};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, ProfileFile, Saved, Session, Source};
-use crate::app::studio::SessionId;
+use crate::app::session::{Drafted, Saved, Session, Source};
 use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField, check};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Item};
-use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, EncoderTypes, LineSettings, StatusCode};
+use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings, StatusCode};
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
-use crate::link::LinkUrl;
-use crate::profile::Document;
 
 /// An encoder, or a profile of one.
 pub struct Encoder {
@@ -64,12 +61,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// An encoder at a link that is being opened.
-    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
-        Encoder::with(Session::at_link(id, url))
-    }
-
-    fn with(session: Session<Hiperface>) -> Self {
+    pub(super) fn with(session: Session<Hiperface>) -> Self {
         Encoder {
             session,
             identity: None,
@@ -94,30 +86,8 @@ impl Encoder {
         }
     }
 
-    /// A profile of an encoder.
-    pub(crate) fn in_file(
-        id: SessionId,
-        file: ProfileFile,
-        document: Document,
-        types: &EncoderTypes,
-        services: &Services,
-    ) -> Self {
-        let profile = document.body.get::<HiperfaceProfile>();
-        let fields = profile.map(|profile| profile.fields.clone()).unwrap_or_default();
-        let identity = profile.map(|profile| crate::devices::hiperface::procedures::identity_of(profile, types));
-        let counter = profile.and_then(|profile| profile.recorded.counter);
-        let mut encoder = Encoder::with(Session::in_file(id, file, document));
-        if let Some(identity) = identity {
-            encoder.identify(identity);
-        }
-        encoder.counter = counter;
-        encoder.staged.refresh(fields);
-        encoder.load_draft(services);
-        encoder
-    }
-
     /// Who it is, from now on.
-    fn identify(&mut self, identity: Identity) {
+    pub(super) fn identify(&mut self, identity: Identity) {
         let serial = &identity.serial.serial_number;
         self.session.title =
             Some(if serial.is_empty() { identity.name.clone() } else { format!("{} · {serial}", identity.name) });

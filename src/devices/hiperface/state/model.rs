@@ -11,7 +11,7 @@ use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
 use crate::devices::hiperface::procedures::AccessCodes;
 
 impl DeviceModel for Encoder {
-    const TAB: Tab = Tab::Hiperface;
+    const TAB: Tab = Tab::named("Hiperface");
     type Action = Action;
     type Done = Infallible;
 

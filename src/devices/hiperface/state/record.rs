@@ -8,10 +8,9 @@ use crate::devices::hiperface::state::TEXTS;
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
-use crate::app::Recording;
-use crate::app::Text;
 use crate::app::recorder::{GroupId, Line, Recorder, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::app::{Recording, Text};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 

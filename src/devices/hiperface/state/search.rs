@@ -3,18 +3,18 @@
 
 use crossbeam_channel::Receiver;
 
-use crate::app::action::{Done, OpenFailed, Opened};
-use crate::app::connect::Connect;
+use crate::app::action::{AnyOpened, Done, OpenFailed, Opened};
+use crate::app::connect::context::FinderContext;
+use crate::app::connect::form::Finder;
 use crate::app::leaving::Leaver;
 use crate::app::line::Line;
-use crate::app::question::{Question, Then};
 use crate::app::services::Services;
-use crate::app::studio::{SessionId, Studio};
-use crate::app::{Text, explain};
+use crate::app::studio::SessionId;
+use crate::app::{DeviceModel, Text, explain};
 use crate::devices::hiperface::jobs::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark, may_have_other_master};
 use crate::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
-use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
+use crate::devices::hiperface::state::{Encoder, LinkForm, TEXTS};
 use crate::link::LinkUrl;
 use crate::worker::{Event, Progress};
 
@@ -117,57 +117,104 @@ impl Search {
     }
 }
 
-impl Studio {
-    /// Searches the line of the form; where a drive may be on it, that is asked before.
-    pub(crate) fn search_for(&mut self, options: FindOptions) {
-        match self.connect.as_ref().map(Connect::url) {
-            Some(Ok(url)) if may_have_other_master(&url) => {
-                self.question = Some(Question::other_master(&url, Then::Search(options)));
+/// Looks for encoders on the line of the connection form.
+#[derive(Default)]
+pub struct SearchFinder {
+    /// The search.
+    pub search: Option<Search>,
+    /// What is searched for, once the user has said that no drive is on the line.
+    asked: FindOptions,
+}
+
+/// What can be done with the search.
+pub enum SearchAction {
+    /// Look for encoders.
+    Search(FindOptions),
+    /// Connect to an encoder that was found.
+    Choose(usize),
+}
+
+/// A link was opened for a search.
+pub struct OpenedForSearch {
+    /// For which.
+    number: u32,
+    /// The session on its thread.
+    result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,
+}
+
+impl Finder for SearchFinder {
+    type Form = LinkForm;
+    type Action = SearchAction;
+    type Done = OpenedForSearch;
+
+    fn act(&mut self, action: SearchAction, _form: &mut LinkForm, context: &mut FinderContext<'_>) {
+        match action {
+            SearchAction::Search(options) => {
+                self.asked = options;
+                match context.link() {
+                    Ok(url) if may_have_other_master(&url) => context.ask_other_master(&url),
+                    _ => self.confirmed(context),
+                }
             }
-            Some(_) => self.search_confirmed(options),
-            None => {}
+            SearchAction::Choose(at) => {
+                let Some(search) = &self.search else { return };
+                if let Some(found) = search.found.get(at) {
+                    context.open_found(search.link_to(found));
+                }
+            }
         }
     }
 
-    /// The user says that no drive is on the line of the form.
-    pub(crate) fn search_confirmed(&mut self, options: FindOptions) {
-        let Some(connect) = &mut self.connect else { return };
-        let url = match connect.url() {
+    fn confirmed(&mut self, context: &mut FinderContext<'_>) {
+        let url = match context.link() {
             Ok(url) => url,
-            Err(problem) => {
-                connect.problem = Some(problem);
-                return;
-            }
+            Err(problem) => return context.refuse(problem),
         };
-        let earlier = match self.free_wire(&url, "session.let_go_for_search") {
-            Ok(earlier) => self.end_search().or(earlier),
-            Err(problem) => return self.refuse(problem),
+        let earlier = match context.free_wire(&url, Text::new("session.let_go_for_search")) {
+            Ok(earlier) => self.end(context.services()).or(earlier),
+            Err(problem) => return context.refuse(problem),
         };
-        let number = self.new_number();
-        let done = move |result| Done::OpenedForSearch { number, result };
-        self.signals.source.free_wire(&url, &mut self.services);
-        let over = self.services.open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
-        let search = Search { number, url, options, line: None, over, found: Vec::new(), end: None };
-        if let Some(connect) = &mut self.connect {
-            connect.search = Some(search);
+        let number = context.new_number();
+        let done = move |result| Done::finder::<SearchFinder>(Encoder::TAB, OpenedForSearch { number, result });
+        let over = context.services().open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
+        let options = self.asked.clone();
+        self.search = Some(Search { number, url, options, line: None, over, found: Vec::new(), end: None });
+    }
+
+    fn done(finder: Option<&mut Self>, done: OpenedForSearch, services: &mut Services) {
+        let OpenedForSearch { number, result } = done;
+        let search = finder.and_then(|finder| finder.search.as_mut());
+        match (search.filter(|search| search.number == number && search.is_running()), result) {
+            (Some(search), result) => search.opened(result, services),
+            // One that was ended while it opened has no use for it.
+            (None, Ok(opened)) => opened.turn_away(SessionId(number), services),
+            (None, Err(_)) => {}
         }
     }
 
-    /// Ends the search and forgets it. Where its link was still being opened, that is over when what is given tells so.
-    pub(crate) fn end_search(&mut self) -> Option<Receiver<()>> {
-        let search = self.connect.as_mut()?.search.take()?;
+    fn pump(&mut self) {
+        if let Some(search) = &mut self.search {
+            search.pump();
+        }
+    }
+
+    fn is_running(&self) -> bool {
+        self.search.as_ref().is_some_and(Search::is_running)
+    }
+
+    fn stop(&mut self) {
+        if let Some(search) = &mut self.search {
+            search.stop();
+        }
+    }
+
+    fn end(&mut self, services: &mut Services) -> Option<Receiver<()>> {
+        let search = self.search.take()?;
         if let Some(line) = search.line {
             let (session, about) = (SessionId(search.number), search.url.to_string());
             let who = Leaver { session, about, url: search.url, write: None };
-            self.services.leave(line.into_worker(), who, None);
+            services.leave(line.into_worker(), who, None);
         }
         Some(search.over)
-    }
-
-    pub(crate) fn choose(&mut self, at: usize) {
-        let Some(search) = self.connect.as_ref().and_then(|connect| connect.search.as_ref()) else { return };
-        let Some(url) = search.found.get(at).map(|found| search.link_to(found)) else { return };
-        self.close_dialog();
-        self.open_found(url);
     }
 }

@@ -12,7 +12,7 @@ use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{LinkForm, LinkKind, Search};
+use crate::devices::hiperface::state::{LinkForm, LinkKind, Search, SearchAction, SearchFinder};
 use crate::ui::controls::{allowed_button, button, choice, entry, fill, name, paragraph, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{echo, margin, network, parity, recording, serial, unfolded};
@@ -34,14 +34,6 @@ pub(crate) struct HiperfaceConnectForm;
 impl TypedConnectForm for HiperfaceConnectForm {
     type Form = LinkForm;
     type Memory = SearchView;
-
-    fn form(dialog: &Dialog) -> &LinkForm {
-        &dialog.form
-    }
-
-    fn edit(form: LinkForm) -> Connect {
-        Connect::Edit(Box::new(form))
-    }
 
     fn form_ui(
         ui: &mut Ui,
@@ -135,7 +127,8 @@ fn more(ui: &mut Ui, skin: &Skin, form: &mut LinkForm, open: &mut bool) {
 }
 
 fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, actions: &mut Vec<Action>) {
-    let running = dialog.search.as_ref().is_some_and(Search::is_running);
+    let search = dialog.finder::<SearchFinder>().and_then(|finder| finder.search.as_ref());
+    let running = search.is_some_and(Search::is_running);
     skin.card().show(ui, |ui| {
         fill(ui);
         ui.label(skin.heading(say(skin, "find.title")));
@@ -163,18 +156,22 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, acti
             {
                 let power_cycle = (view.one_encoder && view.power_cycle).then_some(POWER_CYCLE);
                 let options = FindOptions { one_encoder: view.one_encoder, power_cycle };
-                actions.push(Action::Connect(Connect::Search(options)));
+                actions.push(find(SearchAction::Search(options)));
             }
-            if let Some(progress) = dialog.search.as_ref().and_then(Search::progress) {
+            if let Some(progress) = search.and_then(Search::progress) {
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
                 ui.label(skin.mono(skin.words(&words::doing(&progress.what))).color(skin.palette.muted));
             }
         });
-        if let Some(search) = &dialog.search {
+        if let Some(search) = search {
             found(ui, skin, search, actions);
         }
     });
+}
+
+fn find(action: SearchAction) -> Action {
+    Action::Connect(Connect::find::<SearchFinder>(action))
 }
 
 fn found(ui: &mut Ui, skin: &Skin, search: &Search, actions: &mut Vec<Action>) {
@@ -182,7 +179,7 @@ fn found(ui: &mut Ui, skin: &Skin, search: &Search, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             let word = TEXTS.text("find.choose").with("address", format!("{:02X}h", found.address));
             if button(ui, icons::PLUGS_CONNECTED, &skin.words(&word)).clicked() {
-                actions.push(Action::Connect(Connect::Choose(at)));
+                actions.push(find(SearchAction::Choose(at)));
             }
             let talking = TEXTS.text("find.talking").with("format", found.format);
             let stored = TEXTS.text("find.stored").with_text("settings", words::line_settings(found.label.settings));

@@ -1,6 +1,7 @@
 //! What a person fills in to connect an INTERBUS encoder, and the link it stands for. Nothing is opened here.
 
 use crate::app::Text;
+use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::devices::interbus::jobs::check;
@@ -55,9 +56,11 @@ const LOW_FIRST: (&str, &str) = ("order", "low-first");
 /// The port of Modbus/TCP.
 const PORT: &str = "502";
 
-impl InterbusForm {
-    /// The virtual encoder as the window begins with it: a machine that turns slowly, with cams on its turn.
-    pub fn usual() -> LinkUrl {
+impl FormModel for InterbusForm {
+    type Finder = NoFinder<Self>;
+
+    // The virtual encoder as the window begins with it: a machine that turns slowly, with cams on its turn.
+    fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         for (name, value) in [("rpm", "6"), ("steps", "3600"), ("revolutions", "1"), ("cams", "demo")] {
             url.query.set(name, value);
@@ -65,8 +68,7 @@ impl InterbusForm {
         url
     }
 
-    /// The form filled in as a link says.
-    pub fn from_url(url: &LinkUrl) -> Self {
+    fn from_url(url: &LinkUrl) -> Self {
         let way = match url.scheme {
             Scheme::Sim => InterbusWay::Virtual,
             Scheme::Replay => InterbusWay::Replay,
@@ -82,6 +84,20 @@ impl InterbusForm {
         form
     }
 
+    fn url(&self) -> Result<LinkUrl, Text> {
+        checked(self.parameters().link(self.target()?)?, check)
+    }
+
+    fn set_file(&mut self, file: String) {
+        self.file = file;
+    }
+
+    fn example(&self) -> &'static str {
+        "modbus:192.168.1.10"
+    }
+}
+
+impl InterbusForm {
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == InterbusWay::Virtual;
@@ -99,14 +115,6 @@ impl InterbusForm {
         };
         value.clone_into(entry);
         true
-    }
-
-    /// The link that the entries stand for. What is as usual is left out.
-    ///
-    /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
-    pub fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {

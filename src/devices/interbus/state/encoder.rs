@@ -12,16 +12,13 @@ use super::trace::Meaning;
 use super::{cams, words};
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, ProfileFile, Saved, Session, Source, some};
-use crate::app::studio::SessionId;
+use crate::app::session::{Drafted, Phase, Saved, Session, Source, some};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::procedures::{Handshake, Identity, Reading, Survey};
 use crate::devices::interbus::profile::{InterbusProfile, ProfileIdentity, Scale};
 use crate::devices::interbus::protocol::{Mode, ProgramNumber, ReadOut, StartupMode, Value, WindowShift, WordOrder};
 use crate::devices::interbus::state::TEXTS;
-use crate::link::LinkUrl;
-use crate::profile::Document;
 use crate::sim::Motor;
 
 use super::said::Known;
@@ -68,12 +65,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// An encoder at a link that is being opened.
-    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
-        Encoder::with(Session::at_link(id, url), Staged::default())
-    }
-
-    fn with(session: Session<Interbus>, staged: Staged) -> Self {
+    pub(super) fn with(session: Session<Interbus>, staged: Staged) -> Self {
         Encoder {
             session,
             survey: None,
@@ -93,17 +85,6 @@ impl Encoder {
             read_after: Vec::new(),
             trace: Meaning::new(WordOrder::default()),
         }
-    }
-
-    /// A profile of an encoder.
-    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &Services) -> Self {
-        let staged = match document.body.get::<InterbusProfile>() {
-            Some(profile) => Staged::of_profile(profile.image.clone(), profile.names.clone()),
-            None => Staged::default(),
-        };
-        let mut encoder = Encoder::with(Session::in_file(id, file, document), staged);
-        encoder.load_draft(services);
-        encoder
     }
 
     /// What is not right in what is wanted.

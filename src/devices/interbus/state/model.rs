@@ -9,7 +9,7 @@ use crate::app::{ActContext, DeviceMemory, DeviceModel, EditStep, Recording, Sev
 use crate::devices::interbus::jobs::{Interbus, InterbusJob};
 
 impl DeviceModel for Encoder {
-    const TAB: Tab = Tab::Interbus;
+    const TAB: Tab = Tab::named("Interbus");
     type Action = Action;
     type Done = Done;
 

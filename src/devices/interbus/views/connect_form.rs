@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::connect::Connect as Dialog;
 use crate::devices::interbus::state::{InterbusForm, InterbusWay};
 use crate::devices::interbus::views::say;
 use crate::ui::Skin;
@@ -17,14 +17,6 @@ pub(crate) struct InterbusConnectForm;
 impl TypedConnectForm for InterbusConnectForm {
     type Form = InterbusForm;
     type Memory = ();
-
-    fn form(dialog: &Dialog) -> &InterbusForm {
-        &dialog.interbus
-    }
-
-    fn edit(form: InterbusForm) -> Connect {
-        Connect::EditInterbus(Box::new(form))
-    }
 
     fn form_ui(
         ui: &mut Ui,

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::action::{Action, Try};
 use super::design::Edit;
 use super::encoder::Encoder;
+use super::families::families;
 use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone};
@@ -153,7 +154,7 @@ impl Encoder {
         self.searches = self.searches.wrapping_add(1);
         let number = self.searches;
         self.hunt = Hunt::Running(number);
-        let (session, families) = (self.session.id, services.ssi_families());
+        let (session, families) = (self.session.id, families(services));
         services.tasks.run("find", move || {
             let result = frames().map(|Frames { origin, clocks, mut frames }| {
                 frames.drain(..frames.len().saturating_sub(MOST));

@@ -1,6 +1,7 @@
 //! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
 
 use crate::app::Text;
+use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{adapter_in_network, checked, entered, parted, to_adapter};
 use crate::buses::bridge::procedures::SupplyAfter;
@@ -54,16 +55,17 @@ pub struct SsiForm {
     pub rest: Vec<(String, String)>,
 }
 
-impl SsiForm {
-    /// The virtual encoder as the window begins with it: slow enough for the bits to be seen.
-    pub fn usual() -> LinkUrl {
+impl FormModel for SsiForm {
+    type Finder = NoFinder<Self>;
+
+    // The virtual encoder as the window begins with it: slow enough for the bits to be seen.
+    fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set("rpm", "6");
         url
     }
 
-    /// The form filled in as a link says.
-    pub fn from_url(url: &LinkUrl) -> Self {
+    fn from_url(url: &LinkUrl) -> Self {
         let mut form = SsiForm::default();
         let target = url.target.as_str();
         form.way = match url.scheme {
@@ -83,6 +85,20 @@ impl SsiForm {
         form
     }
 
+    fn url(&self) -> Result<LinkUrl, Text> {
+        checked(self.parameters().link(self.target()?)?, check)
+    }
+
+    fn set_file(&mut self, file: String) {
+        self.file = file;
+    }
+
+    fn example(&self) -> &'static str {
+        "bridge:/dev/ttyUSB0"
+    }
+}
+
+impl SsiForm {
     /// Fills in the entry of a parameter; false where there is none.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_virtual = self.way == SsiWay::Virtual;
@@ -100,14 +116,6 @@ impl SsiForm {
         };
         value.clone_into(entry);
         true
-    }
-
-    /// The link that the entries stand for. What is as usual is left out.
-    ///
-    /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
-    pub fn url(&self) -> Result<LinkUrl, Text> {
-        checked(self.parameters().link(self.target()?)?, check)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {

@@ -6,9 +6,8 @@ mod reshape;
 use std::sync::Arc;
 
 use super::strip;
-use crate::app::PendingEdits;
-use crate::app::Text;
 use crate::app::history::History;
+use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::profile::{ReadingSettings, SsiProfile};
 use crate::devices::ssi::protocol::{
     Advice, Code, Descriptor, Direction, ErrorPlace, Families, Family, Layout, Range, Settings, Times, from_linuxcnc,

@@ -1,7 +1,6 @@
 //! An SSI encoder on the desk, or a layout of one: the layout on the drawing board, a frame to try it with, what was read,
 //! and what was found about it. The encoder has no memory; nothing is ever written into it.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::design::{Design, Designer, Edit};
@@ -9,16 +8,13 @@ use super::record::{Record, Seen, Streamed};
 use super::search::Hunt;
 use super::trial::{Decoded, Trial};
 use crate::app::check::CheckLine;
-use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, ProfileFile, Session, Source};
-use crate::app::studio::SessionId;
+use crate::app::session::{Phase, Session, Source};
 use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::procedures::{Asking, Identity};
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{Families, Layout, Reads};
 use crate::link::LinkUrl;
-use crate::profile::Document;
 use crate::sim::Motor;
 
 /// An SSI encoder, or a layout of one.
@@ -50,34 +46,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// An encoder at a link that is being opened.
-    pub(crate) fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
-        let families = services.ssi_families();
-        let designer = Designer::at_link(&url, families);
-        Encoder::with(Session::at_link(id, url), designer)
-    }
-
-    /// A layout that is in no file yet, and a name for one: a family's as delivered.
-    pub(crate) fn new_layout(id: SessionId, suggested: PathBuf, services: &mut Services) -> Self {
-        let designer = Designer::delivered(services.ssi_families());
-        let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
-        encoder.load_draft(services);
-        encoder
-    }
-
-    /// A layout in a file.
-    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document, services: &mut Services) -> Self {
-        let families = services.ssi_families();
-        let mut designer = Designer::delivered(families);
-        if let Some(profile) = document.body.get::<SsiProfile>() {
-            designer.open(profile.clone());
-        }
-        let mut encoder = Encoder::with(Session::in_file(id, file, document), designer);
-        encoder.load_draft(services);
-        encoder
-    }
-
-    fn with(session: Session<Ssi>, designer: Designer) -> Self {
+    pub(super) fn with(session: Session<Ssi>, designer: Designer) -> Self {
         let mut trial = Trial::default();
         // A position whose bits can be told apart.
         trial.set_position(designer.layout(), designer.layout().coding().last() / 3);

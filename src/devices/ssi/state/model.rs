@@ -16,7 +16,7 @@ use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
 
 impl DeviceModel for Encoder {
-    const TAB: Tab = Tab::Ssi;
+    const TAB: Tab = Tab::named("Ssi");
     type Action = Action;
     type Done = Done;
 

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::connect::Connect as Dialog;
 use crate::devices::ssi::state::{SsiForm, SsiWay};
 use crate::devices::ssi::views::say;
 use crate::ui::Skin;
@@ -17,14 +17,6 @@ pub(crate) struct SsiConnectForm;
 impl TypedConnectForm for SsiConnectForm {
     type Form = SsiForm;
     type Memory = ();
-
-    fn form(dialog: &Dialog) -> &SsiForm {
-        &dialog.ssi
-    }
-
-    fn edit(form: SsiForm) -> Connect {
-        Connect::EditSsi(Box::new(form))
-    }
 
     fn form_ui(
         ui: &mut Ui,

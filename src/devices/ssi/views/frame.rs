@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::View as Tab;
 use super::form::rows_ui;
 use super::trial;
-use crate::app::{Action, AnyDevice, DeviceCommand, PendingEdits, Studio, Text};
+use crate::app::{Action, AnyDevice, DeviceCommand, DeviceModel, PendingEdits, Studio, Text};
 use crate::devices::ssi::protocol::Family;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::strip::{self, Strip};
@@ -135,7 +135,7 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
             ui.set_width(320.0);
             paragraph(ui, skin.caption(say(skin, "ssi_layout.import_words")));
             if button(ui, icons::PLUS, &say(skin, "ssi.new_layout")).clicked() {
-                actions.push(Action::NewLayout);
+                actions.push(Action::New(Encoder::TAB));
                 ui.close();
             }
             if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {

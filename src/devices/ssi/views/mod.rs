@@ -14,7 +14,7 @@ mod wiring;
 
 use egui::Ui;
 
-use crate::app::{Action, AnyDevice, Rgb, Studio};
+use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio};
 use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::ui::controls::button;
 use crate::ui::device_view::{TabPage, TypedDeviceView};
@@ -118,7 +118,7 @@ impl TypedDeviceView for SsiView {
     fn empty_ui(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
         // A layout needs no device.
         if button(ui, icons::PLUS, &say(skin, "ssi.new_layout")).clicked() {
-            actions.push(Action::NewLayout);
+            actions.push(Action::New(Encoder::TAB));
         }
     }
 

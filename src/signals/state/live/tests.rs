@@ -6,13 +6,13 @@ use super::*;
 use crate::analysis::capture::Capture;
 use crate::analysis::quality::Family;
 use crate::app::services::World;
-use crate::profile::Formats;
+use crate::app::{Kinds, Tool};
 use crate::signals::state::{Action, Judge};
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    (Services::new(World::real(Store::at(folder.path()), Formats::new(&[])), Arc::new(|| ())), folder)
+    (Services::new(World::real(Store::at(folder.path()), Kinds::NONE), Arc::new(|| ())), folder)
 }
 
 fn started(services: &mut Services) -> Signals {
@@ -39,8 +39,8 @@ fn until(signals: &mut Signals, services: &mut Services, condition: impl Fn(&Sig
     while !condition(signals) {
         assert!(began.elapsed() < Duration::from_secs(20), "never");
         while let Some(action) = services.tasks.next() {
-            if let crate::app::Action::Done(crate::app::action::Done::Signals(done)) = action {
-                signals.done(done, services);
+            if let crate::app::Action::Done(crate::app::action::Done::Tool(_, done)) = action {
+                Tool::done(signals, done, services).unwrap();
             }
         }
         std::thread::sleep(Duration::from_millis(1));

@@ -4,21 +4,16 @@
 use egui::Ui;
 
 use crate::app::Action;
+use crate::app::connect::form::FormModel;
 use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::ui::Skin;
 
 /// The form of a kind of device, as the device implements it.
 pub(crate) trait TypedConnectForm: 'static {
     /// The link as a form.
-    type Form: Clone + PartialEq;
+    type Form: FormModel;
     /// The selections that are no part of the link.
     type Memory: Default;
-
-    /// Returns the form of this kind.
-    fn form(dialog: &Dialog) -> &Self::Form;
-
-    /// Returns the action that takes an edited form.
-    fn edit(form: Self::Form) -> Connect;
 
     /// Draws the form. `more` is whether the rarely needed entries are unfolded, for all kinds.
     fn form_ui(
@@ -47,12 +42,12 @@ struct Begun<F: TypedConnectForm>(F::Memory);
 
 impl<F: TypedConnectForm> ConnectForm for Begun<F> {
     fn form_ui(&mut self, ui: &mut Ui, skin: &Skin, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>) {
-        let own = F::form(dialog);
+        let Some(own) = dialog.form::<F::Form>() else { return };
         let mut form = own.clone();
         F::form_ui(ui, skin, dialog, &mut form, (&mut self.0, more), actions);
         if form != *own {
             // Before whatever else was clicked: that is to see it.
-            actions.insert(0, Action::Connect(F::edit(form)));
+            actions.insert(0, Action::Connect(Connect::edit(form)));
         }
     }
 }

@@ -1,10 +1,10 @@
 //! A long session of edits: chart and table stay equal, and both are what a model of another make says. The model knows a
 //! cam as its first position and its length around the range, and goes back by a list of everything that ever was.
 
-use crate::app::PendingEdits;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
+use crate::app::PendingEdits;
 use crate::devices::interbus::profile::{Direction, Edge, Filled, Image, Names, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 use crate::devices::interbus::state::cams::{Chart, pulled};

@@ -1,0 +1,80 @@
+//! What a search may use beside the connection form it belongs to.
+
+use crossbeam_channel::Receiver;
+
+use crate::app::Text;
+use crate::app::question::{Question, Then};
+use crate::app::services::Services;
+use crate::app::studio::Studio;
+use crate::link::LinkUrl;
+
+/// What a search may use beside the connection form it belongs to.
+pub struct FinderContext<'a> {
+    studio: &'a mut Studio,
+    link: Result<LinkUrl, Text>,
+    found: Option<LinkUrl>,
+    problem: Option<Text>,
+}
+
+/// What the dialog does after a search was asked for something.
+#[derive(Default)]
+pub(super) struct Next {
+    /// Closes, and connects to this device.
+    pub(super) found: Option<LinkUrl>,
+    /// Says why that was not done.
+    pub(super) problem: Option<Text>,
+}
+
+impl<'a> FinderContext<'a> {
+    pub(super) fn new(studio: &'a mut Studio, link: Result<LinkUrl, Text>) -> Self {
+        FinderContext { studio, link, found: None, problem: None }
+    }
+
+    pub(super) fn into_next(self) -> Next {
+        Next { found: self.found, problem: self.problem }
+    }
+
+    /// Returns the log, tasks, the world outside.
+    pub fn services(&mut self) -> &mut Services {
+        &mut self.studio.services
+    }
+
+    /// Returns the link of the dialog.
+    ///
+    /// # Errors
+    /// A sentence that says why it cannot be used.
+    pub fn link(&self) -> Result<LinkUrl, Text> {
+        self.link.clone()
+    }
+
+    /// Returns a number that no other search or session has.
+    pub fn new_number(&mut self) -> u32 {
+        self.studio.new_number()
+    }
+
+    /// Lets go of the session on this wire, and of a tool on it, unless the session writes: `why` is told there. The channel,
+    /// where there is one, closes when the wire is free.
+    ///
+    /// # Errors
+    /// The session writes: which one.
+    pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
+        let earlier = self.studio.free_wire(url, why)?;
+        self.studio.free_wire_of_tools(url);
+        Ok(earlier)
+    }
+
+    /// Asks whether another master is on the line; the search goes on where there is none.
+    pub fn ask_other_master(&mut self, url: &LinkUrl) {
+        self.studio.question = Some(Question::other_master(url, Then::Find));
+    }
+
+    /// Says why what was asked for was not done.
+    pub fn refuse(&mut self, problem: Text) {
+        self.problem = Some(problem);
+    }
+
+    /// Closes the dialog and connects to a device that was found: about other masters on its line it was asked before.
+    pub fn open_found(&mut self, url: LinkUrl) {
+        self.found = Some(url);
+    }
+}

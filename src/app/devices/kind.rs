@@ -1,0 +1,178 @@
+//! A kind of device, before there is one on the desk: its tab, its links, its profiles. A device implements [`DeviceType`];
+//! one adapter makes [`DeviceKind`] of it, which the studio has a list of.
+
+use std::marker::PhantomData;
+use std::path::Path;
+
+use super::AnyDevice;
+use super::model::DeviceModel;
+use crate::app::connect::form::{AnyForm, Filled, Finder, FormModel};
+use crate::app::payload::{Payload, WrongKind};
+use crate::app::services::Services;
+use crate::app::session::{Kind, ProfileFile};
+use crate::app::studio::SessionId;
+use crate::app::tab::Tab;
+use crate::link::LinkUrl;
+use crate::profile::{Document, Profile, ProfileFormat};
+use crate::store::Store;
+use crate::worker::OpenError;
+
+/// A kind of device, as the device implements it.
+pub trait DeviceType: DeviceModel + Sized {
+    /// It for the list of kinds.
+    const KIND: &'static dyn DeviceKind = &KindOf::<Self>(PhantomData);
+
+    /// The name of its bus, the same in every language.
+    const BUS: &'static str;
+
+    /// Its profile.
+    type Profile: Profile;
+
+    /// Its form in the connection dialog.
+    type Form: FormModel;
+
+    /// What its profiles are read with, beside their own text.
+    type Tables: Send + 'static;
+
+    /// Checks whether a link can lead to such a device, as far as that can be told without opening it.
+    ///
+    /// # Errors
+    /// It cannot: why.
+    fn check(url: &LinkUrl) -> Result<(), OpenError>;
+
+    /// Returns whether another master may be on the line behind a link: then a person is asked before anything is sent.
+    fn may_have_other_master(_url: &LinkUrl) -> bool {
+        false
+    }
+
+    /// Returns a device at a link that is being opened.
+    fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self;
+
+    /// Reads what its profiles are read with. Runs on the thread of a task.
+    fn tables(store: &Store) -> Self::Tables;
+
+    /// Returns a profile.
+    fn in_file(
+        id: SessionId,
+        file: ProfileFile,
+        document: Document,
+        tables: Self::Tables,
+        services: &mut Services,
+    ) -> Self;
+
+    /// Returns a profile that is in no file yet; `None` for a kind whose profiles come from devices alone. `is_taken` tells
+    /// which names others have.
+    fn new_profile(_id: SessionId, _is_taken: &dyn Fn(&Path) -> bool, _services: &mut Services) -> Option<Self> {
+        None
+    }
+}
+
+/// Puts a profile on the desk.
+pub(crate) type OpenProfile = Box<dyn FnOnce(SessionId, ProfileFile, Document, &mut Services) -> Box<AnyDevice> + Send>;
+
+/// A kind of device, as the studio uses it. Implemented for every [`DeviceType`].
+pub trait DeviceKind: Sync {
+    /// Returns the tab that shows it.
+    fn tab(&self) -> Tab;
+    /// Returns the name of its bus, the same in every language.
+    fn bus(&self) -> &'static str;
+    /// Returns its name in profiles and on the command line.
+    fn word(&self) -> &'static str;
+    /// Returns the format of its profiles.
+    fn format(&self) -> &'static dyn ProfileFormat;
+    /// Checks whether a link can lead to such a device.
+    ///
+    /// # Errors
+    /// It cannot: why.
+    fn check(&self, url: &LinkUrl) -> Result<(), OpenError>;
+    /// Returns the link to the virtual device of this kind.
+    fn virtual_link(&self) -> LinkUrl;
+    /// Returns whether another master may be on the line behind a link.
+    fn may_have_other_master(&self, url: &LinkUrl) -> bool;
+    /// Returns the form in the connection dialog, filled in as a link says.
+    fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
+    #[doc(hidden)]
+    fn finder_done(
+        &self,
+        form: Option<&mut dyn AnyForm>,
+        done: Payload,
+        services: &mut Services,
+    ) -> Result<(), WrongKind>;
+    #[doc(hidden)]
+    fn at_link(&self, id: SessionId, url: LinkUrl, services: &mut Services) -> Box<AnyDevice>;
+    #[doc(hidden)]
+    fn read_tables(&self, store: &Store) -> OpenProfile;
+    #[doc(hidden)]
+    fn new_profile(
+        &self,
+        id: SessionId,
+        is_taken: &dyn Fn(&Path) -> bool,
+        services: &mut Services,
+    ) -> Option<Box<AnyDevice>>;
+}
+
+/// The adapter from [`DeviceType`] to [`DeviceKind`].
+struct KindOf<M>(PhantomData<fn() -> M>);
+
+impl<M: DeviceType> DeviceKind for KindOf<M> {
+    fn tab(&self) -> Tab {
+        M::TAB
+    }
+
+    fn bus(&self) -> &'static str {
+        M::BUS
+    }
+
+    fn word(&self) -> &'static str {
+        <M::Device as Kind>::KIND
+    }
+
+    fn format(&self) -> &'static dyn ProfileFormat {
+        M::Profile::FORMAT
+    }
+
+    fn check(&self, url: &LinkUrl) -> Result<(), OpenError> {
+        M::check(url)
+    }
+
+    fn virtual_link(&self) -> LinkUrl {
+        M::Form::usual()
+    }
+
+    fn may_have_other_master(&self, url: &LinkUrl) -> bool {
+        M::may_have_other_master(url)
+    }
+
+    fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm> {
+        Box::new(Filled::<M::Form>::new(&link.unwrap_or_else(M::Form::usual)))
+    }
+
+    fn finder_done(
+        &self,
+        form: Option<&mut dyn AnyForm>,
+        done: Payload,
+        services: &mut Services,
+    ) -> Result<(), WrongKind> {
+        let finder = form.and_then(|form| form.finder_mut().downcast_mut());
+        <M::Form as FormModel>::Finder::done(finder, done.open()?, services);
+        Ok(())
+    }
+
+    fn at_link(&self, id: SessionId, url: LinkUrl, services: &mut Services) -> Box<AnyDevice> {
+        Box::new(M::at_link(id, url, services))
+    }
+
+    fn read_tables(&self, store: &Store) -> OpenProfile {
+        let tables = M::tables(store);
+        Box::new(|id, file, document, services| Box::new(M::in_file(id, file, document, tables, services)))
+    }
+
+    fn new_profile(
+        &self,
+        id: SessionId,
+        is_taken: &dyn Fn(&Path) -> bool,
+        services: &mut Services,
+    ) -> Option<Box<AnyDevice>> {
+        M::new_profile(id, is_taken, services).map(|device| Box::new(device) as Box<AnyDevice>)
+    }
+}

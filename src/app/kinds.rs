@@ -1,0 +1,61 @@
+//! The kinds of devices and the tools that a program has, as the studio knows them. The list is handed over: nothing here
+//! names one.
+
+use super::devices::DeviceKind;
+use super::tab::Tab;
+use super::tool::ToolKind;
+use crate::profile::Formats;
+
+/// The kinds of devices and the tools, in the order of the navigation.
+#[derive(Clone, Copy)]
+pub struct Kinds {
+    /// The formats of profiles that can be read.
+    pub formats: Formats,
+    devices: &'static [&'static dyn DeviceKind],
+    tools: &'static [&'static dyn ToolKind],
+}
+
+impl Kinds {
+    /// None.
+    pub const NONE: Kinds = Kinds::new(Formats::new(&[]), &[], &[]);
+
+    /// These.
+    pub const fn new(
+        formats: Formats,
+        devices: &'static [&'static dyn DeviceKind],
+        tools: &'static [&'static dyn ToolKind],
+    ) -> Self {
+        Kinds { formats, devices, tools }
+    }
+
+    /// Returns the kinds of devices.
+    pub fn devices(self) -> &'static [&'static dyn DeviceKind] {
+        self.devices
+    }
+
+    /// Returns the tools.
+    pub(super) fn tools(self) -> &'static [&'static dyn ToolKind] {
+        self.tools
+    }
+
+    /// Returns the kind of device that a tab shows; `None` for a tool, and for a tab that is not there.
+    pub(super) fn of_tab(self, tab: Tab) -> Option<&'static dyn DeviceKind> {
+        self.devices.iter().copied().find(|kind| kind.tab() == tab)
+    }
+
+    /// Returns the kind of device of a profile.
+    pub(super) fn of_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
+        self.devices.iter().copied().find(|kind| kind.word() == word)
+    }
+
+    /// Returns the first tab of a device; where there is none, the first of a tool.
+    pub(super) fn first_tab(self) -> Tab {
+        let device = self.devices.first().map(|kind| kind.tab());
+        device.or_else(|| self.tools.first().map(|kind| kind.tab())).unwrap_or_default()
+    }
+
+    /// Returns whether there is such a tab.
+    pub(super) fn has_tab(self, tab: Tab) -> bool {
+        self.of_tab(tab).is_some() || self.tools.iter().any(|kind| kind.tab() == tab)
+    }
+}

@@ -1,0 +1,164 @@
+//! A tab that needs no device. The studio knows no tool: it asks all of them alike.
+
+use std::any::Any;
+use std::path::{Path, PathBuf};
+
+use crossbeam_channel::Receiver;
+
+use super::payload::{Payload, WrongKind};
+use super::recorder::Recorder;
+use super::services::Services;
+use super::sine_cosine::SineCosineSource;
+use super::studio::Studio;
+use super::tab::Tab;
+use super::{Action, Text};
+use crate::link::LinkUrl;
+
+/// A tool, before the window is open.
+pub trait ToolKind: Sync {
+    /// Returns the tab that shows it.
+    fn tab(&self) -> Tab;
+
+    /// Begins it, with the links that were used in it, the latest first.
+    fn begin(&self, links: &[String]) -> Box<dyn Tool>;
+}
+
+/// A tab that needs no device.
+pub trait Tool: Any {
+    /// Does what is asked.
+    ///
+    /// # Errors
+    /// The action is for something else.
+    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), WrongKind>;
+
+    /// Handles the result of a task.
+    ///
+    /// # Errors
+    /// It is of something else.
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind>;
+
+    /// Looks what has happened since the last time.
+    fn pump(&mut self, services: &mut Services);
+
+    /// Returns whether there is something to stop.
+    fn can_stop(&self) -> bool;
+
+    /// Stops all that runs.
+    fn stop(&mut self, services: &mut Services);
+
+    /// Returns what it has recorded.
+    fn recorder(&self) -> &Recorder;
+
+    /// Returns what it has recorded, to be changed.
+    fn recorder_mut(&mut self) -> &mut Recorder;
+
+    /// Takes what a device has read at rest.
+    fn follow(&mut self, source: &mut dyn SineCosineSource);
+
+    /// Gives up a wire that is needed elsewhere.
+    fn free_wire(&mut self, url: &LinkUrl, services: &mut Services);
+
+    /// Returns whether a file is one that it opens.
+    fn takes(&self, path: &Path) -> bool;
+
+    /// Opens a file.
+    fn open(&mut self, path: PathBuf, services: &mut Services);
+}
+
+/// An action of a tool.
+pub trait ToolAction: Any + Send {
+    /// The tab of the tool.
+    const TAB: Tab;
+}
+
+impl Action {
+    /// Returns an action for a tool.
+    pub fn tool<A: ToolAction>(action: A) -> Self {
+        Action::Tool(A::TAB, Payload::of(action))
+    }
+}
+
+impl dyn Tool {
+    /// Returns the tool as what it is; `None` where it is another one.
+    pub fn get<T: Any>(&self) -> Option<&T> {
+        (self as &dyn Any).downcast_ref()
+    }
+}
+
+/// What a tool may use beside itself.
+pub struct ToolContext<'a> {
+    tab: Tab,
+    studio: &'a mut Studio,
+}
+
+impl ToolContext<'_> {
+    /// Returns the log, tasks, the world outside.
+    pub fn services(&mut self) -> &mut Services {
+        &mut self.studio.services
+    }
+
+    /// Lets go of the session on this wire, unless it writes: `why` is told there. The channel, where there is one, closes
+    /// when the wire is free.
+    ///
+    /// # Errors
+    /// The session writes: which one.
+    pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
+        self.studio.free_wire(url, why)
+    }
+
+    /// Remembers a link that was used.
+    pub fn use_link(&mut self, link: &str) {
+        self.studio.settings.use_link(self.tab, link);
+    }
+}
+
+impl Studio {
+    /// Returns the tool of that type.
+    pub fn tool<T: Any>(&self) -> Option<&T> {
+        self.tools.iter().find_map(|(_, tool)| tool.get())
+    }
+
+    /// Does what is asked of a tool.
+    pub(super) fn act_tool(&mut self, tab: Tab, action: Payload) {
+        let Some(at) = self.tools.iter().position(|(own, _)| *own == tab) else { return self.refuse_kind(None) };
+        let (_, mut tool) = self.tools.remove(at);
+        let done = tool.act(action, &mut ToolContext { tab, studio: self });
+        self.tools.insert(at, (tab, tool));
+        if done.is_err() {
+            self.refuse_kind(None);
+        }
+    }
+
+    /// A task of a tool has come back.
+    pub(super) fn tool_done(&mut self, tab: Tab, done: Payload) {
+        let tool = self.tools.iter_mut().find(|(own, _)| *own == tab);
+        if tool.is_none_or(|(_, tool)| tool.done(done, &mut self.services).is_err()) {
+            self.refuse_kind(None);
+        }
+    }
+
+    /// Opens a file in the tool that takes such files; the path is given back where there is none.
+    pub(super) fn open_in_tool(&mut self, path: PathBuf) -> Result<(), PathBuf> {
+        let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.takes(&path)) else { return Err(path) };
+        self.settings.tab = *tab;
+        tool.open(path, &mut self.services);
+        Ok(())
+    }
+
+    /// Opens a capture: in the open tab where that is a tool, else in the first one.
+    pub(super) fn open_capture(&mut self, path: PathBuf) {
+        let tab = self.settings.tab;
+        let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();
+        if let Some((tab, tool)) = self.tools.get_mut(at) {
+            self.settings.tab = *tab;
+            tool.open(path, &mut self.services);
+        }
+    }
+
+    /// Tools give up a wire that is needed elsewhere.
+    pub(super) fn free_wire_of_tools(&mut self, url: &LinkUrl) {
+        for (_, tool) in &mut self.tools {
+            tool.free_wire(url, &mut self.services);
+        }
+    }
+}

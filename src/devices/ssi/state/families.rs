@@ -1,0 +1,39 @@
+//! The families of SSI encoders that all sessions know.
+
+use std::sync::Arc;
+
+use super::Encoder;
+use super::explain as words;
+use crate::app::action::{Action, Done};
+use crate::app::services::Services;
+use crate::app::{AnyDevice, Severity};
+use crate::devices::ssi::jobs;
+use crate::devices::ssi::protocol::Families;
+
+/// Returns the families: the built-in ones, until the user's own were read beside them. Whoever asks first has them read, as
+/// a task.
+pub(super) fn families(services: &mut Services) -> Arc<Families> {
+    if let Some(families) = services.shared::<Arc<Families>>() {
+        return families.clone();
+    }
+    let built_in = Arc::new(Families::built_in());
+    services.share(built_in.clone());
+    let store = services.world.store.clone();
+    services.tasks.run("families", move || {
+        let (families, broken) = jobs::families(&store);
+        Action::Done(Done::Shared(Box::new(move |services, devices| {
+            for error in &broken {
+                services.tell(Severity::Warning, vec![words::store(error)], None);
+            }
+            take_families(&Arc::new(families), services, devices);
+        })))
+    });
+    built_in
+}
+
+fn take_families(families: &Arc<Families>, services: &mut Services, devices: &mut [Box<AnyDevice>]) {
+    for encoder in devices.iter_mut().filter_map(|device| device.get_mut::<Encoder>()) {
+        encoder.take_families(families.clone());
+    }
+    services.share(families.clone());
+}

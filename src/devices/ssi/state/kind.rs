@@ -1,0 +1,58 @@
+//! What the studio knows of SSI before there is a device.
+
+use std::path::{Path, PathBuf};
+
+use super::design::Designer;
+use super::families::families;
+use super::{Encoder, SsiForm};
+use crate::app::DeviceType;
+use crate::app::services::Services;
+use crate::app::session::{Drafted, ProfileFile, Session};
+use crate::app::studio::SessionId;
+use crate::devices::ssi::jobs::check;
+use crate::devices::ssi::profile::SsiProfile;
+use crate::link::LinkUrl;
+use crate::profile::Document;
+use crate::store::Store;
+use crate::worker::OpenError;
+
+impl DeviceType for Encoder {
+    const BUS: &'static str = "SSI";
+    type Profile = SsiProfile;
+    type Form = SsiForm;
+    type Tables = ();
+
+    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+        check(url)
+    }
+
+    fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
+        let families = families(services);
+        let designer = Designer::at_link(&url, families);
+        Encoder::with(Session::at_link(id, url), designer)
+    }
+
+    fn tables(_store: &Store) -> Self::Tables {}
+
+    fn in_file(id: SessionId, file: ProfileFile, document: Document, _tables: (), services: &mut Services) -> Self {
+        let families = families(services);
+        let mut designer = Designer::delivered(families);
+        if let Some(profile) = document.body.get::<SsiProfile>() {
+            designer.open(profile.clone());
+        }
+        let mut encoder = Encoder::with(Session::in_file(id, file, document), designer);
+        encoder.load_draft(services);
+        encoder
+    }
+
+    /// A layout as it is delivered of the first family, with the first name that no other such layout has.
+    fn new_profile(id: SessionId, is_taken: &dyn Fn(&Path) -> bool, services: &mut Services) -> Option<Self> {
+        let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
+        let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);
+        let suggested = names.find(|name| !is_taken(name))?;
+        let designer = Designer::delivered(families(services));
+        let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
+        encoder.load_draft(services);
+        Some(encoder)
+    }
+}

@@ -1,0 +1,57 @@
+//! What a kind of device and a tool hand over, and the program that is made of them.
+
+use crate::app::{DeviceKind, Kinds, ToolKind};
+use crate::cli::{Commands, DeviceCommands, OwnCommand, ProtocolDecoder};
+use crate::profile::{Formats, ProfileFormat};
+use crate::ui::{DeviceView, TabViews, ToolView};
+
+/// A kind of device: its pages, through which its state and its profiles are known, and its commands.
+#[derive(Clone, Copy)]
+pub struct Kind {
+    /// Its pages.
+    pub view: &'static dyn DeviceView,
+    /// Its part of the command line.
+    pub commands: &'static dyn DeviceCommands,
+}
+
+/// A tab that needs no device.
+#[derive(Clone, Copy)]
+pub struct ToolTab {
+    /// Its pages.
+    pub view: &'static dyn ToolView,
+}
+
+/// The kinds of devices and the tools, as the studio, the window and the command line take them.
+#[derive(Clone, Copy)]
+pub struct Program {
+    /// For the studio.
+    pub studio: Kinds,
+    /// For the window.
+    pub tabs: TabViews,
+    /// For the command line.
+    pub commands: Commands,
+}
+
+impl Program {
+    /// A program with these kinds of devices and tools, in the order of the navigation and of the help; `protocols` are
+    /// explained beside theirs, `further` commands stand beside those of devices. The lists are kept as long as the process
+    /// runs.
+    pub fn new(
+        kinds: &[Kind],
+        tools: &[ToolTab],
+        protocols: &'static [&'static dyn ProtocolDecoder],
+        further: &'static [&'static dyn OwnCommand],
+    ) -> Self {
+        let devices: Vec<&'static dyn DeviceKind> = kinds.iter().map(|kind| kind.view.kind()).collect();
+        let formats: Vec<&'static dyn ProfileFormat> = devices.iter().map(|kind| kind.format()).collect();
+        let tool_kinds: Vec<&'static dyn ToolKind> = tools.iter().map(|tool| tool.view.kind()).collect();
+        let views: Vec<&'static dyn DeviceView> = kinds.iter().map(|kind| kind.view).collect();
+        let tool_views: Vec<&'static dyn ToolView> = tools.iter().map(|tool| tool.view).collect();
+        let commands: Vec<&'static dyn DeviceCommands> = kinds.iter().map(|kind| kind.commands).collect();
+        Program {
+            studio: Kinds::new(Formats::new(formats.leak()), devices.leak(), tool_kinds.leak()),
+            tabs: TabViews::new(views.leak(), tool_views.leak()),
+            commands: Commands::new(commands.leak(), protocols, further),
+        }
+    }
+}

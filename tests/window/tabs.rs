@@ -1,0 +1,82 @@
+//! The tabs of the program, and what each shows.
+
+use encoder_studio::app::connect::{Action, Connect};
+use encoder_studio::app::{Studio, Tab};
+use encoder_studio::devices::hiperdrive::state::{Discovery, DiscoveryAction, DiscoveryFinder};
+use encoder_studio::devices::hiperface::procedures::find::FindOptions;
+use encoder_studio::devices::hiperface::state::{Search, SearchAction, SearchFinder};
+use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
+use encoder_studio::signals::state::Signals;
+
+pub(crate) const HIPERFACE: Tab = Tab::named("Hiperface");
+pub(crate) const BISS: Tab = Tab::named("Biss");
+pub(crate) const SSI: Tab = Tab::named("Ssi");
+pub(crate) const INTERBUS: Tab = Tab::named("Interbus");
+pub(crate) const HIPERDRIVE: Tab = Tab::named("Hiperdrive");
+pub(crate) const SIGNALS: Tab = Tab::named("Signals");
+
+/// What the tabs of a studio show.
+pub(crate) trait Tabs {
+    fn hiperface(&self) -> Option<&hiperface::state::Encoder>;
+    fn biss(&self) -> Option<&biss::state::Encoder>;
+    fn ssi(&self) -> Option<&ssi::state::Encoder>;
+    fn interbus(&self) -> Option<&interbus::state::Encoder>;
+    fn hiperdrive(&self) -> Option<&hiperdrive::state::Unit>;
+    fn signals(&self) -> &Signals;
+}
+
+impl Tabs for Studio {
+    fn hiperface(&self) -> Option<&hiperface::state::Encoder> {
+        self.shown_as()
+    }
+
+    fn biss(&self) -> Option<&biss::state::Encoder> {
+        self.shown_as()
+    }
+
+    fn ssi(&self) -> Option<&ssi::state::Encoder> {
+        self.shown_as()
+    }
+
+    fn interbus(&self) -> Option<&interbus::state::Encoder> {
+        self.shown_as()
+    }
+
+    fn hiperdrive(&self) -> Option<&hiperdrive::state::Unit> {
+        self.shown_as()
+    }
+
+    fn signals(&self) -> &Signals {
+        self.tool().expect("there is a Signals tab")
+    }
+}
+
+/// Looks for encoders on the line of the form.
+pub(crate) fn search_for(options: FindOptions) -> Action {
+    Action::find::<SearchFinder>(SearchAction::Search(options))
+}
+
+/// Connects to an encoder that was found.
+pub(crate) fn choose(at: usize) -> Action {
+    Action::find::<SearchFinder>(SearchAction::Choose(at))
+}
+
+/// Asks who is there in the network.
+pub(crate) fn discover() -> Action {
+    Action::find::<DiscoveryFinder>(DiscoveryAction::Discover)
+}
+
+/// Fills in a device that has answered.
+pub(crate) fn choose_answer(at: usize) -> Action {
+    Action::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
+}
+
+/// The search of a dialog.
+pub(crate) fn search(dialog: &Connect) -> Option<&Search> {
+    dialog.finder::<SearchFinder>()?.search.as_ref()
+}
+
+/// The question to the network of a dialog.
+pub(crate) fn discovery(dialog: &Connect) -> Option<&Discovery> {
+    dialog.finder::<DiscoveryFinder>()?.discovery.as_ref()
+}
