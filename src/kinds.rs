@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 
 pub use kind::{Kind, Program, ToolTab};
 
+use crate::buses::bridge::sim::Attachable;
 use crate::buses::ethernet_ip::commands::EthernetIpDecoder;
 use crate::devices::{biss, hiperdrive, hiperface, interbus, ssi};
 use crate::signals;
@@ -18,6 +19,16 @@ pub fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| {
         Program::new(&KINDS, &[signals::TAB], &[&EthernetIpDecoder], &[&signals::commands::AnalyseCommand])
+    })
+}
+
+/// Returns the virtual devices that hang on the virtual adapter. What turns their shafts is told last.
+pub fn at_adapter() -> &'static [&'static dyn Attachable] {
+    static DEVICES: OnceLock<Vec<&'static dyn Attachable>> = OnceLock::new();
+    DEVICES.get_or_init(|| {
+        let mut devices: Vec<_> = KINDS.iter().filter_map(|kind| kind.at_adapter).collect();
+        devices.sort_by_key(|device| device.keys().contains(&"rpm"));
+        devices
     })
 }
 

@@ -1,6 +1,7 @@
 //! What a kind of device and a tool hand over, and the program that is made of them.
 
 use crate::app::{DeviceKind, Kinds, ToolKind};
+use crate::buses::bridge::sim::Attachable;
 use crate::cli::{Commands, DeviceCommands, OwnCommand, ProtocolDecoder};
 use crate::profile::{Formats, ProfileFormat};
 use crate::ui::{DeviceView, TabViews, ToolView};
@@ -12,6 +13,8 @@ pub struct Kind {
     pub view: &'static dyn DeviceView,
     /// Its part of the command line.
     pub commands: &'static dyn DeviceCommands,
+    /// Its virtual device on the virtual adapter; `None` for a kind that is reached without an adapter.
+    pub at_adapter: Option<&'static dyn Attachable>,
 }
 
 /// A tab that needs no device.

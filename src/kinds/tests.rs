@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::program;
 use crate::profile::{Document, ProfileError};
 
+mod adapter;
 mod rewrite;
 
 fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {

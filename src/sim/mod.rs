@@ -4,14 +4,12 @@
 //! Never in here: a clock, a thread, a socket or a port (time is handed in), nor anything of procedures or `link/`; only
 //! the tables of `protocol/` are shared with the host's side.
 
-mod at_adapter;
 mod fault;
 pub(crate) mod line;
 mod motor;
 pub(crate) mod setting;
 pub mod sine_cosine;
 
-pub use at_adapter::AT_ADAPTER;
 pub use fault::{Carried, FaultError, Faults, Passage};
 pub use motor::Motor;
 pub use setting::ConfigError;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::buses::bridge::protocol::{Receiver, Request};
 use encoder_studio::buses::bridge::sim::Adapter;
-use encoder_studio::sim::AT_ADAPTER;
+use encoder_studio::kinds::at_adapter;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::Moment;
 
@@ -68,7 +68,7 @@ impl Served {
 fn adapter(query: &str) -> Adapter {
     let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
     let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
-    Adapter::from_pairs(&pairs, &AT_ADAPTER).unwrap()
+    Adapter::from_pairs(&pairs, at_adapter()).unwrap()
 }
 
 fn serve(

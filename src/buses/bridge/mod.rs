@@ -1,5 +1,6 @@
 //! The open adapter.
 
+pub(crate) mod commands;
 pub mod jobs;
 pub mod procedures;
 pub mod protocol;

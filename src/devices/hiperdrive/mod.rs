@@ -12,4 +12,4 @@ pub mod views;
 use crate::kinds::Kind;
 
 /// The kind, for the list of kinds.
-pub const KIND: Kind = Kind { view: &views::HiperdriveView, commands: &commands::HiperdriveCommands };
+pub const KIND: Kind = Kind { view: &views::HiperdriveView, commands: &commands::HiperdriveCommands, at_adapter: None };

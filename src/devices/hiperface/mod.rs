@@ -12,4 +12,5 @@ pub mod views;
 use crate::kinds::Kind;
 
 /// The kind, for the list of kinds.
-pub const KIND: Kind = Kind { view: &views::HiperfaceView, commands: &commands::HiperfaceCommands };
+pub const KIND: Kind =
+    Kind { view: &views::HiperfaceView, commands: &commands::HiperfaceCommands, at_adapter: Some(&sim::AtAdapter) };

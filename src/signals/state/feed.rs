@@ -13,8 +13,8 @@ use crate::app::{Text, explain};
 use crate::buses::bridge::jobs::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};
 use crate::buses::bridge::procedures::{Streaming, TapError};
 use crate::buses::bridge::state as bridge;
+use crate::kinds::at_adapter;
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
-use crate::sim::AT_ADAPTER;
 use crate::sim::sine_cosine::Checked;
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
@@ -82,7 +82,7 @@ impl AdapterLink {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-        let (margin, open) = open_adapter(&url, clock.clone(), &AT_ADAPTER).map_err(|error| refused(&error))?;
+        let (margin, open) = open_adapter(&url, clock.clone(), at_adapter()).map_err(|error| refused(&error))?;
         Ok(AdapterLink { url, clock, margin, open })
     }
 

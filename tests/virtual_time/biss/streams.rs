@@ -9,8 +9,8 @@ use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::jobs::{Biss, BissJob, JobError};
 use encoder_studio::devices::biss::procedures::{Error, FrameRun, Sample, Station, Supply};
 use encoder_studio::devices::biss::profile::RegisterRange;
+use encoder_studio::kinds::at_adapter;
 use encoder_studio::link::{Clock, VirtualClock};
-use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
@@ -43,7 +43,7 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let folder = tempfile::tempdir().unwrap();
     let clock = Arc::new(VirtualClock::default());
     let tap = Arc::<Mutex<Tap>>::default();
-    let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap()));
+    let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()));
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
     let mut station = Station::new(Way::Adapter, MARGIN);
     (station.clock_hz, station.supply) = (clock_hz, supply);
@@ -199,7 +199,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
         let mut stand = stand_with(query, Some(supply));
         stand.session.pace(Some(FAST));
         stand.runs(Duration::from_millis(100));
-        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap();
+        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
         if by_job {
             stand.session.run_inline(BissJob::Status).unwrap();
         } else {

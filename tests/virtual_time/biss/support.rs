@@ -12,8 +12,8 @@ use encoder_studio::devices::biss::procedures::procedure::News;
 use encoder_studio::devices::biss::procedures::{Master, Station, Supply};
 use encoder_studio::devices::biss::protocol::{Descriptions, RegisterAddress};
 use encoder_studio::devices::biss::sim::{Config, Encoder, Port};
+use encoder_studio::kinds::at_adapter;
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, Direction, Trace, TraceEntry, VirtualClock};
-use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::sim::Motor;
 use encoder_studio::store::Store;
@@ -58,7 +58,7 @@ impl Pin {
 impl Bus {
     /// An encoder as `sim:?bridge=on&…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
-        Self::with(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap(), Way::Adapter)
+        Self::with(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap(), Way::Adapter)
     }
 
     /// How many requests of an operation were sent.
@@ -161,7 +161,7 @@ impl Bench {
     fn made(way: Way, query: &str, store: Store, folder: tempfile::TempDir) -> Self {
         let end = match way {
             Way::ConfigPin => End::Pin(Arc::new(Mutex::new(Port::new(&Config::from_pairs(&pairs(query)).unwrap())))),
-            Way::Adapter => End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap()))),
+            Way::Adapter => End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()))),
         };
         Self::plugged(end, way, Arc::new(VirtualClock::default()), store, Arc::new(folder))
     }
@@ -206,7 +206,7 @@ impl Bench {
     /// The same, with more to say of the adapter.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfter) -> Self {
         let query = format!("supply=switched&{query}");
-        let adapter = Adapter::from_pairs(&pairs(&query), &AT_ADAPTER).unwrap();
+        let adapter = Adapter::from_pairs(&pairs(&query), at_adapter()).unwrap();
         let folder = Arc::new(folder());
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }

@@ -7,8 +7,8 @@ use encoder_studio::buses::bridge::protocol::Operation;
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::ssi::jobs::SsiJob;
 use encoder_studio::devices::ssi::procedures::{Asking, Error, Words};
+use encoder_studio::kinds::at_adapter;
 use encoder_studio::link::Clock;
-use encoder_studio::sim::AT_ADAPTER;
 
 use super::support::{QUICK, Stand};
 use crate::biss::support::pairs;
@@ -142,7 +142,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
         let mut stand = Stand::new("clock=1500000&pause=30&voltage=5", query);
         stand.session.pace(Some(FAST));
         stand.samples(Duration::from_millis(100));
-        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap();
+        *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
         if by_job {
             stand.read();
         } else {
@@ -162,7 +162,7 @@ fn an_adapter_that_was_reset_between_two_words_is_set_again() {
     let mut stand = Stand::new("voltage=5", query);
     stand.session.pace(Some(Duration::from_millis(100)));
     assert_eq!((stand.sample().first, stand.sample().first), (0, 1));
-    *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap();
+    *stand.adapter.lock().unwrap() = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
     let words = stand.sample();
     assert!(words.first == 2 && words.words[0] != (1 << 25) - 1, "the encoder has its supply again: {words:?}");
     assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2));

@@ -7,8 +7,8 @@ use encoder_studio::buses::bridge::protocol::{Operation, Packet, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::ssi::jobs::{Ssi, SsiJob, SsiOutput};
 use encoder_studio::devices::ssi::procedures::{Asking, Station, Words};
+use encoder_studio::kinds::at_adapter;
 use encoder_studio::link::{Clock, VirtualClock};
-use encoder_studio::sim::AT_ADAPTER;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
@@ -30,7 +30,7 @@ pub(crate) struct Stand {
 impl Stand {
     /// With what a link to the adapter and the virtual adapter itself say.
     pub(crate) fn new(link: &str, query: &str) -> Self {
-        let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), &AT_ADAPTER).unwrap()));
+        let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()));
         Self::before(link, adapter)
     }
 

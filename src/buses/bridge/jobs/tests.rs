@@ -9,8 +9,9 @@ use crate::buses::bridge::protocol::{
     AnalogData, BissData, BissStatus, Capabilities, ErrorCode, Hello, Message, Operation, Receiver, Reply, Request,
 };
 use crate::buses::bridge::sim::Adapter;
+use crate::kinds::at_adapter;
 use crate::link::{LinkError, LinkErrorKind, SimLink, VirtualClock};
-use crate::sim::{AT_ADAPTER, ByteDevice};
+use crate::sim::ByteDevice;
 use crate::units::{CharacterFormat, Moment};
 use crate::worker::stream::{PATIENCE, Stream};
 
@@ -34,7 +35,7 @@ pub(crate) fn bench<S: Stretch>(stretch: S, device: impl ByteDevice + 'static) -
 
 pub(crate) fn virtual_adapter(query: &str) -> Adapter {
     let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
-    Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), &AT_ADAPTER).unwrap()
+    Adapter::from_pairs(&query.split('&').filter_map(pair).collect::<Vec<_>>(), at_adapter()).unwrap()
 }
 
 /// Position frames as they come.

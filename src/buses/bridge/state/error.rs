@@ -65,8 +65,8 @@ mod tests {
     use crate::app::explain::{in_both_languages, setting};
     use crate::buses::bridge::protocol::BodyError;
     use crate::buses::bridge::sim::Adapter;
+    use crate::kinds::at_adapter;
     use crate::link::Query;
-    use crate::sim::AT_ADAPTER;
 
     #[test]
     fn each_code_has_words_of_its_own() {
@@ -114,7 +114,7 @@ mod tests {
                        ssi-error=x ssi=afs60&ssi-error=x supply=x uart=x motor=x version=x";
         for text in queries.split_whitespace() {
             let query: Query = text.parse().unwrap();
-            let error = Adapter::from_pairs(query.pairs(), &AT_ADAPTER).err().unwrap();
+            let error = Adapter::from_pairs(query.pairs(), at_adapter()).err().unwrap();
             in_both_languages(&setting(&error), &error);
         }
     }

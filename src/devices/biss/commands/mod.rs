@@ -27,8 +27,9 @@ use crate::cli::{Failure, Result};
 use crate::devices::biss::profile::{ItemError, RegisterRange};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::sim;
+use crate::kinds::at_adapter;
 use crate::profile::{Body, Comparison, ProfileError};
-use crate::sim::{AT_ADAPTER, ConfigError};
+use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
 /// How long is waited for a motor, or a shaft at rest, where nobody can be told.
@@ -149,14 +150,14 @@ fn is_combined(action: &PossibleValue) -> bool {
 
 fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     let settings = settings(output, arguments)?;
-    let known = bridge::keys(&AT_ADAPTER);
+    let known = bridge::keys(at_adapter());
     let needs_adapter = |name: &str| known.contains(&name) && !sim::Config::KEYS.contains(&name);
     if let Some((name, _)) = settings.iter().find(|(name, _)| needs_adapter(name)).filter(|_| !arguments.bridge) {
         return Err(Failure::Usage(format!("{name} is a setting of the adapter: it needs --bridge")));
     }
     let refused = |error: ConfigError| Failure::Usage(error.to_string());
     Ok(match arguments.bridge {
-        true => Box::new(bridge::Adapter::from_pairs(&settings, &AT_ADAPTER).map_err(refused)?),
+        true => Box::new(bridge::Adapter::from_pairs(&settings, at_adapter()).map_err(refused)?),
         false => Box::new(sim::Port::new(&sim::Config::from_pairs(&settings).map_err(refused)?)),
     })
 }
@@ -164,13 +165,6 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
 impl Simulated for sim::Port {
     fn format(&self, _now: Moment) -> Option<CharacterFormat> {
         Some(ubicom::FORMAT)
-    }
-}
-
-impl Simulated for bridge::Adapter {
-    /// Over USB there is nothing to set.
-    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
-        None
     }
 }
 

@@ -7,8 +7,9 @@ use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim::{self as bridge, Adapter};
 use crate::devices::biss::procedures::{Echo, Station, Way};
 use crate::devices::biss::sim::{Config, Port};
+use crate::kinds::at_adapter;
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
-use crate::sim::{AT_ADAPTER, ConfigError, Motor};
+use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
@@ -83,7 +84,7 @@ fn way(url: &LinkUrl) -> Result<Way, OpenError> {
 fn check_virtual(query: &Query, way: Way) -> Result<(), UrlError> {
     let own = |way: Way| {
         let line = way.parameters().iter().copied().filter(|name| !Config::KEYS.contains(name));
-        let device = if way == Way::Adapter { bridge::keys(&AT_ADAPTER) } else { Config::KEYS.to_vec() };
+        let device = if way == Way::Adapter { bridge::keys(at_adapter()) } else { Config::KEYS.to_vec() };
         [BRIDGE].into_iter().chain(line).chain(device).collect::<Vec<_>>()
     };
     let known = own(way);
@@ -106,7 +107,7 @@ impl Simulated {
     fn new(way: Way, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         Ok(match way {
             Way::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
-            Way::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, &AT_ADAPTER)?)),
+            Way::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, at_adapter())?)),
         })
     }
 

@@ -11,8 +11,8 @@ use crate::buses::ubicom::protocol::FORMAT;
 use crate::devices::biss::jobs::check;
 use crate::devices::biss::procedures::{Echo, PARAMETERS, Way};
 use crate::devices::biss::sim;
+use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
-use crate::sim::AT_ADAPTER;
 use crate::units::Parity;
 
 /// How the encoder is reached.
@@ -268,7 +268,7 @@ impl BissForm {
     /// What only another way has is not taken along; what nothing has is, so that it is refused by its name.
     fn belongs(&self, name: &str) -> bool {
         let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
-        let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(&AT_ADAPTER).contains(&name));
+        let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(at_adapter()).contains(&name));
         let of_the_virtual = self.way == BissWay::Virtual && (encoder || (adapter && self.behind_adapter));
         let elsewhere = PARAMETERS.contains(&name) || encoder || adapter || name == BRIDGE.0;
         way.parameters().contains(&name) || of_the_virtual || !elsewhere

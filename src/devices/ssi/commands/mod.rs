@@ -20,8 +20,8 @@ use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::KIND;
 use crate::devices::ssi::sim::{AtAdapter, Encoder};
+use crate::kinds::at_adapter;
 use crate::profile::{Body, Comparison, ProfileError};
-use crate::sim::AT_ADAPTER;
 
 /// What can be done with SSI encoders. They send their position and have no memory.
 pub(crate) struct SsiCommands;
@@ -151,7 +151,7 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
         None => AtAdapter::DELIVERED,
     };
     // In place of the one that is as delivered, which has the same settings.
-    let others = AT_ADAPTER.into_iter().filter(|device| device.keys() != encoder.keys());
+    let others = at_adapter().iter().copied().filter(|device| device.keys() != encoder.keys());
     let devices: Vec<&dyn Attachable> = [&encoder as &dyn Attachable].into_iter().chain(others).collect();
     let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(adapter))

@@ -6,8 +6,8 @@ use super::Ssi;
 use crate::buses::bridge::jobs::FORMAT;
 use crate::buses::bridge::sim::Adapter;
 use crate::devices::ssi::procedures::{PARAMETERS, Station};
+use crate::kinds::at_adapter;
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
-use crate::sim::AT_ADAPTER;
 use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
@@ -49,7 +49,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
             return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));
         }
     };
-    let adapter = Adapter::from_pairs(&query, &AT_ADAPTER)?;
+    let adapter = Adapter::from_pairs(&query, at_adapter())?;
     Ok((Station::from_query(&url.query, margin(url.scheme))?, adapter))
 }
 

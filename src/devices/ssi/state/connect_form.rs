@@ -8,8 +8,8 @@ use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
 use crate::devices::ssi::procedures::PARAMETERS;
+use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
-use crate::sim::AT_ADAPTER;
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -149,7 +149,7 @@ impl SsiForm {
 
 /// A setting of the virtual encoder or of the virtual adapter before it.
 fn is_of_the_virtual(name: &str) -> bool {
-    bridge::keys(&AT_ADAPTER).contains(&name)
+    bridge::keys(at_adapter()).contains(&name)
 }
 
 #[cfg(test)]

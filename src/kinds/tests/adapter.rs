@@ -1,0 +1,31 @@
+//! The settings of the virtual adapter with all that hangs on it.
+
+use crate::buses::bridge::sim::{Adapter, keys};
+use crate::kinds::at_adapter;
+use crate::sim::ConfigError;
+use crate::sim::setting::pairs;
+use proptest::prelude::*;
+
+fn error(query: &str) -> Option<ConfigError> {
+    Adapter::from_pairs(&pairs(query), at_adapter()).err()
+}
+
+#[test]
+fn each_reads_its_own_settings() {
+    let query = "line=low&noise=0.5&ssi-error=error:2&ssi=ahm36,st=12&supply=switched&uart=hiperface&version=2&rpm=60";
+    assert_eq!(error(query), None);
+    let unknown = error("lin=low").unwrap().to_string();
+    let sentence = "a virtual adapter has no setting `lin`; allowed are line, noise, ssi, ssi-error, supply, uart, \
+                    version, seed, fault, firmware, ";
+    assert!(unknown.starts_with(sentence), "{unknown}");
+    for query in ["rpm=NaN", "noise=2", "ssi=x", "ssi-error=ERROR", "uart=on", "version=256", "seed=x"] {
+        assert!(matches!(error(query), Some(ConfigError::Value { .. })), "{query}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_value_panics(key in 0..25_usize, value in ".*") {
+        let _ = Adapter::from_pairs(&[(keys(at_adapter())[key].to_owned(), value)], at_adapter());
+    }
+}
