@@ -8,11 +8,11 @@ use encoder_studio::ui;
 
 fn main() -> ExitCode {
     let program = program();
-    match cli::run(program.studio.formats, program.commands) {
-        Asked::Command(code) => code,
+    match cli::run(std::env::args_os(), program.studio.formats, program.commands) {
+        Asked::Command(status) => ExitCode::from(status),
         Asked::Window(start) => match ui::run(start, program.studio, program.tabs) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(why) => cli::no_window(&why),
+            Err(why) => ExitCode::from(cli::no_window(&why)),
         },
     }
 }

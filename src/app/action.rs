@@ -219,7 +219,7 @@ pub struct Opened<D: Kind> {
     /// The device lives in this process.
     pub(super) is_virtual: bool,
     /// When its clock began.
-    pub(crate) began: jiff::Zoned,
+    pub began: jiff::Zoned,
     /// Who waits for the wire waits until this is dropped.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }

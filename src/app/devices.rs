@@ -10,6 +10,7 @@ mod shown;
 pub use command::DeviceCommand;
 pub(crate) use kind::OpenProfile;
 pub use kind::{DeviceKind, DeviceType};
-pub(crate) use model::{ActContext, DeviceMemory, DeviceModel, MotionControl, Prepare};
+pub(crate) use model::Prepare;
+pub use model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
 pub use open_device::{AnyDevice, OpenDevice};
 pub(super) use shown::Shown;

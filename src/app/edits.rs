@@ -1,45 +1,46 @@
-//! Bytes that a user wants otherwise than the device has them, by their place, with steps that can be undone. What a byte
+//! Values that a user wants otherwise than the device has them, by their place, with steps that can be undone. What a value
 //! is on the device, and whether it may be edited at all, is said by whoever holds the memory.
 
 use std::collections::BTreeMap;
 
+use super::PendingEdits;
 use super::history::History;
 
-/// Edited bytes by their place.
+/// Edited values by their place: bytes, where no other type is named.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Edits<K: Ord + Copy> {
-    edits: BTreeMap<K, u8>,
-    history: History<BTreeMap<K, u8>>,
+pub struct Edits<K: Ord, V = u8> {
+    edits: BTreeMap<K, V>,
+    history: History<BTreeMap<K, V>>,
 }
 
-impl<K: Ord + Copy> Default for Edits<K> {
+impl<K: Ord, V> Default for Edits<K, V> {
     fn default() -> Self {
         Edits { edits: BTreeMap::new(), history: History::default() }
     }
 }
 
-impl<K: Ord + Copy> Edits<K> {
-    /// The byte that is wanted here; `None`: as the device has it.
-    pub(crate) fn get(&self, at: K) -> Option<u8> {
+impl<K: Ord + Copy, V: Copy + PartialEq> Edits<K, V> {
+    /// The value that is wanted here; `None`: as the device has it.
+    pub fn get(&self, at: K) -> Option<V> {
         self.edits.get(&at).copied()
     }
 
     /// There is something to write.
-    pub(crate) fn is_dirty(&self) -> bool {
+    pub fn is_dirty(&self) -> bool {
         !self.edits.is_empty()
     }
 
     /// All of them, in the order of their places.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (K, u8)> {
-        self.edits.iter().map(|(at, byte)| (*at, *byte))
+    pub fn iter(&self) -> impl Iterator<Item = (K, V)> {
+        self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits bytes, as one step that can be undone; `is_edit` says whether a byte at its place is one.
-    pub(crate) fn put(&mut self, bytes: impl IntoIterator<Item = (K, u8)>, is_edit: impl Fn(K, u8) -> bool) {
+    /// Edits values, as one step that can be undone; `is_edit` says whether a value at its place is one.
+    pub fn put(&mut self, values: impl IntoIterator<Item = (K, V)>, is_edit: impl Fn(K, V) -> bool) {
         self.step(|edits| {
-            for (at, byte) in bytes {
-                if is_edit(at, byte) {
-                    edits.insert(at, byte);
+            for (at, value) in values {
+                if is_edit(at, value) {
+                    edits.insert(at, value);
                 } else {
                     edits.remove(&at);
                 }
@@ -48,48 +49,78 @@ impl<K: Ord + Copy> Edits<K> {
     }
 
     /// Takes edits back, as one step that can be undone. False where none is meant.
-    pub(crate) fn revert(&mut self, is_meant: impl Fn(K) -> bool) -> bool {
+    pub fn revert(&mut self, is_meant: impl Fn(K) -> bool) -> bool {
         self.step(|edits| edits.retain(|at, _| !is_meant(*at)))
     }
 
     /// Forgets what is no edit any more: the device was read again, or a step was undone.
-    pub(crate) fn settle(&mut self, is_edit: impl Fn(K, u8) -> bool) {
-        self.edits.retain(|at, byte| is_edit(*at, *byte));
+    pub fn settle(&mut self, is_edit: impl Fn(K, V) -> bool) {
+        self.edits.retain(|at, value| is_edit(*at, *value));
     }
 
     /// There is a step to undo.
-    pub(crate) fn can_undo(&self) -> bool {
+    pub fn can_undo(&self) -> bool {
         self.history.can_undo()
     }
 
     /// There is a step to do again.
-    pub(crate) fn can_redo(&self) -> bool {
+    pub fn can_redo(&self) -> bool {
         self.history.can_redo()
     }
 
     /// Undoes the last step. False when there is none.
-    pub(crate) fn undo(&mut self) -> bool {
+    pub fn undo(&mut self) -> bool {
         self.history.undo(&mut self.edits)
     }
 
     /// Does the last undone step again. False when there is none.
-    pub(crate) fn redo(&mut self) -> bool {
+    pub fn redo(&mut self) -> bool {
         self.history.redo(&mut self.edits)
     }
 
     /// What was undone belongs to another memory.
-    pub(crate) fn forget_redo(&mut self) {
+    pub fn forget_redo(&mut self) {
         self.history.forget_undone();
     }
 
     /// What led here cannot be undone any more.
-    pub(crate) fn forget_steps(&mut self) {
+    pub fn forget_steps(&mut self) {
         self.history.forget();
     }
 
-    fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, u8>)) -> bool {
+    fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, V>)) -> bool {
         let mut after = self.edits.clone();
         change(&mut after);
         self.history.step(&mut self.edits, after)
+    }
+}
+
+impl<K: Ord + Copy, V: Copy + PartialEq> PendingEdits for Edits<K, V> {
+    fn count(&self) -> usize {
+        self.edits.len()
+    }
+
+    fn is_dirty(&self) -> bool {
+        Edits::is_dirty(self)
+    }
+
+    fn can_undo(&self) -> bool {
+        Edits::can_undo(self)
+    }
+
+    fn can_redo(&self) -> bool {
+        Edits::can_redo(self)
+    }
+
+    fn undo(&mut self) -> bool {
+        Edits::undo(self)
+    }
+
+    fn redo(&mut self) -> bool {
+        Edits::redo(self)
+    }
+
+    fn revert(&mut self) -> bool {
+        Edits::revert(self, |_| true)
     }
 }

@@ -25,4 +25,4 @@ pub trait PendingEdits {
 }
 
 /// A step through the edits: one undone or done again, or all taken back.
-pub(crate) type EditStep = fn(&mut dyn PendingEdits) -> bool;
+pub type EditStep = fn(&mut dyn PendingEdits) -> bool;

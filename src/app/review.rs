@@ -285,9 +285,14 @@ pub trait Reviewed {
     /// An operation of it, in words.
     fn op(prepared: &Self::Prepared, op: &Self::Op) -> OpWords;
     /// Values of the mounting differ and are left alone.
-    fn leaves_mounting(prepared: &Self::Prepared) -> bool;
+    fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
+        false
+    }
+
     /// What it writes that is right for another device alone, and has to be set up anew.
-    fn redo(prepared: &Self::Prepared) -> Vec<Text>;
+    fn redo(_prepared: &Self::Prepared) -> Vec<Text> {
+        Vec::new()
+    }
 
     /// What has to be answered about it.
     fn questions(_prepared: &Self::Prepared) -> Vec<Question> {
@@ -295,9 +300,15 @@ pub trait Reviewed {
     }
 
     /// What should make somebody stop and look.
-    fn warnings(prepared: &Self::Prepared) -> Vec<Text>;
+    fn warnings(_prepared: &Self::Prepared) -> Vec<Text> {
+        Vec::new()
+    }
+
     /// What it needs from the person in front of the device.
-    fn needs(change: &Self::Change, prepared: &Self::Prepared) -> Vec<Text>;
+    fn needs(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
+        Vec::new()
+    }
+
     /// What it costs.
     fn cost(prepared: &Self::Prepared) -> Text;
     /// The device counts as worn after it.
@@ -319,7 +330,7 @@ pub trait Reviewed {
 }
 
 /// What a write came to, and how much that weighs.
-pub(crate) fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
+pub fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),

@@ -74,7 +74,7 @@ impl TraceLog {
     const CAPACITY: usize = 5_000;
 
     /// Adds frames; `explain` says what each means. `dropped` came too fast to be shown.
-    pub(crate) fn add<E: Into<Explained>>(
+    pub fn add<E: Into<Explained>>(
         &mut self,
         entries: Vec<TraceEntry>,
         dropped: u64,

@@ -7,16 +7,18 @@ use jiff::{SignedDuration, Zoned};
 
 use crate::analysis::history::{Flags, Kind, Part, Value};
 use crate::analysis::{Rates, Time};
-use crate::app::Text;
 use crate::app::closing::MUCH;
-use crate::app::recorder::{self, GroupId, Line, LineId, Recorder};
+use crate::app::recorder::{self, GroupId, LineId, Recorder};
+use crate::app::{Recording, Text};
 use crate::units::Moment;
 
 mod follower;
 mod meaning;
+mod watchable;
 
 use follower::Follower;
-pub(crate) use meaning::Meaning;
+pub use meaning::Meaning;
+pub use watchable::{Watchable, Watching};
 
 /// Positions that are kept: more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
@@ -37,47 +39,20 @@ const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
 /// A position, or that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Sighting {
+pub struct Sighting {
     /// When.
-    pub(crate) at: Moment,
+    pub at: Moment,
     /// Steps, within the range; `None`: the device has none to give.
-    pub(crate) position: Option<i64>,
+    pub position: Option<i64>,
     /// The device says that it is invalid.
-    pub(crate) is_bad: bool,
+    pub is_bad: bool,
     /// The device warned with it.
-    pub(crate) is_warned: bool,
-}
-
-/// What can be watched.
-pub(crate) trait Watchable: Clone + PartialEq {
-    /// Its values are whole numbers.
-    fn is_whole(&self) -> bool;
-
-    /// What it is called, and in which units it is seen.
-    fn line(&self, group: GroupId) -> Line;
-
-    /// Samples of this go on as samples of the other, which may be seen in other units.
-    fn continues(&self, other: &Self) -> bool {
-        self == other
-    }
-}
-
-/// A watched value, or that there is none at the moment.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Watching {
-    /// When.
-    pub(crate) at: Moment,
-    /// In the unit of its line.
-    pub(crate) value: Option<Value>,
-    /// The device warned with it.
-    pub(crate) is_warned: bool,
-    /// Why there will be none, however long one waits.
-    pub(crate) never: Option<Text>,
+    pub is_warned: bool,
 }
 
 /// The recorder of a device, and what is needed to fill it; `W` is what can be watched.
 #[derive(Debug)]
-pub(crate) struct Track<W> {
+pub struct Track<W> {
     /// Position, speed and acceleration as lines.
     pub(crate) recorder: Recorder,
     positions: GroupId,
@@ -105,6 +80,24 @@ struct Watched<W> {
     line: LineId,
     /// It is recorded; else it was, and its samples are there still.
     active: bool,
+}
+
+impl<W: Watchable> Recording for Track<W> {
+    fn recorder(&self) -> &Recorder {
+        &self.recorder
+    }
+
+    fn recorder_mut(&mut self) -> &mut Recorder {
+        &mut self.recorder
+    }
+
+    fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+        Track::poll(self, interval, begins);
+    }
 }
 
 /// Positions on their way into the recorder.
@@ -156,7 +149,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// A session has begun. What was recorded before stays: its samples are earlier by as much as the clocks say.
-    pub(crate) fn begin(&mut self, began: &Zoned) {
+    pub fn begin(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
         // A clock of the wall may be set back.
@@ -166,12 +159,12 @@ impl<W: Watchable> Track<W> {
     }
 
     /// What positions mean; `None` until the first.
-    pub(crate) fn meaning(&self) -> Option<&Meaning> {
+    pub fn meaning(&self) -> Option<&Meaning> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
     /// Positions are wished at this interval from now on; when that begins, what was before is not joined to what comes.
-    pub(crate) fn poll(&mut self, interval: Option<Duration>, begins: bool) {
+    pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
         if begins {
@@ -180,7 +173,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// So many samples were dropped before those that come next.
-    pub(crate) fn lose(&mut self, dropped: u64) {
+    pub fn lose(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
             self.gap();
@@ -188,7 +181,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records positions, one after the other.
-    pub(crate) fn add(&mut self, sightings: &[Sighting], meaning: &Meaning) {
+    pub fn add(&mut self, sightings: &[Sighting], meaning: &Meaning) {
         self.see(meaning);
         let mut columns = Columns::default();
         for sighting in sightings {
@@ -235,7 +228,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records these values too, and no others beside the position. What was recorded of others stays.
-    pub(crate) fn watch(&mut self, wished: &[W]) {
+    pub fn watch(&mut self, wished: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
             if !own.active || wished.iter().any(|what| own.what.continues(what)) {
@@ -274,12 +267,12 @@ impl<W: Watchable> Track<W> {
     }
 
     /// What is recorded beside the position.
-    pub(crate) fn watched(&self) -> Vec<W> {
+    pub fn watched(&self) -> Vec<W> {
         self.watched.iter().filter(|own| own.active).map(|own| own.what.clone()).collect()
     }
 
     /// Records a watched value.
-    pub(crate) fn add_watched(&mut self, what: &W, watching: &Watching) {
+    pub fn add_watched(&mut self, what: &W, watching: &Watching) {
         let Some(own) = self.watched.iter().find(|own| own.active && own.what == *what) else { return };
         let (group, line) = (own.group, own.line);
         let mut flags = if watching.value.is_some() { Flags::NONE } else { Flags::BAD };
@@ -299,12 +292,12 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Samples that came too fast to be recorded.
-    pub(crate) fn dropped(&self) -> u64 {
+    pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
     /// Positions that are recorded.
-    pub(crate) fn positions(&self) -> u64 {
+    pub fn positions(&self) -> u64 {
         let [line, ..] = self.lines;
         let all = self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.all());
         all.map_or(0, |all| all.end - all.start)
@@ -312,7 +305,7 @@ impl<W: Watchable> Track<W> {
 
     /// Another device: nothing of what was recorded is about it, and of minutes that no table has it stays. What is watched
     /// is watched on.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
             self.watch(&[]);
@@ -328,7 +321,7 @@ impl<W: Watchable> Track<W> {
 
     /// What was recorded is read anew, as far as so many words are kept of it: the clocks stay as they are. Where that is not
     /// all of it, what was recorded stays too.
-    pub(crate) fn begin_again(&mut self, kept: usize) {
+    pub fn begin_again(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
             self.part(&Meaning::of_steps(None));
             (self.follower, self.newest) = (None, None);
@@ -390,7 +383,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Samples are missing before those that come next.
-    pub(crate) fn gap(&mut self) {
+    pub fn gap(&mut self) {
         self.recorder.break_all();
         self.lose_track();
     }

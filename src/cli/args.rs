@@ -8,9 +8,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-pub(crate) use act::Do;
+pub use act::Do;
 pub(super) use build::{Arguments, Called, parse_arguments};
-pub(crate) use decode::{Decode, Direction, DirectionOption};
+pub use decode::Decode;
+pub(crate) use decode::{Direction, DirectionOption};
 
 use super::Failure;
 use super::commands::{Commands, OwnOptions};
@@ -30,6 +31,7 @@ struct Front {
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Common {
     /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
     /// bridge:tcp:HOST:PORT or replay:FILE, with ?name=value&…
@@ -98,6 +100,7 @@ pub(super) struct Device {
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Find {
     /// The kind of device.
     pub(super) device: String,
@@ -106,6 +109,7 @@ pub struct Find {
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Status {
     /// The kind of device.
     pub(super) device: String,
@@ -114,6 +118,7 @@ pub struct Status {
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Position {
     /// The kind of device.
     pub(super) device: String,
@@ -122,7 +127,7 @@ pub struct Position {
     pub(super) count: Option<u64>,
     /// Print a table (CSV): a header once, then a line a reading.
     #[arg(long, conflicts_with = "json")]
-    pub(crate) csv: bool,
+    pub csv: bool,
     /// Time between two readings in milliseconds; 0: as fast as the line allows.
     #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
@@ -131,6 +136,7 @@ pub struct Position {
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Read {
     /// The kind of device.
     pub(super) device: String,
@@ -141,12 +147,13 @@ pub struct Read {
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Save {
     /// The kind of device.
     pub(super) device: String,
     /// The profile to write.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
-    pub(crate) file: PathBuf,
+    pub file: PathBuf,
     /// Replace a file that exists without asking.
     #[arg(long)]
     pub(super) force: bool,
@@ -168,18 +175,19 @@ pub(super) struct Diff {
 #[derive(Args)]
 pub(super) struct Verify {
     /// The profile.
-    pub(crate) file: PathBuf,
+    pub file: PathBuf,
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Restore {
     /// The profile.
-    pub(crate) file: PathBuf,
+    pub file: PathBuf,
     /// Print exactly the operations that would be carried out; write nothing.
     #[arg(long)]
-    pub(crate) dry_run: bool,
+    pub dry_run: bool,
     #[command(flatten)]
-    pub(crate) consent: Consenting,
+    pub consent: Consenting,
     /// The profile may be of another serial number of the same type.
     #[arg(long)]
     pub(crate) allow_other_device: bool,
@@ -201,16 +209,18 @@ pub struct Restore {
 }
 
 #[derive(Args)]
-pub(crate) struct Consenting {
+#[expect(missing_docs, reason = "clap would make help of it")]
+pub struct Consenting {
     /// Write without asking.
     #[arg(long)]
-    pub(crate) yes: bool,
+    pub yes: bool,
     /// Write although the device counts as worn, or the logbook cannot tell its write cycles.
     #[arg(long)]
-    pub(crate) force_wear: bool,
+    pub force_wear: bool,
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Write {
     /// The kind of device.
     pub(super) device: String,
@@ -221,12 +231,13 @@ pub struct Write {
     #[arg(allow_hyphen_values = true)]
     pub(crate) value: String,
     #[command(flatten)]
-    pub(crate) consent: Consenting,
+    pub consent: Consenting,
     #[command(flatten)]
     pub(crate) own: OwnOptions,
 }
 
 #[derive(Args)]
+#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Simulate {
     /// The kind of device.
     pub(super) device: String,

@@ -10,7 +10,7 @@ use super::{Failure, Result};
 use crate::worker::{self, NotBegun};
 
 /// Without a terminal nobody can be asked: refused before anything is opened.
-pub(crate) fn require_consent(consent: &Consenting) -> Result<()> {
+pub fn require_consent(consent: &Consenting) -> Result<()> {
     if consent.yes || can_ask() {
         return Ok(());
     }
@@ -25,7 +25,7 @@ pub(crate) fn can_ask() -> bool {
 }
 
 /// Shows the plan and asks, unless the command line has consented already.
-pub(crate) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result<()> {
+pub fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result<()> {
     if consent.yes {
         return Ok(());
     }
@@ -37,7 +37,7 @@ pub(crate) fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result
 }
 
 /// Refuses a write into a worn device, or one whose write cycles are not known, before anybody is asked for consent to it.
-pub(crate) fn check_wear<D>(consent: &Consenting, seen: Option<u64>, cost: u64, limit: u64) -> Result<()>
+pub fn check_wear<D>(consent: &Consenting, seen: Option<u64>, cost: u64, limit: u64) -> Result<()>
 where
     D: Runs,
     D::Error: From<NotBegun>,

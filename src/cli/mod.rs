@@ -9,20 +9,27 @@ pub(crate) mod decode;
 pub(crate) mod number;
 pub(crate) mod output;
 pub(crate) mod patience;
-pub(crate) mod plan;
+pub mod plan;
 mod ports;
 pub(crate) mod positions;
 pub(crate) mod profiles;
 pub(crate) mod runner;
 pub(crate) mod simulate;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
-use args::{Arguments, Called, Command, Common};
-use output::Output;
+use args::{Arguments, Called, Command};
 
+pub use args::{Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProtocolDecoder};
+pub use consent::{agree, check_wear, require_consent};
+pub use output::{Lines, Output};
+pub use patience::Pace;
+pub use positions::readings;
+pub use profiles::{Left, keep, restore_options, show_dry_run, show_restored};
+pub use runner::{Ended, Runner, Runs, failed, unexpected};
+pub use simulate::{Simulated, settings};
 
 use crate::app::Given;
 use crate::link::LinkUrl;
@@ -51,10 +58,10 @@ pub enum Failure {
 /// What a command comes to.
 pub type Result<T = Done> = std::result::Result<T, Failure>;
 
-/// What the arguments of this process ask for.
+/// What arguments ask for.
 pub enum Asked {
-    /// A command, which has ended like this.
-    Command(ExitCode),
+    /// A command, which has ended with this status.
+    Command(u8),
     /// The window.
     Window(Window),
 }
@@ -70,14 +77,14 @@ pub struct Window {
     pub given: Given,
 }
 
-/// Runs the command that the arguments of this process name; without one the window is asked for. Profiles are read in these
-/// formats; these are the kinds of device that there are commands for.
-pub fn run(formats: Formats, commands: Commands) -> Asked {
-    let arguments = match args::parse_arguments(std::env::args_os(), commands) {
+/// Runs the command that the arguments of a process name, the first of which is the program's name; without one the window is
+/// asked for. Profiles are read in these formats; these are the kinds of device that there are commands for.
+pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands: Commands) -> Asked {
+    let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,
         Err(error) => {
             output::say_usage(&error);
-            return Asked::Command(ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)));
+            return Asked::Command(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
     let Arguments { common, profile, command } = arguments;
@@ -93,8 +100,8 @@ pub fn run(formats: Formats, commands: Commands) -> Asked {
     }
 }
 
-/// Says why there is no window, and how the process ends.
-pub fn no_window(why: &str) -> ExitCode {
+/// Says why there is no window. Returns the status with which the process ends.
+pub fn no_window(why: &str) -> u8 {
     end(Err(Failure::Failed(vec![why.to_owned()])))
 }
 
@@ -115,19 +122,19 @@ fn usage(message: &str) -> Failure {
     Failure::Usage(message.to_owned())
 }
 
-fn end(result: Result) -> ExitCode {
+fn end(result: Result) -> u8 {
     match result {
-        Ok(Done::Well) | Err(Failure::NobodyReads) => ExitCode::SUCCESS,
-        Ok(Done::Differs) => ExitCode::from(3),
+        Ok(Done::Well) | Err(Failure::NobodyReads) => 0,
+        Ok(Done::Differs) => 3,
         Err(Failure::Failed(lines)) => {
             for (at, line) in lines.iter().enumerate() {
                 output::say(&format!("{}{line}\n", if at == 0 { "error: " } else { "" }));
             }
-            ExitCode::FAILURE
+            1
         }
         Err(Failure::Usage(message)) => {
             output::say(&format!("error: {message}\n"));
-            ExitCode::from(2)
+            2
         }
     }
 }

@@ -16,15 +16,17 @@ pub struct Output {
 
 /// Lines of label and value, aligned.
 #[derive(Default)]
-pub(crate) struct Lines(Vec<(String, String)>);
+pub struct Lines(Vec<(String, String)>);
 
 impl Lines {
-    pub(crate) fn add(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
+    /// Adds a line.
+    pub fn add(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
         self.0.push((label.into(), value.to_string()));
         self
     }
 
-    pub(crate) fn text(&self) -> String {
+    /// Returns the lines, their values below each other.
+    pub fn text(&self) -> String {
         let width = self.0.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
         self.0.iter().map(|(label, value)| format!("{label:width$}  {value}").trim_end().to_owned() + "\n").collect()
     }
@@ -51,12 +53,12 @@ impl Output {
     }
 
     /// Prints a result in the form that was asked for.
-    pub(crate) fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
+    pub fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
         if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
     }
 
     /// Prints lines as they are, and lets nothing of them wait.
-    pub(crate) fn print(&self, printed: &str) -> Result<(), Failure> {
+    pub fn print(&self, printed: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
@@ -77,7 +79,7 @@ impl Output {
     }
 
     /// Says something that is not a result.
-    pub(crate) fn remark(&self, text: &str) {
+    pub fn remark(&self, text: &str) {
         say(&format!("{text}\n"));
     }
 }

@@ -12,7 +12,7 @@ const LOOKS: Duration = Duration::from_millis(500);
 const SLOW: Duration = Duration::from_millis(100);
 
 /// How long replies of a device take, and how long they may.
-pub(crate) struct Pace {
+pub struct Pace {
     /// What has been measured.
     pub(crate) replies: Replies,
     /// So long a reply may take, as `timeout=` in the link says.

@@ -11,30 +11,36 @@ use crate::store::LogbookError;
 use crate::worker::Committed;
 
 /// A plan, for a person and for a script.
-pub(crate) struct Shown {
-    pub(crate) operations: Vec<Json>,
-    pub(crate) text: String,
-    pub(crate) write_cycles: u64,
+pub struct Shown {
+    /// The operations, for a script.
+    pub operations: Vec<Json>,
+    /// The same for a person, with what it costs.
+    pub text: String,
+    /// What it costs.
+    pub write_cycles: u64,
 }
 
 /// A line of a plan.
-pub(crate) struct Step {
-    pub(crate) item: String,
-    pub(crate) old: Option<String>,
-    pub(crate) new: Option<String>,
+pub struct Step {
+    /// What is changed.
+    pub item: String,
+    /// What is there now.
+    pub old: Option<String>,
+    /// What will be there.
+    pub new: Option<String>,
     /// None for what is saved together with others.
-    pub(crate) write_cycles: u64,
+    pub write_cycles: u64,
 }
 
 impl Step {
     /// For a script.
-    pub(crate) fn json(&self) -> Json {
+    pub fn json(&self) -> Json {
         json!({"item": self.item, "old": self.old, "new": self.new, "write_cycles": self.write_cycles})
     }
 }
 
 /// Steps for a person, a line each.
-pub(crate) fn lines(steps: impl Iterator<Item = Step>) -> Lines {
+pub fn lines(steps: impl Iterator<Item = Step>) -> Lines {
     let mut lines = Lines::default();
     for Step { item, old, new, .. } in steps {
         let new = new.unwrap_or_default();
@@ -47,7 +53,7 @@ pub(crate) fn lines(steps: impl Iterator<Item = Step>) -> Lines {
 }
 
 /// A plan for a person: its lines, and what it costs beside what this computer has seen, and the limit where there is one.
-pub(crate) fn text<Base, Op: Operation>(
+pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
     seen: Option<u64>,
@@ -67,17 +73,20 @@ pub(super) const NOTHING: &str = "nothing to write: it is so already\n";
 
 /// What a write has done.
 #[derive(Default)]
-pub(crate) struct Spent {
-    pub(crate) written: u64,
-    pub(crate) verified: u64,
-    pub(crate) write_cycles: u64,
+pub struct Spent {
+    /// Things that were changed.
+    pub written: u64,
+    /// Those of them that were read back.
+    pub verified: u64,
+    /// What it has cost.
+    pub write_cycles: u64,
     /// `None`: there was nothing to write.
-    pub(crate) backup: Option<PathBuf>,
+    pub backup: Option<PathBuf>,
 }
 
 impl Spent {
     /// What a commit did; what the logbook could not take is told.
-    pub(crate) fn of(output: &Output, committed: Committed<Written>) -> Self {
+    pub fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());
         let Written { written, verified, write_cycles, .. } = written;

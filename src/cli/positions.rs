@@ -7,7 +7,7 @@ use super::runner::{Ended, Runner, Runs};
 use super::{Done, Result};
 
 /// Runs `job` again and again, and lets `show` print what came of it; it says whether that was a line, or that it is over.
-pub(crate) fn readings<D: Runs>(
+pub fn readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,
     job: impl Fn() -> D::Job,

@@ -44,7 +44,7 @@ fn read_document(output: &Output, path: &Path) -> Result<Document> {
 }
 
 /// Writes a profile that was read just now.
-pub(crate) fn keep(path: &Path, body: Body) -> Result<()> {
+pub fn keep(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
     let document = Document::new(second.to_string(), body);
@@ -86,7 +86,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Re
 }
 
 /// What the command line allows of a restore, for devices without data fields.
-pub(crate) fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
+pub fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
     if !restore.copy.is_empty() || !restore.leave.is_empty() {
         return Err(Failure::Usage("--copy and --leave are for data fields; this device has none".to_owned()));
     }
@@ -128,11 +128,13 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 }
 
 /// What a restore leaves as it is.
-pub(crate) struct Left {
-    pub(crate) unchanged: u64,
-    pub(crate) missing: Vec<String>,
+pub struct Left {
+    /// Things that are already as the profile says.
+    pub unchanged: u64,
+    /// What one side does not have.
+    pub missing: Vec<String>,
     /// What has to be set up anew, because it comes from another device.
-    pub(crate) redo: Vec<String>,
+    pub redo: Vec<String>,
 }
 
 impl Left {
@@ -146,7 +148,7 @@ impl Left {
 }
 
 /// Prints what a restore would do.
-pub(crate) fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
+pub fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
     let json = json!({
         "dry_run": true,
         "operations": plan.operations,
@@ -163,7 +165,7 @@ pub(crate) fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result
 }
 
 /// Prints what a restore has done.
-pub(crate) fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
+pub fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
     let json = json!({
         "written": spent.written,
         "unchanged": left.unchanged,

@@ -22,7 +22,7 @@ use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// What the command line has to know of a device that it runs jobs on.
-pub(crate) trait Runs: Device {
+pub trait Runs: Device {
     /// What is kept of a session when its thread has it.
     type Kept;
     /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
@@ -83,19 +83,19 @@ pub(crate) trait Runs: Device {
 }
 
 /// A session on its thread.
-pub(crate) struct Runner<D: Runs> {
+pub struct Runner<D: Runs> {
     worker: Worker<D>,
     /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
     interrupted: Arc<AtomicBool>,
     patience: Patience,
     /// What the device said on the way of the last job.
-    pub(crate) remarks: Vec<D::Remark>,
+    pub remarks: Vec<D::Remark>,
     /// What is known of the session.
-    pub(crate) kept: D::Kept,
+    pub kept: D::Kept,
 }
 
 /// A job that ended early.
-pub(crate) enum Ended<D: Device> {
+pub enum Ended<D: Device> {
     /// With this error.
     Job(Box<D::Error>),
     /// Ctrl-C, between two jobs.
@@ -119,7 +119,7 @@ impl<D: Runs> Drop for Runner<D> {
 
 impl<D: Runs> Runner<D> {
     /// Opens the link of the command line.
-    pub(crate) fn open(common: &Common) -> Result<Self> {
+    pub fn open(common: &Common) -> Result<Self> {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
         };
@@ -162,7 +162,7 @@ impl<D: Runs> Runner<D> {
     }
 
     /// Runs a job to its end.
-    pub(crate) fn run(&mut self, job: D::Job) -> Result<D::Output> {
+    pub fn run(&mut self, job: D::Job) -> Result<D::Output> {
         self.try_run(job).map_err(Ended::into_failure)
     }
 
@@ -244,7 +244,8 @@ impl<D: Runs> Runner<D> {
 }
 
 impl<D: Runs> Ended<D> {
-    pub(crate) fn into_failure(self) -> Failure {
+    /// Returns it as what a command comes to.
+    pub fn into_failure(self) -> Failure {
         match self {
             Ended::Job(error) => Failure::Failed(lines(D::failure(&error).iter().map(Text::terminal).collect())),
             Ended::Interrupted => failed(&Text::new("encoder.cancelled")),
@@ -266,12 +267,12 @@ fn lines(mut sentences: Vec<String>) -> Vec<String> {
 }
 
 /// A failure with one text.
-pub(crate) fn failed(text: &Text) -> Failure {
+pub fn failed(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal()])
 }
 
 /// A job gave a result of another kind: a defect of this program, told rather than hidden.
-pub(crate) fn unexpected(output: &impl std::fmt::Debug) -> Failure {
+pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 

@@ -63,7 +63,7 @@ pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
 }
 
 /// The settings of the virtual device, a key with its value each.
-pub(crate) fn settings(output: &Output, arguments: &Simulate) -> Result<Vec<(String, String)>> {
+pub fn settings(output: &Output, arguments: &Simulate) -> Result<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for setting in &arguments.settings {
         let (name, value) =

@@ -28,7 +28,7 @@ pub struct Comparison {
 
 impl Comparison {
     /// Compares an item that counts one, as far as both sides have it.
-    pub(crate) fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
+    pub fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         match (left, right) {
             (None, None) => {}
             (Some(_), None) => self.only_left.push(item),

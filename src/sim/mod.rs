@@ -12,7 +12,7 @@ pub mod sine_cosine;
 
 pub use fault::{Carried, FaultError, Faults, Passage};
 pub use motor::Motor;
-pub use setting::ConfigError;
+pub use setting::{ConfigError, Setting};
 
 use std::net::SocketAddrV4;
 

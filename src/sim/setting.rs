@@ -35,9 +35,11 @@ pub enum ConfigError {
 
 /// A key with its value, about to be read. What cannot be used is refused with words that say what can.
 #[derive(Clone, Copy)]
-pub(crate) struct Setting<'a> {
-    pub(crate) key: &'a str,
-    pub(crate) value: &'a str,
+pub struct Setting<'a> {
+    /// The key.
+    pub key: &'a str,
+    /// The value as it was written.
+    pub value: &'a str,
 }
 
 type Result<T> = std::result::Result<T, ConfigError>;
@@ -46,7 +48,7 @@ impl Setting<'_> {
     const MAX_RPM: f64 = 12_000.0;
 
     /// `device` has no such key; what it has is `known`.
-    pub(crate) fn unknown(self, device: &'static str, known: &[&str]) -> ConfigError {
+    pub fn unknown(self, device: &'static str, known: &[&str]) -> ConfigError {
         ConfigError::Key { device, key: self.key.to_owned(), known: known.join(", ") }
     }
 
@@ -55,7 +57,7 @@ impl Setting<'_> {
     }
 
     /// A whole number that fits into its type.
-    pub(crate) fn number<T: TryFrom<u64>>(self, allowed: &str) -> Result<T> {
+    pub fn number<T: TryFrom<u64>>(self, allowed: &str) -> Result<T> {
         integer(self.value).and_then(|number| T::try_from(number).ok()).ok_or_else(|| self.refused(allowed))
     }
 
@@ -78,7 +80,7 @@ impl Setting<'_> {
     }
 
     /// Revolutions a minute, either way.
-    pub(crate) fn rpm(self) -> Result<f64> {
+    pub fn rpm(self) -> Result<f64> {
         let range = -Self::MAX_RPM..=Self::MAX_RPM;
         self.decimal(range, "a speed from -12000 to 12000 revolutions a minute")
     }

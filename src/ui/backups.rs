@@ -11,7 +11,7 @@ use crate::app::{Action, AnyDevice, DeviceCommand};
 use crate::store::{Entry, Outcome};
 
 /// Draws the page.
-pub(crate) fn page_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+pub fn page_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
     profile(ui, skin, device, actions);
     if *device.phase() == Phase::Offline {
         return;

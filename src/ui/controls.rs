@@ -21,7 +21,7 @@ pub(crate) fn fill(ui: &mut Ui) {
 }
 
 /// A card with a heading.
-pub(crate) fn card<R>(ui: &mut Ui, skin: &Skin, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn card<R>(ui: &mut Ui, skin: &Skin, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, skin, title, |_| {}, content)
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn card_with<R>(
 }
 
 /// A label and a value that can be selected, on one line.
-pub(crate) fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichText>) {
+pub fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
         // Values are read, not touched: they stand closer than what has to be hit with a pointer.
         ui.spacing_mut().interact_size.y = 20.0;
@@ -61,7 +61,7 @@ pub(crate) fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichTe
 }
 
 /// A label and something else, on one line.
-pub(crate) fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         label_ui(ui, skin, label);
         content(ui)
@@ -209,7 +209,7 @@ pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
 }
 
 /// A one-line entry with a name for screen readers.
-pub(crate) fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
+pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
 }
 
@@ -406,7 +406,7 @@ pub(crate) fn split<C>(
 
 /// A one-line entry that counts when it is left or Enter is pressed. `draft` holds what is typed until it counts, or until
 /// it can: what `take` refuses stays, with the reason below it.
-pub(crate) fn settled_entry(
+pub fn settled_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,
     shown: &str,

@@ -43,7 +43,7 @@ pub(crate) fn place_of<P: TabPage>(page: P) -> usize {
 }
 
 /// The view of a kind of device, as the device implements it.
-pub(crate) trait TypedDeviceView: Sync + 'static {
+pub trait TypedDeviceView: Sync + 'static {
     /// The state of the device.
     type Device: DeviceType;
     /// The pages of the tab.

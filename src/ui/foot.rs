@@ -13,7 +13,7 @@ const NARROW: f32 = 660.0;
 
 /// What is counted as edits on a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Edited {
+pub enum Edited {
     /// Bytes of a memory.
     Bytes,
     /// Values with a name.
@@ -21,7 +21,7 @@ pub(crate) enum Edited {
 }
 
 /// Draws the foot.
-pub(crate) fn foot_ui(
+pub fn foot_ui(
     ui: &mut Ui,
     skin: &Skin,
     (studio, device): (&Studio, &AnyDevice),

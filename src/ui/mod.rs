@@ -1,20 +1,20 @@
 //! The window: drawing only. A view reads the state, keeps nothing but its own text buffers and selection, and pushes
 //! actions; it never does I/O, decodes, sorts or blocks.
 
-pub(crate) mod backups;
+pub mod backups;
 pub(crate) mod check;
-pub(crate) mod controls;
+pub mod controls;
 pub(crate) mod device_view;
 pub(crate) mod dialogs;
 mod docks;
 mod end;
-pub(crate) mod foot;
+pub mod foot;
 mod header;
 pub mod icons;
 mod keys;
 pub(crate) mod motor;
 mod navigation;
-pub(crate) mod page;
+pub mod page;
 pub(crate) mod panels;
 pub mod plot;
 mod review;
@@ -27,8 +27,8 @@ mod window;
 pub(crate) mod wires;
 pub(crate) mod workspace;
 
-pub use device_view::{DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView};
-pub use dialogs::connect::ConnectForm;
+pub use device_view::{DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView};
+pub use dialogs::connect::{ConnectForm, TypedConnectForm};
 pub use run::run;
 pub use skin::{Skin, install_fonts};
 pub use views::Views;

@@ -22,7 +22,7 @@ pub(crate) fn around(ui: &Ui, skin: &Skin) -> Margin {
 }
 
 /// A page that scrolls as a whole; `id` tells it from the others.
-pub(crate) fn scrolling(ui: &mut Ui, skin: &Skin, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
+pub fn scrolling(ui: &mut Ui, skin: &Skin, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(around(ui, skin));
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| frame.show(ui, content));
 }

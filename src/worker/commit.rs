@@ -11,7 +11,7 @@ use crate::profile::{Body, Document, Operation, Plan};
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
 /// What a kind of device brings to a write.
-pub(crate) trait Write {
+pub trait Write {
     /// Consent and base hold.
     type Confirmed;
     /// What was written; nothing, to begin with.
@@ -39,7 +39,7 @@ pub(crate) trait Write {
 }
 
 /// What is written, and into what.
-pub(crate) struct Terms {
+pub struct Terms {
     /// The device.
     pub(super) device: DeviceKey,
     /// What the operations change, as the logbook tells it.
@@ -56,7 +56,7 @@ pub(crate) struct Terms {
 
 impl Terms {
     /// A plan, what is told of its operations, and how much of the device's life is known to be gone.
-    pub(crate) fn of<Base, Op: Operation>(
+    pub fn of<Base, Op: Operation>(
         device: DeviceKey,
         plan: &Plan<Base, Op>,
         note: impl Fn(&Op) -> String,
@@ -69,7 +69,7 @@ impl Terms {
 }
 
 /// The before-image is kept, and the logbook has been told.
-pub(crate) struct Intended {
+pub struct Intended {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
 }
@@ -113,7 +113,7 @@ pub enum NotBegun {
 pub(super) type Failed<W, P, K> = JobError<<W as Write>::Refusal, P, <W as Write>::Interrupted, K>;
 
 /// The one way to write a change of such a kind. A plan without operations is done.
-pub(crate) fn commit<W: Write, P, K>(
+pub fn commit<W: Write, P, K>(
     store: &Store,
     terms: &Terms,
     kind: K,
@@ -147,7 +147,7 @@ pub(crate) fn commit<W: Write, P, K>(
 }
 
 /// A profile as it is kept before a write.
-pub(crate) fn backup_of(body: Body) -> Document {
+pub fn backup_of(body: Body) -> Document {
     let mut document = Document::new(Timestamp::now().to_string(), body);
     document.note = Some("before-image of a write".to_owned());
     document
@@ -166,7 +166,7 @@ pub const fn is_uncounted(seen: Option<u64>, cost: u64) -> bool {
 }
 
 /// Write cycles that this computer has seen a device take; `None` where the logbook does not tell.
-pub(crate) fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
+pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     let path = store.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
         return Some(0);

@@ -8,12 +8,12 @@
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
 mod agenda;
-pub(crate) mod commit;
+pub mod commit;
 mod interruption;
 #[cfg(test)]
 mod invented;
 mod live;
-pub(crate) mod open;
+pub mod open;
 mod outbox;
 mod ring;
 mod session;
@@ -144,7 +144,7 @@ pub struct Progress<W> {
 
 impl<W> Progress<W> {
     /// The operation of this number begins, from 0.
-    pub(crate) fn at<Op>(ops: &[Op], number: usize, what: W) -> Self {
+    pub fn at<Op>(ops: &[Op], number: usize, what: W) -> Self {
         Progress { done: number as u64, total: ops.len() as u64, what }
     }
 }

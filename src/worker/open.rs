@@ -54,7 +54,7 @@ pub(crate) const fn margin(scheme: Scheme) -> Duration {
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
-pub(crate) fn open_bytes(
+pub fn open_bytes(
     url: &LinkUrl,
     format: CharacterFormat,
     clock: &Arc<dyn Clock>,
@@ -72,12 +72,12 @@ pub(crate) fn open_bytes(
 }
 
 /// The wire to a virtual device in this process.
-pub(crate) fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
+pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
 /// Links of this kind do not lead to a device; those that do are `known`.
-pub(crate) fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
+pub fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
 
@@ -94,7 +94,7 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
 ///
 /// # Errors
 /// [`UrlError::Unknown`].
-pub(crate) fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result<(), UrlError> {
+pub fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result<(), UrlError> {
     match query.without(known).into_iter().next() {
         None => Ok(()),
         Some((name, _)) => Err(UrlError::Unknown { name, scheme: scheme.word(), known: known.join(", ") }),

@@ -9,17 +9,19 @@ use crate::store::Store;
 
 /// What a job finds on its desk, whatever the device: time, the user's wish to end, who watches, and the folders.
 pub struct Desk {
-    pub(crate) clock: Arc<dyn Clock>,
+    /// The time of the session.
+    pub clock: Arc<dyn Clock>,
     pub(super) cancel: Cancel,
     pub(super) trace: Trace,
-    pub(crate) store: Store,
+    /// The folders: backups, logbook.
+    pub store: Store,
     /// The device lives in this process: its wear counts apart.
-    pub(crate) is_virtual: bool,
+    pub is_virtual: bool,
 }
 
 impl Desk {
     /// The context of a procedure on `wire`.
-    pub(crate) fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
+    pub fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
 }
@@ -32,7 +34,7 @@ pub struct Session<D> {
 
 impl<D: Device> Session<D> {
     /// A session with a device.
-    pub(crate) fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
+    pub fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (Cancel::default(), Trace::default());
         Session { desk: Desk { clock, cancel, trace, store, is_virtual }, device }
     }

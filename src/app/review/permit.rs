@@ -52,7 +52,7 @@ impl Permit {
     }
 
     /// Returns the option of a restore that this stands for; `None` where there is none for every kind of device.
-    pub(crate) fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
+    pub fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),
             Permit::OtherType => Some(&mut options.allow_other_type),

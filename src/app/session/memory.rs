@@ -16,17 +16,17 @@ type Prepared<T> = <<T as OnDesk>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Written>;
 
 /// A plan that a person consented to.
-pub(crate) struct Agreed<K: Reviewed> {
+pub struct Agreed<K: Reviewed> {
     /// As it was shown.
-    pub(crate) prepared: K::Prepared,
+    pub prepared: K::Prepared,
     /// The consent to it.
-    pub(crate) consent: Consent,
+    pub consent: Consent,
     /// Write although the device counts as worn.
-    pub(crate) force_wear: bool,
+    pub force_wear: bool,
 }
 
 /// Whoever has a memory.
-pub(crate) trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
+pub trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
     /// A write on its way.
     fn review(&self) -> Option<&Review<Self::Device>>;
 

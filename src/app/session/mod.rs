@@ -16,15 +16,17 @@ use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
 use std::time::Duration;
 
-pub(crate) use drafted::Drafted;
+pub use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
-pub(crate) use kind::{Kind, LastWords};
-pub(crate) use memory::{Agreed, WithMemory};
-pub(crate) use on_desk::OnDesk;
-pub(crate) use on_line::{Cut, OnLine, first};
+pub use kind::{Kind, LastWords};
+pub use memory::{Agreed, WithMemory};
+pub use on_desk::OnDesk;
+pub(crate) use on_line::first;
+pub use on_line::{Cut, OnLine};
 pub use profiles::Listed;
-pub(crate) use saved::{Known, Saved, some, without_edits};
+pub(crate) use saved::some;
+pub use saved::{Known, Saved, without_edits};
 pub(in crate::app) use saving::Found;
 pub use saving::{Guard, ProfileFile, Saving};
 pub use state::SessionState;
@@ -128,12 +130,12 @@ impl<D: Kind> DerefMut for Session<D> {
 
 impl<D: Kind> Session<D> {
     /// At a link that is being opened.
-    pub(crate) fn at_link(id: SessionId, url: LinkUrl) -> Self {
+    pub fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Session::new(id, Source::Link(url), Phase::Opening)
     }
 
     /// With a profile.
-    pub(crate) fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {
+    pub fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
@@ -193,7 +195,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Its link is open.
-    pub(crate) fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
+    pub fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
         self.opening = None;
         self.trace.begin(opened.began.clone());
         self.line = Some(Line::new(opened));

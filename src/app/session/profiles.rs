@@ -29,7 +29,7 @@ impl SessionState {
     }
 
     /// What the device has was read for a file; `edits` are not written to it, and `remarks` say what else is not in there.
-    pub(crate) fn write_read(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
+    pub fn write_read(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
         let remarks = without.into_iter().chain(remarks).collect();
@@ -37,7 +37,7 @@ impl SessionState {
     }
 
     /// A profile was read again from its file, or saved into another one.
-    pub(crate) fn take_document(&mut self, file: ProfileFile, document: Document) {
+    pub fn take_document(&mut self, file: ProfileFile, document: Document) {
         self.source = file.source(document);
     }
 

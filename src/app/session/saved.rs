@@ -14,15 +14,15 @@ use crate::worker::Device;
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 
 /// What was read as a profile, with what is to be said of it; or what is missing for one, a text each.
-pub(crate) type Known = Result<(Body, Vec<Text>), Vec<Text>>;
+pub type Known = Result<(Body, Vec<Text>), Vec<Text>>;
 
 /// That so many edits are not in what was read.
-pub(crate) fn without_edits(count: usize) -> Option<Text> {
+pub fn without_edits(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
 
 /// Whoever can be saved and restored.
-pub(crate) trait Saved: WithMemory {
+pub trait Saved: WithMemory {
     /// How the logbook knows it; `None` before it was read.
     fn key(&self) -> Option<DeviceKey>;
 

@@ -20,7 +20,7 @@ pub struct SessionState {
     pub phase: Phase,
     pub(crate) opening: Option<Opening>,
     /// What the device calls itself, once it is known.
-    pub(crate) title: Option<String>,
+    pub title: Option<String>,
     /// What has passed over the line.
     pub trace: TraceLog,
     /// Backups, or why there are none.
@@ -32,7 +32,7 @@ pub struct SessionState {
     /// Status codes of this device that the logbook knows, the newest first.
     pub statuses: Vec<StatusEntry>,
     /// Nothing has been read since the link was opened.
-    pub(crate) just_connected: bool,
+    pub just_connected: bool,
     /// Where the profile goes that is being read.
     pub(crate) save_to: Option<PathBuf>,
     /// A profile is on its way into a file: what that says next is not known before it is there.
@@ -85,7 +85,7 @@ impl SessionState {
     }
 
     /// Tells the log who has answered for the first time since the link was opened, and what is to be known of it.
-    pub(crate) fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
+    pub fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
         let texts = std::iter::once(Text::new("log.answers").with("link", without_codes(url))).chain(facts).collect();
         services.note(Severity::Note, texts, Some(&self.name()));
@@ -114,7 +114,7 @@ impl SessionState {
     }
 
     /// Another device was read than the one before.
-    pub(crate) fn tell_of_another(&self, serial: &str, services: &mut Services) {
+    pub fn tell_of_another(&self, serial: &str, services: &mut Services) {
         let text = Text::new("session.other_encoder").with("serial", serial);
         services.tell(Severity::Warning, vec![text], Some(&self.name()));
     }

@@ -5,11 +5,11 @@ use crate::app::recorder::{GroupId, Line, Scale};
 
 /// What the positions of a device are.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Meaning {
+pub struct Meaning {
     /// Positions from one zero to the next, after which they go round; `None` for a linear one.
     pub(in crate::app) range: Option<i64>,
     /// The units of position, speed and acceleration, whose samples are in steps.
-    pub(crate) scales: [Vec<Scale>; 3],
+    pub scales: [Vec<Scale>; 3],
     /// It does not turn.
     pub(in crate::app) is_linear: bool,
     /// How much a step is: of a turn, or of a millimetre. `None` where nobody knows.
@@ -18,7 +18,7 @@ pub(crate) struct Meaning {
 
 impl Meaning {
     /// Of steps whose place in a revolution nobody knows.
-    pub(crate) fn of_steps(range: Option<i64>) -> Self {
+    pub fn of_steps(range: Option<i64>) -> Self {
         let scales = [
             vec![Scale::new("unit.steps", 1.0, 0)],
             vec![Scale::new("unit.steps_per_second", 1.0, 0)],
@@ -28,7 +28,7 @@ impl Meaning {
     }
 
     /// Of a shaft with so many steps in a revolution, at least a part of one.
-    pub(crate) fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
+    pub fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let scales = [
             vec![
@@ -51,7 +51,7 @@ impl Meaning {
     }
 
     /// Of a linear encoder with steps of so many millimetres.
-    pub(crate) fn of_millimetres(millimetres: f64) -> Self {
+    pub fn of_millimetres(millimetres: f64) -> Self {
         let scales = [
             vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
             vec![

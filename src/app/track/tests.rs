@@ -1,7 +1,7 @@
 //! Positions of a stream: many at once, and nothing of them is joined that does not belong together.
 
 use super::*;
-use crate::app::recorder::Scale;
+use crate::app::recorder::{Line, Scale};
 
 #[derive(Clone, Debug, PartialEq)]
 struct Nothing;

@@ -17,7 +17,7 @@ use crate::ui::controls::{
 use crate::ui::{Skin, TabViews, icons};
 
 pub use form::ConnectForm;
-pub(crate) use form::TypedConnectForm;
+pub use form::TypedConnectForm;
 
 /// What the dialog remembers.
 #[derive(Default)]

@@ -2,6 +2,7 @@
 //! time, and what its error bits said. Another layout reads the same words anew.
 
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::time::Duration;
 
 use jiff::Zoned;
@@ -9,8 +10,8 @@ use jiff::Zoned;
 use super::trial::Decoded;
 use crate::analysis::Time;
 use crate::app::Recording;
-use crate::app::recorder::{GroupId, Line, Recorder};
-use crate::app::track::{Meaning, Sighting, Track, Watchable};
+use crate::app::recorder::Recorder;
+use crate::app::track::{Meaning, Sighting, Track};
 use crate::devices::ssi::procedures::Words;
 use crate::devices::ssi::protocol::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
 use crate::units::Moment;
@@ -18,13 +19,9 @@ use crate::units::Moment;
 /// Words that are kept as they came, to be read with another layout and to be searched.
 const KEPT: usize = 40_000;
 
-/// Nothing is watched beside the position: SSI has no other values.
-#[derive(Clone, Debug, PartialEq)]
-enum Nothing {}
-
 /// The words of an encoder, and what the layout makes of them.
 pub struct Record {
-    track: Track<Nothing>,
+    track: Track<Infallible>,
     layout: Layout,
     meaning: Meaning,
     kept: VecDeque<Words>,
@@ -275,16 +272,6 @@ fn meaning(layout: &Layout) -> Meaning {
             Meaning::of_turns(all, around / f64::from(revolutions.numerator))
         }
         Range::Length { step_nanometres, .. } => Meaning::of_millimetres(f64::from(step_nanometres) * 1e-6),
-    }
-}
-
-impl Watchable for Nothing {
-    fn is_whole(&self) -> bool {
-        match *self {}
-    }
-
-    fn line(&self, _: GroupId) -> Line {
-        match *self {}
     }
 }
 

@@ -9,7 +9,7 @@ use crate::app::connect::{Action as Connect, Connect as Dialog};
 use crate::ui::Skin;
 
 /// The form of a kind of device, as the device implements it.
-pub(crate) trait TypedConnectForm: 'static {
+pub trait TypedConnectForm: 'static {
     /// The link as a form.
     type Form: FormModel;
     /// The selections that are no part of the link.

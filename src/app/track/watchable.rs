@@ -1,0 +1,46 @@
+//! The values that are recorded beside a position, each a line of its own.
+
+use std::convert::Infallible;
+
+use crate::analysis::history::Value;
+use crate::app::Text;
+use crate::app::recorder::{GroupId, Line};
+use crate::units::Moment;
+
+/// What can be watched.
+pub trait Watchable: Clone + PartialEq {
+    /// Its values are whole numbers.
+    fn is_whole(&self) -> bool;
+
+    /// What it is called, and in which units it is seen.
+    fn line(&self, group: GroupId) -> Line;
+
+    /// Samples of this go on as samples of the other, which may be seen in other units.
+    fn continues(&self, other: &Self) -> bool {
+        self == other
+    }
+}
+
+/// For a device of which nothing is watched.
+impl Watchable for Infallible {
+    fn is_whole(&self) -> bool {
+        match *self {}
+    }
+
+    fn line(&self, _group: GroupId) -> Line {
+        match *self {}
+    }
+}
+
+/// A watched value, or that there is none at the moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watching {
+    /// When.
+    pub at: Moment,
+    /// In the unit of its line.
+    pub value: Option<Value>,
+    /// The device warned with it.
+    pub is_warned: bool,
+    /// Why there will be none, however long one waits.
+    pub never: Option<Text>,
+}
