@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 
 use super::interruption::{Interruption, JobError};
-use crate::profile::{Body, Document, Operation, Plan};
+use crate::profile::{Body, Consent, Document, Operation, Plan};
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
 /// What a kind of device brings to a write.
@@ -36,6 +36,17 @@ pub trait Write {
 
     /// Write cycles that it has cost.
     fn write_cycles(written: &Self::Written) -> u64;
+}
+
+/// A plan that a person consented to, with what was read for it.
+#[derive(Clone, Debug)]
+pub struct Agreed<P> {
+    /// As it was shown.
+    pub prepared: P,
+    /// The consent to it.
+    pub consent: Consent,
+    /// Write although the device counts as worn, or its write cycles are not known.
+    pub force_wear: bool,
 }
 
 /// What is written, and into what.

@@ -16,14 +16,7 @@ type Prepared<T> = <<T as OnDesk>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Written>;
 
 /// A plan that a person consented to.
-pub struct Agreed<K: Reviewed> {
-    /// As it was shown.
-    pub prepared: K::Prepared,
-    /// The consent to it.
-    pub consent: Consent,
-    /// Write although the device counts as worn.
-    pub force_wear: bool,
-}
+pub type Agreed<K> = worker::commit::Agreed<<K as Reviewed>::Prepared>;
 
 /// Whoever has a memory.
 pub trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
@@ -170,7 +163,7 @@ pub trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         let review = self.review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
         let is_shown = Self::Device::plan(prepared).id() == shown;
-        is_shown.then(|| Agreed {
+        is_shown.then(|| worker::commit::Agreed {
             prepared: (**prepared).clone(),
             consent: Consent::to(shown),
             force_wear: review.force_wear,

@@ -200,6 +200,7 @@ impl Saved for Encoder {
     }
 }
 
-fn commit(Agreed { prepared, consent, force_wear }: Agreed<Biss>, attendance: Attendance) -> BissJob {
+fn commit(agreed: Agreed<Biss>, attendance: Attendance) -> BissJob {
+    let (prepared, consent, force_wear) = (agreed.prepared, agreed.consent, agreed.force_wear);
     BissJob::Commit(Box::new(Commit { prepared, consent, force_wear, attendance }))
 }

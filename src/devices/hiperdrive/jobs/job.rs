@@ -9,7 +9,6 @@ use crate::devices::hiperdrive::profile::{
     HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, OtherType, PlanError, RestoreOptions, Service,
 };
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, Value};
-use crate::profile::Consent;
 use crate::store::DeviceKey;
 use crate::worker::commit::wear;
 
@@ -143,15 +142,7 @@ impl Prepared {
 }
 
 /// A plan that a person consented to.
-#[derive(Clone, Debug)]
-pub struct Commit {
-    /// The plan as it was shown.
-    pub prepared: Prepared,
-    /// The consent to it.
-    pub consent: Consent,
-    /// Write although it is not known how many saves there were.
-    pub force_wear: bool,
-}
+pub type Commit = crate::worker::commit::Agreed<Prepared>;
 
 /// What a commit did.
 pub type Committed = crate::worker::Committed<Written>;

@@ -7,7 +7,7 @@ use crate::app::review::OpWords;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
-use crate::devices::hiperdrive::jobs::{Change, Commit, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
+use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
 use crate::devices::hiperdrive::profile::{
     HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types,
 };
@@ -59,10 +59,10 @@ impl WithMemory for Unit {
     }
 
     /// Nothing moves meanwhile. No limit is known from which a device would count as worn.
-    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Hiperdrive>) -> HiperdriveJob {
+    fn commit(&mut self, agreed: Agreed<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
-        self.unsaved.begin(&prepared.plan);
-        HiperdriveJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
+        self.unsaved.begin(&agreed.prepared.plan);
+        HiperdriveJob::Commit(Box::new(agreed))
     }
 
     fn carried_out(&mut self, _: &Committed, _: &mut Services) {

@@ -12,7 +12,6 @@ use crate::devices::hiperface::profile::{
 use crate::devices::hiperface::protocol::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
-use crate::profile::Consent;
 
 /// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
 /// EEPROM, that it can be incremented about a million times.
@@ -210,15 +209,7 @@ impl Prepared {
 }
 
 /// A plan that a person consented to.
-#[derive(Clone, Debug)]
-pub struct Commit {
-    /// The plan as it was shown.
-    pub prepared: Prepared,
-    /// The consent to it.
-    pub consent: Consent,
-    /// Write although the encoder counts as worn.
-    pub force_wear: bool,
-}
+pub type Commit = crate::worker::commit::Agreed<Prepared>;
 
 /// What a commit did.
 pub type Committed = crate::worker::Committed<Written>;

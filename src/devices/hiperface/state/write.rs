@@ -7,7 +7,7 @@ use crate::app::review::Permit;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, OnLine, Saved, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
-use crate::devices::hiperface::jobs::{Change, Commit, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
+use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
 use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
 use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
@@ -63,8 +63,8 @@ impl WithMemory for Encoder {
         HiperfaceJob::Prepare(change)
     }
 
-    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Hiperface>) -> HiperfaceJob {
-        HiperfaceJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
+    fn commit(&mut self, agreed: Agreed<Hiperface>) -> HiperfaceJob {
+        HiperfaceJob::Commit(Box::new(agreed))
     }
 
     fn forget_steps(&mut self) {

@@ -9,7 +9,6 @@ use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Item, ItemValue, OtherType, Parameters, PlanError, RestoreOptions,
 };
 use crate::devices::interbus::protocol::{KIND, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift};
-use crate::profile::Consent;
 use crate::store::DeviceKey;
 
 /// Stores from which a person should know that they are numbered (reference 3: some 200, at most 500).
@@ -169,15 +168,7 @@ impl Prepared {
 }
 
 /// A plan that a person consented to.
-#[derive(Clone, Debug)]
-pub struct Commit {
-    /// The plan as it was shown.
-    pub prepared: Prepared,
-    /// The consent to it.
-    pub consent: Consent,
-    /// Write although the EEPROM counts as worn.
-    pub force_wear: bool,
-}
+pub type Commit = crate::worker::commit::Agreed<Prepared>;
 
 /// What a commit did.
 pub type Committed = crate::worker::Committed<Written>;

@@ -6,7 +6,7 @@ use super::review::Review;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
-use crate::devices::interbus::jobs::{Change, Commit, Interbus, InterbusJob, Prepared, device_key};
+use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, Prepared, device_key};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device, other_type,
 };
@@ -70,8 +70,8 @@ impl WithMemory for Encoder {
         InterbusJob::Prepare(change)
     }
 
-    fn commit(&mut self, Agreed { prepared, consent, force_wear }: Agreed<Interbus>) -> InterbusJob {
-        InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear }))
+    fn commit(&mut self, agreed: Agreed<Interbus>) -> InterbusJob {
+        InterbusJob::Commit(Box::new(agreed))
     }
 
     fn forget_steps(&mut self) {
