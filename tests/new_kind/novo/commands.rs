@@ -1,0 +1,133 @@
+//! Its part of the command line.
+
+use std::convert::Infallible;
+
+use encoder_studio::app::{Given, Text};
+use encoder_studio::cli::{
+    Common, DeviceCommands, Done, Ended, Failure, Left, Output, Position, Restore, Result, Runs, Save, Simulate,
+    Simulated, agree, check_wear, keep, plan, readings, require_consent, restore_options, settings, show_dry_run,
+    show_restored, unexpected,
+};
+use encoder_studio::link::LinkUrl;
+use encoder_studio::profile::{Body, Comparison, Consent, Operation, ProfileError};
+use encoder_studio::store::Store;
+use encoder_studio::worker::commit::Agreed;
+use encoder_studio::worker::{OpenError, Session};
+use serde_json::json;
+
+use super::jobs::{self, Change, Job, JobError, LIFE, Novo, Output as Came, Prepared};
+use super::profile::{NovoProfile, compare};
+use super::protocol::{ITEMS, KIND, name_of};
+use super::sim::Virtual;
+
+type Runner = encoder_studio::cli::Runner<Novo>;
+
+impl Runs for Novo {
+    type Kept = ();
+    const COMMANDS: &'static dyn DeviceCommands = &NovoCommands;
+
+    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
+        jobs::open(url, store)
+    }
+    fn begin(_: &mut Session<Self>, _: &Given) {}
+
+    fn say(remark: &Infallible) {
+        match *remark {}
+    }
+    fn doing(item: &usize) -> String {
+        name_of(*item).to_owned()
+    }
+    fn failure(error: &JobError) -> Vec<Text> {
+        <Novo as encoder_studio::app::session::Kind>::why(error)
+    }
+}
+
+pub(crate) struct NovoCommands;
+
+impl DeviceCommands for NovoCommands {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+    fn about(&self) -> &'static str {
+        "Novo encoder"
+    }
+    fn identify(&self, common: &Common, output: &Output) -> Result {
+        let NovoProfile { serial, .. } = survey(&mut Runner::open(common)?)?;
+        output.show(&json!({ "serial": serial }), &format!("serial number  {serial}\n"))?;
+        Ok(Done::Well)
+    }
+    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
+        let mut runner = Runner::open(common)?;
+        let read = |came: std::result::Result<Came, Box<JobError>>| match came {
+            Ok(Came::Position((_, position))) => {
+                output.show(&json!({ "position": position }), &format!("{position}\n"))?;
+                Ok(true)
+            }
+            Ok(other) => Err(unexpected(&other)),
+            Err(error) => Err(Ended::<Novo>::Job(error).into_failure()),
+        };
+        readings(&mut runner, position, || Job::Position, |_, came| read(came))
+    }
+    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
+        keep(&save.file, self.present(common, output, None)?)?;
+        output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
+        Ok(Done::Well)
+    }
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let options = restore_options(restore)?;
+        if !restore.dry_run {
+            require_consent(&restore.consent)?;
+        }
+        let NovoProfile { serial, values } = profile.into_profile().map_err(|error| failed(&error))?;
+        let mut runner = Runner::open(common)?;
+        let change = Change { restored: Some(serial), values, options };
+        let prepared = match runner.run(Job::Prepare(change))? {
+            Came::Prepared(prepared) => *prepared,
+            other => return Err(unexpected(&other)),
+        };
+        let shown = shown(&prepared);
+        let unchanged = (ITEMS.len() - prepared.plan.ops.len()) as u64;
+        let left = Left { unchanged, missing: Vec::new(), redo: Vec::new() };
+        if restore.dry_run {
+            return show_dry_run(output, &shown, &left);
+        }
+        check_wear::<Novo>(&restore.consent, prepared.seen, shown.write_cycles, LIFE)?;
+        agree(output, &restore.consent, &shown.text)?;
+        let (consent, force_wear) = (Consent::to(prepared.plan.id()), restore.consent.force_wear);
+        match runner.run(Job::Commit(Box::new(Agreed { prepared, consent, force_wear })))? {
+            Came::Committed(done) => show_restored(output, &plan::Spent::of(output, *done), &left),
+            other => Err(unexpected(&other)),
+        }
+    }
+    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        let device = Virtual::from_pairs(&settings(output, arguments)?);
+        device.map(|own| Box::new(own) as Box<dyn Simulated>).map_err(|error| Failure::Usage(error.to_string()))
+    }
+    fn present(&self, common: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {
+        survey(&mut Runner::open(common)?).map(Body::new)
+    }
+    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
+        Ok(compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
+    }
+}
+
+fn survey(runner: &mut Runner) -> Result<NovoProfile> {
+    match runner.run(Job::Survey)? {
+        Came::Surveyed(read) => Ok(read),
+        other => Err(unexpected(&other)),
+    }
+}
+
+fn failed(error: &ProfileError) -> Failure {
+    Failure::Failed(vec![error.to_string()])
+}
+
+fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::Shown {
+    let step = |op: &super::profile::Op| {
+        let (old, new) = (Some(op.from.to_string()), Some(op.to.to_string()));
+        plan::Step { item: op.name().to_owned(), old, new, write_cycles: op.write_cycles() }
+    };
+    let text = plan::text(plan, plan::lines(plan.ops.iter().map(step)), *seen, Some(LIFE));
+    let operations = plan.ops.iter().map(|op| step(op).json()).collect();
+    plan::Shown { operations, text, write_cycles: plan.write_cycles() }
+}

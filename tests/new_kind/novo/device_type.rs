@@ -1,0 +1,113 @@
+//! What the program knows of Novo encoders before there is one.
+
+use encoder_studio::app::connect::form::{FormModel, NoFinder};
+use encoder_studio::app::review::{self, Reviewed};
+use encoder_studio::app::session::{Drafted, Kind, ProfileFile, Session};
+use encoder_studio::app::{DeviceType, Services, SessionId, Severity, Text, explain};
+use encoder_studio::link::LinkUrl;
+use encoder_studio::profile::Document;
+use encoder_studio::store::Store;
+use encoder_studio::worker::{self, OpenError};
+
+use super::jobs::{self, Error, Job, JobError, Novo, Output};
+use super::profile::NovoProfile;
+use super::protocol::{KIND, name_of};
+use super::state::{Encoder, TEXTS};
+
+impl Kind for Novo {
+    const KIND: &'static str = KIND;
+    type Edits = Vec<(usize, u16)>;
+    type Aside = ();
+
+    fn aside(_: &worker::Session<Self>) {}
+
+    fn open(url: &LinkUrl, store: Store) -> Result<worker::Session<Self>, OpenError> {
+        jobs::open(url, store)
+    }
+    fn job(job: &Job) -> Text {
+        match job {
+            Job::Survey => Text::new("job.survey"),
+            Job::Position => Text::new("job.position"),
+            Job::Prepare(change) => Text::new("job.prepare").with_text("change", Self::change(change)),
+            Job::Commit(_) => Text::new("job.write"),
+        }
+    }
+    fn writes(job: &Job) -> bool {
+        matches!(job, Job::Commit(_))
+    }
+    fn survey() -> Job {
+        Job::Survey
+    }
+    fn doing(item: &usize) -> Text {
+        explain::plain(name_of(*item))
+    }
+    fn told(output: &Output) -> Option<(Severity, Vec<Text>)> {
+        let Output::Committed(committed) = output else { return None };
+        Some(review::told::<Novo>(committed))
+    }
+    fn why(error: &JobError) -> Vec<Text> {
+        vec![match (error, error.device()) {
+            (JobError::NotBegun(why), _) => explain::not_begun(why),
+            (_, Some(Error::Cancelled)) => Text::new("encoder.cancelled"),
+            (_, Some(Error::Silent)) => TEXTS.text("novo.silent"),
+            (_, Some(Error::Link(error))) => explain::link(error),
+            _ => explain::plain(error),
+        }]
+    }
+    fn loss(error: &JobError) -> Option<Text> {
+        let Some(Error::Link(error)) = error.device() else { return None };
+        Some(explain::link(error))
+    }
+    fn done(error: &JobError) -> Option<usize> {
+        error.done()
+    }
+}
+
+impl DeviceType for Encoder {
+    const BUS: &'static str = "NOVO";
+    type Profile = NovoProfile;
+    type Form = NovoForm;
+    type Tables = ();
+
+    fn check(url: &LinkUrl) -> Result<(), OpenError> {
+        jobs::check(url)
+    }
+    fn at_link(id: SessionId, url: LinkUrl, _: &mut Services) -> Self {
+        Encoder::with(Session::at_link(id, url))
+    }
+    fn tables(_: &Store) {}
+
+    fn in_file(id: SessionId, file: ProfileFile, document: Document, (): (), services: &mut Services) -> Self {
+        let mut own = Encoder::with(Session::in_file(id, file.clone(), document.clone()));
+        own.take_document(file, document);
+        own.load_draft(services);
+        own
+    }
+}
+
+/// A link as it is entered: the virtual encoder, or one behind a device server.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NovoForm {
+    pub(crate) link: String,
+}
+
+impl FormModel for NovoForm {
+    type Finder = NoFinder<Self>;
+
+    fn usual() -> LinkUrl {
+        LinkUrl::sim()
+    }
+    fn from_url(url: &LinkUrl) -> Self {
+        NovoForm { link: url.to_string() }
+    }
+    fn url(&self) -> Result<LinkUrl, Text> {
+        let url: LinkUrl = self.link.parse().map_err(|error| explain::url(&error))?;
+        jobs::check(&url).map_err(|error| explain::open(&error))?;
+        Ok(url)
+    }
+    fn set_file(&mut self, _file: String) {}
+
+    fn example(&self) -> &'static str {
+        "tcp:192.168.0.7:4001"
+    }
+}

@@ -1,0 +1,191 @@
+//! A Novo encoder at the end of a session: its jobs, and what it brings to a write.
+
+use std::convert::Infallible;
+use std::sync::Arc;
+use std::time::Duration;
+
+use encoder_studio::bits::MaskedBytes;
+use encoder_studio::link::{ByteLink, Clock, Ctx, Direction, LinkError, LinkUrl, RealClock, Scheme};
+use encoder_studio::profile::{RestoreOptions, Written};
+use encoder_studio::store::{DeviceKey, Store};
+use encoder_studio::units::{CharacterFormat, Moment};
+use encoder_studio::worker::commit::{self, Agreed, Terms, cycles_seen};
+use encoder_studio::worker::open::{check_parameters, inside, leads_elsewhere, open_bytes};
+use encoder_studio::worker::{self, Desk, Device, OpenError, Session, Tell, Watched};
+
+use super::profile::{NovoPlan, NovoProfile, plan};
+use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of, parse_reply};
+use super::sim::Virtual;
+use super::write::{Interrupted, NovoWrite};
+
+/// Write cycles that it lasts.
+pub(crate) const LIFE: u64 = 10_000;
+const TRIES: u16 = 3;
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// Its wire.
+pub(crate) struct Novo(Box<dyn ByteLink>);
+
+/// When, and the position.
+pub(crate) type Sample = (Moment, u16);
+
+/// What a person wants it to keep.
+#[derive(Clone, Debug)]
+pub(crate) struct Change {
+    /// The serial number of the profile that is restored; `None`: edits are written.
+    pub(crate) restored: Option<u16>,
+    pub(crate) values: Values,
+    pub(crate) options: RestoreOptions,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Prepared {
+    pub(crate) serial: u16,
+    pub(crate) plan: NovoPlan,
+    pub(crate) seen: Option<u64>,
+}
+
+#[derive(Debug)]
+pub(crate) enum Job {
+    Survey,
+    Position,
+    Prepare(Change),
+    Commit(Box<Agreed<Prepared>>),
+}
+
+#[derive(Debug)]
+pub(crate) enum Output {
+    Surveyed(NovoProfile),
+    Position(Sample),
+    Prepared(Box<Prepared>),
+    Committed(Box<worker::Committed<Written>>),
+}
+
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum Error {
+    #[error("cancelled")]
+    Cancelled,
+    #[error("there is no answer")]
+    Silent,
+    #[error("it is no longer as it was when the plan was made")]
+    Changed,
+    #[error("{0} was not taken")]
+    NotTaken(&'static str),
+    #[error("the profile is of serial number {profile}, the encoder has {device}")]
+    OtherDevice { profile: u16, device: u16 },
+    #[error(transparent)]
+    Link(#[from] LinkError),
+}
+
+pub(crate) type JobError = worker::JobError<Error, Infallible, Interrupted, ()>;
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Device(error)
+    }
+}
+
+/// Where a link leads, as far as that can be told without opening it.
+pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {
+    match url.scheme {
+        Scheme::Sim => Virtual::from_pairs(url.query.pairs()).map(drop)?,
+        Scheme::Serial | Scheme::Tcp => check_parameters(&url.query, url.scheme, &[])?,
+        other => return Err(leads_elsewhere(other, "sim:, serial:, tcp:")),
+    }
+    Ok(())
+}
+
+pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Novo>, OpenError> {
+    check(url)?;
+    let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
+    let virtual_one = || Ok(inside(Virtual::from_pairs(url.query.pairs())?, &clock));
+    let wire = open_bytes(url, CharacterFormat::FACTORY, &clock, virtual_one)?;
+    Ok(Session::with(Novo(wire), clock, store, url.scheme == Scheme::Sim))
+}
+
+pub(crate) fn device_key(serial: u16, is_virtual: bool) -> DeviceKey {
+    let (kind, device_type) = (KIND.to_owned(), "N1".to_owned());
+    DeviceKey { kind, device_type, serial_number: serial.to_string(), is_virtual }
+}
+
+impl Novo {
+    pub(super) fn ask(&mut self, desk: &mut Desk, request: Request) -> Result<u16, Error> {
+        let Ctx { wire, clock, cancel, trace } = desk.ctx(&mut *self.0);
+        for _ in 0..TRIES {
+            if cancel.stops_transaction() {
+                return Err(Error::Cancelled);
+            }
+            trace.record(clock.now(), Direction::Sent, MaskedBytes::clear(&request.emit()));
+            wire.send(&request.emit())?;
+            let (until, mut heard) = (clock.now() + PATIENCE, Vec::new());
+            while heard.len() < REPLY && clock.now() < until {
+                wire.receive(until, &mut heard)?;
+            }
+            trace.record(clock.now(), Direction::Received, MaskedBytes::clear(&heard));
+            if let Some(word) = parse_reply(request, &heard) {
+                return Ok(word);
+            }
+        }
+        Err(Error::Silent)
+    }
+    pub(super) fn survey(&mut self, desk: &mut Desk) -> Result<NovoProfile, Error> {
+        let serial = self.ask(desk, Request::Read(SERIAL))?;
+        let mut values = Values::default();
+        for (item, value) in values.iter_mut().enumerate() {
+            *value = self.ask(desk, Request::Read(address_of(item)))?;
+        }
+        Ok(NovoProfile { serial, values })
+    }
+    fn prepare(&mut self, desk: &mut Desk, change: &Change) -> Result<Prepared, Error> {
+        let now = self.survey(desk)?;
+        if let Some(profile) = change.restored.filter(|own| *own != now.serial && !change.options.allow_other_device) {
+            return Err(Error::OtherDevice { profile, device: now.serial });
+        }
+        let seen = cycles_seen(&desk.store, &device_key(now.serial, desk.is_virtual));
+        Ok(Prepared { serial: now.serial, plan: plan(&now, &change.values), seen })
+    }
+}
+
+pub(super) type Told<'t> = &'t mut dyn FnMut(Tell<Infallible, usize>);
+
+impl Device for Novo {
+    type Job = Job;
+    type Output = Output;
+    type Error = JobError;
+    type Remark = Infallible;
+    type Sample = Sample;
+    type Watch = Infallible;
+    /// The item that is written.
+    type Doing = usize;
+
+    fn run(&mut self, desk: &mut Desk, job: Job, tell: Told<'_>) -> Result<Output, JobError> {
+        Ok(match job {
+            Job::Survey => Output::Surveyed(self.survey(desk)?),
+            Job::Position => Output::Position(self.sample(desk)?),
+            Job::Prepare(change) => Output::Prepared(Box::new(self.prepare(desk, &change)?)),
+            Job::Commit(own) => {
+                let (store, device) = (desk.store.clone(), device_key(own.prepared.serial, desk.is_virtual));
+                let wear = (own.prepared.seen, LIFE);
+                let terms = Terms::of(device, &own.prepared.plan, |op| op.name().to_owned(), wear, own.force_wear);
+                let mut write = NovoWrite { novo: self, desk, agreed: &own, tell };
+                Output::Committed(Box::new(commit::commit(&store, &terms, (), &mut write)?))
+            }
+        })
+    }
+    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+        let position = self.ask(desk, Request::Read(POSITION))?;
+        Ok((desk.clock.now(), position))
+    }
+    fn watch(&mut self, _: &mut Desk, what: &Infallible) -> Result<Watched<Sample>, JobError> {
+        match *what {}
+    }
+    fn is_cancelled(error: &JobError) -> bool {
+        error.device() == Some(&Error::Cancelled)
+    }
+    fn take_remark(&mut self) -> Option<Infallible> {
+        None
+    }
+    fn check(&mut self) -> Result<(), LinkError> {
+        self.0.check()
+    }
+}

@@ -1,0 +1,121 @@
+//! What a person wants a Novo encoder to keep: kept over a crash, reviewed, written, saved and restored.
+
+use encoder_studio::app::review::{OpWords, Permit, Review, Reviewed};
+use encoder_studio::app::session::{Agreed, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
+use encoder_studio::app::{PendingEdits, Services, Text, explain};
+use encoder_studio::profile::{Body, Document, Plan, ProfileError, Written};
+use encoder_studio::store::DeviceKey;
+
+use super::jobs::{Change, Job, LIFE, Novo, Prepared, device_key};
+use super::profile::{NovoProfile, Op};
+use super::protocol::Values;
+use super::state::{Encoder, TEXTS};
+
+impl Reviewed for Novo {
+    type Change = Change;
+    type Base = (u16, Values);
+    type Op = Op;
+    type Prepared = Prepared;
+    type Written = Written;
+
+    fn change(change: &Change) -> Text {
+        match change.restored {
+            Some(serial) => TEXTS.text("novo.restore").with("serial", serial),
+            None => TEXTS.text("novo.write"),
+        }
+    }
+    fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
+        change.restored?;
+        permit.option(&mut change.options)
+    }
+    fn plan(prepared: &Prepared) -> &Plan<(u16, Values), Op> {
+        &prepared.plan
+    }
+    fn op(_: &Prepared, op: &Op) -> OpWords {
+        OpWords::one(explain::plain(op.name()), explain::plain(op.from), explain::plain(op.to))
+    }
+    fn cost(prepared: &Prepared) -> Text {
+        TEXTS.text("novo.cost").with("cycles", prepared.plan.write_cycles())
+    }
+    fn is_worn(prepared: &Prepared) -> bool {
+        prepared.seen.is_some_and(|seen| seen + prepared.plan.write_cycles() > LIFE)
+    }
+    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
+        prepared.seen
+    }
+    fn written(written: &Written) -> Text {
+        TEXTS.text("novo.written").with("count", written.verified)
+    }
+}
+
+impl Drafted for Encoder {
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        self.key().map(|key| (key.device_type, key.serial_number))
+    }
+    fn edited(&self) -> Vec<(usize, u16)> {
+        self.staged.iter().collect()
+    }
+    fn take_edits(&mut self, edits: Vec<(usize, u16)>) {
+        self.edit(edits);
+    }
+    fn take_document(&mut self, file: ProfileFile, document: Document) {
+        let Some(profile) = document.body.get::<NovoProfile>().cloned() else { return };
+        self.take(profile);
+        self.session.take_document(file, document);
+    }
+    fn pending(&self) -> &dyn PendingEdits {
+        &self.staged
+    }
+    fn pending_mut(&mut self) -> &mut dyn PendingEdits {
+        &mut self.staged
+    }
+}
+
+impl WithMemory for Encoder {
+    fn review(&self) -> Option<&Review<Novo>> {
+        self.review.as_ref()
+    }
+    fn review_mut(&mut self) -> &mut Option<Review<Novo>> {
+        &mut self.review
+    }
+    fn edited_change(&self) -> Option<Change> {
+        let values = self.wanted().filter(|_| self.staged.is_dirty())?;
+        Some(Change { restored: None, values, options: Default::default() })
+    }
+    fn is_for_another(&self, change: &Change) -> bool {
+        change.restored.zip(self.read.as_ref()).is_some_and(|(of, own)| of != own.serial)
+    }
+    fn is_of_another(&self, prepared: &Prepared) -> bool {
+        self.read.as_ref().is_some_and(|own| own.serial != prepared.serial)
+    }
+    fn prepare(change: Change) -> Job {
+        Job::Prepare(change)
+    }
+    fn commit(&mut self, agreed: Agreed<Novo>) -> Job {
+        Job::Commit(Box::new(agreed))
+    }
+    fn forget_steps(&mut self) {
+        self.staged.forget_steps();
+    }
+}
+
+impl Saved for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.read.as_ref().map(|own| device_key(own.serial, self.session.is_virtual()))
+    }
+    fn read_all() -> Job {
+        Job::Survey
+    }
+    fn wanted_body(&self) -> Option<Body> {
+        Some(Body::new(NovoProfile { values: self.wanted()?, ..self.read.clone()? }))
+    }
+    fn known_body(&self) -> Option<Known> {
+        let remarks = without_edits(self.staged.count()).into_iter().collect();
+        Some(Ok((Body::new(self.read.clone()?), remarks)))
+    }
+    fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        let NovoProfile { serial, values } = body.into_profile()?;
+        self.plan(Change { restored: Some(serial), values, options: Default::default() }, services);
+        Ok(())
+    }
+}

@@ -1,0 +1,17 @@
+//! An invented encoder.
+
+mod commands;
+mod device_type;
+mod jobs;
+mod memory;
+pub(crate) mod profile;
+pub(crate) mod protocol;
+mod sim;
+pub(crate) mod state;
+mod view;
+mod write;
+
+use encoder_studio::kinds::Kind;
+
+/// The kind, for the list of kinds.
+pub(crate) const NOVO: Kind = Kind { view: &view::NovoView, commands: &commands::NovoCommands, at_adapter: None };

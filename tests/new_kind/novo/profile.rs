@@ -1,0 +1,70 @@
+//! What is saved of a Novo encoder, compared and planned.
+
+use encoder_studio::profile::{Comparison, Entries, Operation, Plan, Profile, ProfileError, Writer};
+
+use super::protocol::{ITEMS, KIND, Values, name_of};
+
+const WORD: &str = "a number from 0 to 65535";
+
+/// Who it is, and what it keeps.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NovoProfile {
+    pub(crate) serial: u16,
+    pub(crate) values: Values,
+}
+
+impl Profile for NovoProfile {
+    const KIND: &'static str = KIND;
+
+    fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
+        let serial = entries.required("serial", WORD)?;
+        let mut values = Values::default();
+        for (item, value) in ITEMS.into_iter().zip(&mut values) {
+            *value = entries.required(item, WORD)?;
+        }
+        Ok(NovoProfile { serial, values })
+    }
+    fn write(&self, writer: &mut Writer) {
+        writer.entry("serial", &self.serial.to_string(), "");
+        for (item, value) in ITEMS.into_iter().zip(self.values) {
+            writer.entry(item, &value.to_string(), "");
+        }
+    }
+}
+
+/// An item becomes another value.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Op {
+    pub(crate) item: usize,
+    pub(crate) from: u16,
+    pub(crate) to: u16,
+}
+
+impl Op {
+    pub(crate) fn name(&self) -> &'static str {
+        name_of(self.item)
+    }
+}
+
+impl Operation for Op {
+    fn write_cycles(&self) -> u64 {
+        1
+    }
+}
+
+/// Serial number and values, as they were read; and what becomes of them.
+pub(crate) type NovoPlan = Plan<(u16, Values), Op>;
+
+pub(crate) fn plan(now: &NovoProfile, wanted: &Values) -> NovoPlan {
+    let pairs = now.values.into_iter().zip(*wanted).enumerate().filter(|(_, (from, to))| from != to);
+    let ops = pairs.map(|(item, (from, to))| Op { item, from, to }).collect();
+    Plan { base: (now.serial, now.values), ops }
+}
+
+pub(crate) fn compare(left: &NovoProfile, right: &NovoProfile) -> Comparison {
+    let mut comparison = Comparison::default();
+    for (item, (left, right)) in ITEMS.into_iter().zip(left.values.into_iter().zip(right.values)) {
+        comparison.add(item.to_owned(), Some(left), Some(right));
+    }
+    comparison
+}

@@ -1,0 +1,78 @@
+//! The virtual encoder.
+
+use encoder_studio::cli::Simulated;
+use encoder_studio::sim::{ByteDevice, ConfigError, Setting};
+use encoder_studio::units::{CharacterFormat, Moment};
+
+use super::protocol::{FIRST, POSITION, Request, SERIAL, TURN, Values, reply};
+
+/// A Novo encoder whose shaft turns evenly. Its values are lost with it.
+pub(crate) struct Virtual {
+    serial: u16,
+    rpm: f64,
+    values: Values,
+    asked: Vec<u8>,
+    answers: Vec<u8>,
+}
+
+impl Virtual {
+    /// As the query of a link says.
+    pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+        let mut own = Virtual { serial: 1001, rpm: 0.0, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] };
+        for (key, value) in pairs {
+            let setting = Setting { key, value };
+            match key.as_str() {
+                "serial" => own.serial = setting.number("a number from 0 to 65535")?,
+                "rpm" => own.rpm = setting.rpm()?,
+                _ => return Err(setting.unknown("a virtual Novo encoder", &["serial", "rpm"])),
+            }
+        }
+        Ok(own)
+    }
+    fn word(&self, now: Moment, address: u8) -> u16 {
+        let [zero, ..] = self.values;
+        match address {
+            SERIAL => self.serial,
+            POSITION => {
+                let steps = now.since_start().as_secs_f64() * self.rpm / 60.0 * f64::from(TURN);
+                (steps.floor() as i64 as u16).wrapping_sub(zero)
+            }
+            _ => self.values.get(usize::from(address.wrapping_sub(FIRST))).copied().unwrap_or(0),
+        }
+    }
+}
+
+impl ByteDevice for Virtual {
+    fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
+        self.asked.extend(bytes);
+        let Some(request) = Request::parse(&self.asked) else { return };
+        self.asked.clear();
+        let address = match request {
+            Request::Read(address) => address,
+            Request::Write(address, word) => {
+                if let Some(value) = self.values.get_mut(usize::from(address.wrapping_sub(FIRST))) {
+                    *value = word;
+                }
+                address
+            }
+        };
+        self.answers.extend(reply(request, self.word(now, address)));
+    }
+    fn poll(&mut self, _now: Moment) -> Vec<u8> {
+        std::mem::take(&mut self.answers)
+    }
+    fn poll_at(&self) -> Option<Moment> {
+        (!self.answers.is_empty()).then_some(Moment::START)
+    }
+    fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
+
+    fn connect(&mut self, _now: Moment) {
+        (self.asked, self.answers) = (vec![], vec![]);
+    }
+}
+
+impl Simulated for Virtual {
+    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+        None
+    }
+}

@@ -1,0 +1,182 @@
+//! A Novo encoder on the desk, or a profile of one.
+
+use std::convert::Infallible;
+
+use encoder_studio::app::review::Review;
+use encoder_studio::app::session::{Cut, Drafted, OnDesk, OnLine, Saved, Session, WithMemory};
+use encoder_studio::app::track::{Meaning, Sighting, Track};
+use encoder_studio::app::{
+    ActContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditStep, Edits, JobEnd, Opened, PendingEdits,
+    Recording, Services, Tab, Text,
+};
+use encoder_studio::link::TraceEntry;
+use encoder_studio::profile::Body;
+
+use super::jobs::{Error, Job, JobError, Novo, Output, Sample};
+use super::profile::NovoProfile;
+use super::protocol::{TURN, Values};
+
+pub(crate) static TEXTS: Catalogue = Catalogue::new(
+    r#"{
+    "novo.write": (en: "Write values", de: "Werte schreiben"),
+    "novo.restore": (en: "Restore the values of {serial}", de: "Werte von {serial} wiederherstellen"),
+    "novo.cost": (en: "Write cycles: {cycles}", de: "Schreibzyklen: {cycles}"),
+    "novo.written": (en: "Values written and read back: {count}", de: "Werte geschrieben und zurückgelesen: {count}"),
+    "novo.silent": (en: "The encoder does not answer.", de: "Der Geber antwortet nicht."),
+    "novo.values": (en: "Values of the encoder", de: "Werte des Gebers"),
+    "novo.link": (en: "Link", de: "Verbindung"),
+}"#,
+);
+
+/// What this kind alone can be asked for.
+pub(crate) enum Action {
+    Set(usize, u16),
+}
+
+impl DeviceAction for Action {}
+
+pub(crate) struct Encoder {
+    pub(super) session: Session<Novo>,
+    /// As it was read, or as the profile says.
+    pub(crate) read: Option<NovoProfile>,
+    /// What is wanted otherwise, by the number of the item.
+    pub(crate) staged: Edits<usize, u16>,
+    pub(crate) last: Option<Sample>,
+    track: Track<Infallible>,
+    pub(super) review: Option<Review<Novo>>,
+}
+
+impl Encoder {
+    pub(super) fn with(session: Session<Novo>) -> Self {
+        Encoder { session, read: None, staged: Edits::default(), last: None, track: Track::default(), review: None }
+    }
+
+    /// What it is to keep; `None` before it was read.
+    pub(crate) fn wanted(&self) -> Option<Values> {
+        let mut values = self.read.as_ref()?.values;
+        self.staged.iter().for_each(|(item, value)| values[item] = value);
+        Some(values)
+    }
+    pub(super) fn edit(&mut self, edits: impl IntoIterator<Item = (usize, u16)>) {
+        let is_edit = |item: usize, value| {
+            self.read.as_ref().and_then(|own| own.values.get(item)).is_some_and(|own| *own != value)
+        };
+        self.staged.put(edits, is_edit);
+    }
+
+    /// What was read is what is wanted is no edit any more.
+    pub(super) fn take(&mut self, read: NovoProfile) {
+        self.staged.settle(|item, value| read.values[item] != value);
+        self.read = Some(read);
+    }
+    fn see(&mut self, samples: &[Sample], dropped: u64) {
+        let sighting = |(at, position): &Sample| Sighting {
+            at: *at,
+            position: Some(i64::from(*position)),
+            is_bad: false,
+            is_warned: false,
+        };
+        self.track.lose(dropped);
+        self.track.add(&samples.iter().map(sighting).collect::<Vec<_>>(), &Meaning::of_turns(Some(65536), TURN.into()));
+        self.last = samples.last().copied().or(self.last);
+    }
+    fn surveyed(&mut self, read: NovoProfile, services: &mut Services) {
+        if self.read.as_ref().is_some_and(|own| own.serial != read.serial) {
+            self.session.tell_of_another(&read.serial.to_string(), services);
+            self.leave_draft(services);
+            (self.staged, self.review, self.read) = (Edits::default(), None, None);
+            self.track.forget();
+        }
+        let is_first = self.read.is_none();
+        self.session.title = Some(format!("Novo · {}", read.serial));
+        if std::mem::take(&mut self.session.just_connected) {
+            self.session.log_answer(Vec::new(), services);
+        }
+        self.take(read.clone());
+        if is_first {
+            self.load_draft(services);
+        }
+        let edits = self.staged.is_dirty().then(|| self.staged.count());
+        self.session.write_read(Body::new(read), edits, Vec::new(), services);
+        self.list_backups(services);
+    }
+}
+
+impl OnDesk for Encoder {
+    type Device = Novo;
+
+    fn session(&self) -> &Session<Novo> {
+        &self.session
+    }
+    fn session_mut(&mut self) -> &mut Session<Novo> {
+        &mut self.session
+    }
+}
+
+impl OnLine for Encoder {
+    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
+        self.see(&samples, dropped);
+    }
+    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+        self.session.trace.add(frames, missed, |_| Vec::new());
+    }
+    fn remarked(&mut self, remark: Infallible, _: &mut Services) {
+        match remark {}
+    }
+    fn finished(&mut self, output: Output, services: &mut Services) {
+        match output {
+            Output::Surveyed(read) => self.surveyed(read, services),
+            Output::Position(sample) => self.see(&[sample], 0),
+            Output::Prepared(prepared) => self.planned(prepared, services),
+            Output::Committed(committed) => self.committed(*committed, services),
+        }
+    }
+    fn is_silence(&self, error: &JobError) -> bool {
+        error.device() == Some(&Error::Silent)
+    }
+    fn forget_asked(&mut self) {
+        self.forget_plan();
+    }
+    fn cut_off(&mut self, how: Cut<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
+        self.cut_write(how, texts)
+    }
+}
+
+impl DeviceModel for Encoder {
+    const TAB: Tab = Tab::named("Novo");
+    type Action = Action;
+    type Done = Infallible;
+
+    fn connect(&mut self, opened: Opened<Novo>, services: &mut Services) {
+        self.let_go(JobEnd::Cancelled, services);
+        self.track.begin(&opened.began);
+        self.session.take_line(opened, services);
+        self.submit(Job::Survey, services);
+    }
+    fn act(&mut self, Action::Set(item, value): Action, _: &mut ActContext<'_>) {
+        self.edit([(item, value)]);
+    }
+    fn done(&mut self, done: Infallible, _: &mut Services) {
+        match done {}
+    }
+    fn position_job(&self) -> Job {
+        Job::Position
+    }
+    fn record(&self) -> &dyn Recording {
+        &self.track
+    }
+    fn record_mut(&mut self) -> &mut dyn Recording {
+        &mut self.track
+    }
+    fn step(&mut self, step: EditStep) {
+        step(&mut self.staged);
+        let values = self.read.as_ref().map_or(Values::default(), |own| own.values);
+        self.staged.settle(|item, value| values[item] != value);
+    }
+    fn memory(&self) -> Option<&dyn DeviceMemory> {
+        Some(self)
+    }
+    fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text> {
+        Ok(self)
+    }
+}

@@ -1,0 +1,100 @@
+//! The pages of a Novo encoder, its live value, and its form in the connection dialog.
+
+use egui::{RichText, Ui};
+use encoder_studio::app::connect::Connect as Dialog;
+use encoder_studio::app::{Action as StudioAction, AnyDevice, Rgb, Studio, Text, explain};
+use encoder_studio::ui::controls::{card, entry, settled_entry, text_entry};
+use encoder_studio::ui::{Skin, TabPage, TypedConnectForm, TypedDeviceView, backups, foot, icons, page};
+
+use super::device_type::NovoForm;
+use super::protocol::ITEMS;
+use super::state::{Action, Encoder, TEXTS};
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Page {
+    #[default]
+    Values,
+    Backups,
+}
+
+impl TabPage for Page {
+    const ALL: &'static [Self] = &[Page::Values, Page::Backups];
+
+    fn icon(self) -> &'static str {
+        if self == Page::Values { icons::SLIDERS } else { icons::CLOCK_COUNTER_CLOCKWISE }
+    }
+    fn word(self) -> &'static str {
+        if self == Page::Values { "page.values" } else { "page.backups" }
+    }
+    fn help(self) -> &'static str {
+        if self == Page::Values { "help.values" } else { "help.backups" }
+    }
+}
+
+/// What is typed for each item and does not count yet.
+type Typed = [Option<(String, Option<Text>)>; ITEMS.len()];
+
+pub(crate) struct NovoView;
+
+impl TypedDeviceView for NovoView {
+    type Device = Encoder;
+    type Page = Page;
+    type Memory = Typed;
+    type ConnectForm = NovoConnectForm;
+
+    const HAS_UNDO_KEYS: bool = true;
+
+    fn is_edited(encoder: &Encoder, page: Page) -> bool {
+        page == Page::Values && encoder.staged.is_dirty()
+    }
+    fn page_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        (studio, device): (&Studio, &AnyDevice),
+        encoder: &Encoder,
+        (page, typed): (Page, &mut Typed),
+        actions: &mut Vec<StudioAction>,
+    ) {
+        page::scrolling(ui, skin, (device.id(), page.word()), |ui| match page {
+            Page::Backups => backups::page_ui(ui, skin, device, actions),
+            Page::Values => {
+                card(ui, skin, TEXTS.text("novo.values"), |ui| {
+                    for (item, (name, typed)) in ITEMS.into_iter().zip(typed).enumerate() {
+                        let shown = encoder.wanted().map_or(String::new(), |values| values[item].to_string());
+                        entry(ui, skin, name, |ui| {
+                            settled_entry(ui, typed, &shown, 96.0, name, |text| {
+                                let value = text.parse().map_err(|_| explain::plain(text))?;
+                                actions.push(StudioAction::device(device.id(), Action::Set(item, value)));
+                                Ok(())
+                            })
+                        });
+                    }
+                });
+                foot::foot_ui(ui, skin, (studio, device), foot::Edited::Values, actions);
+            }
+        });
+    }
+    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+        let position = encoder.last.map_or("–".to_owned(), |(_, position)| position.to_string());
+        ui.label(RichText::new(position).monospace().size(skin.sizes.live).color(ink));
+    }
+}
+
+pub(crate) struct NovoConnectForm;
+
+impl TypedConnectForm for NovoConnectForm {
+    type Form = NovoForm;
+    type Memory = ();
+
+    fn form_ui(
+        ui: &mut Ui,
+        skin: &Skin,
+        _: &Dialog,
+        form: &mut NovoForm,
+        _: (&mut (), &mut bool),
+        _: &mut Vec<StudioAction>,
+    ) {
+        let word = skin.words(&TEXTS.text("novo.link"));
+        entry(ui, skin, &word, |ui| text_entry(ui, &mut form.link, 300.0, &word, "sim:"));
+    }
+}

@@ -1,0 +1,167 @@
+//! What the studio and the window do with the kind.
+
+use eframe::{App, Frame};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use encoder_studio::analysis::history::Value;
+use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::review::Stage;
+use encoder_studio::app::{Action as StudioAction, DeviceCommand, DeviceModel, Look, ReviewAction, Severity};
+use encoder_studio::devices::interbus::state::Action as Interbus;
+use encoder_studio::profile::{Body, Document};
+use encoder_studio::ui::{Window, install_fonts};
+use std::time::Duration;
+
+use super::desk::{Desk, program};
+use super::novo::profile::NovoProfile;
+use super::novo::protocol::Values;
+use super::novo::state::Encoder;
+
+/// What the virtual encoder keeps when it is delivered.
+const DELIVERED: Values = [0, 3, 0, 65535];
+
+#[test]
+fn it_is_offered_and_connects_from_the_dialog() {
+    assert_eq!(program().tabs.page_words(Encoder::TAB), ["page.values", "page.backups"]);
+    let mut desk = Desk::new();
+    let actions = [
+        Connect::Open,
+        Connect::Device(Encoder::TAB),
+        Connect::Use("sim:?serial=77&rpm=fast".to_owned()),
+        Connect::Connect,
+    ];
+    actions.into_iter().for_each(|action| desk.studio.act(StudioAction::Connect(action)));
+    assert!(desk.studio.devices().is_empty(), "that is no speed");
+    for action in [Connect::Use("sim:?serial=77".to_owned()), Connect::Connect] {
+        desk.studio.act(StudioAction::Connect(action));
+    }
+    desk.until_ready();
+    let read = desk.encoder().read.clone();
+    assert_eq!(read, Some(NovoProfile { serial: 77, values: DELIVERED }));
+    assert_eq!((desk.shown().tab(), desk.shown().name().as_str()), (Encoder::TAB, "Novo · 77"));
+}
+
+#[test]
+fn it_is_polled_and_recorded() {
+    // A turn of 4096 steps a second.
+    let mut desk = Desk::connected("?rpm=60");
+    desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
+    let positions = |desk: &Desk| {
+        let recorder = desk.shown().recorder();
+        let history = recorder.history(&recorder.lines()[0]).unwrap();
+        let samples = history.all().filter_map(|index| history.sample(0, index));
+        samples.map(|sample| (sample.time.nanoseconds(), sample.value)).collect::<Vec<_>>()
+    };
+    desk.until("it has been recorded", |desk| positions(desk).len() > 30);
+    desk.command(DeviceCommand::Poll(None));
+    let whole = |value| if let Value::Whole(steps) = value { steps } else { panic!("{value:?}") };
+    let positions: Vec<(i64, i64)> = positions(&desk).into_iter().map(|(time, value)| (time, whole(value))).collect();
+    // It was there before it was heard of.
+    assert!(positions.iter().all(|(time, steps)| *steps as f64 <= *time as f64 * 1e-9 * 4096.0 + 1.0));
+    assert!(positions.is_sorted() && positions.first().unwrap().1 < positions.last().unwrap().1, "{positions:?}");
+}
+
+#[test]
+fn edits_are_undone_reviewed_written_and_restored() {
+    let mut desk = Desk::connected("");
+    desk.set(0, 100);
+    desk.set(2, 9);
+    assert_eq!((desk.encoder().wanted(), desk.shown().edits()), (Some([100, 3, 9, 65535]), 2));
+    desk.command(DeviceCommand::Undo);
+    assert_eq!((desk.encoder().wanted(), desk.shown().edits()), (Some([100, 3, 0, 65535]), 1));
+    desk.command(DeviceCommand::Redo);
+    desk.set(2, 0);
+    assert_eq!(desk.shown().edits(), 1, "what is wanted as it is, is no edit");
+    desk.command(DeviceCommand::Review);
+    desk.until_stage(|stage| matches!(stage, Stage::Ready(_)));
+    let lines = desk.shown().sheet().unwrap().lines;
+    let words: Vec<String> = lines.iter().flat_map(|line| line.texts().map(|text| text.terminal())).collect();
+    assert_eq!(words, ["zero", "0", "100"]);
+
+    let Stage::Done { backup: Some(backup), .. } = desk.write() else { panic!("no backup") };
+    desk.until_ready();
+    let text = std::fs::read_to_string(&backup).unwrap();
+    let before = Document::parse(&text, program().studio.formats).unwrap().body;
+    assert_eq!(before, Body::new(NovoProfile { serial: 1001, values: DELIVERED }));
+    assert_eq!(desk.encoder().read.as_ref().unwrap().values, [100, 3, 0, 65535], "read back");
+    assert!(!desk.shown().is_dirty() && !desk.shown().can_undo());
+    // The shaft stands at 0, which is 100 steps below the zero of 65536.
+    desk.command(DeviceCommand::ReadPosition);
+    desk.until("a position", |desk| desk.encoder().last.is_some());
+    assert_eq!(desk.encoder().last.unwrap().1, 65436);
+
+    desk.review(ReviewAction::Close);
+    desk.until("the backup is listed", |desk| matches!(desk.shown().backups(), Some(Ok(all)) if all.len() == 1));
+    desk.command(DeviceCommand::Restore(backup));
+    desk.write();
+    desk.until_ready();
+    assert_eq!(desk.encoder().read.as_ref().unwrap().values, DELIVERED);
+    assert_eq!(desk.told(Severity::Error), [""; 0]);
+}
+
+#[test]
+fn a_profile_is_saved_opened_and_edited_and_goes_into_no_other_encoder_unasked() {
+    let mut desk = Desk::connected("");
+    let (id, path) = (desk.shown().id(), desk.path("novo.ron"));
+    desk.command(DeviceCommand::AskSave);
+    let question = desk.studio.take_file_question().unwrap();
+    desk.studio.act(StudioAction::Chosen(question, path.clone()));
+    desk.until("it is saved", |_| path.exists());
+    desk.studio.act(StudioAction::Open(path.clone()));
+    desk.until("it is open", |desk| desk.studio.devices().len() == 2);
+    let profile = desk.shown().id();
+    desk.set(1, 7);
+    desk.studio.act(StudioAction::Save(profile));
+    desk.until("it is saved again", |_| std::fs::read_to_string(&path).unwrap().contains("filter: 7"));
+    // Into the encoder from which it was read: one difference.
+    desk.studio.act(StudioAction::Command(profile, DeviceCommand::WriteInto(id)));
+    desk.until("the device is shown", |desk| desk.shown().id() == id);
+    desk.write();
+    assert_eq!(desk.encoder().read.as_ref().unwrap().serial, 1001);
+    desk.until("it is read back", |desk| desk.encoder().read.as_ref().unwrap().values == [0, 7, 0, 65535]);
+    desk.until_ready();
+    desk.review(ReviewAction::Close);
+    // Another one needs a permit.
+    desk.studio.act(StudioAction::CloseSession(id));
+    desk.open("?serial=5");
+    let other = desk.shown().id();
+    desk.studio.act(StudioAction::Command(profile, DeviceCommand::WriteInto(other)));
+    desk.until_stage(|stage| matches!(stage, Stage::Failed { begun: false, .. }));
+    assert_eq!(desk.shown().sheet().unwrap().toggles.len(), 1);
+}
+
+#[test]
+fn a_payload_of_another_kind_is_refused_and_told() {
+    let mut desk = Desk::connected("");
+    let id = desk.shown().id();
+    desk.studio.act(StudioAction::device(id, Interbus::Check));
+    assert_eq!(desk.told(Severity::Error), ["session.wrong_kind"]);
+    desk.studio.act(StudioAction::OpenVirtual);
+    desk.until_ready();
+    desk.set(0, 1);
+    assert_eq!(desk.shown().edits(), 1);
+}
+
+/// The window as the program shows it.
+struct Shown(Window);
+
+impl App for Shown {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut Frame) {
+        self.0.draw(ui);
+    }
+}
+
+#[test]
+fn the_window_shows_its_tab_and_its_values() {
+    let mut desk = Desk::connected("");
+    desk.set(0, 4321);
+    let Desk { studio, .. } = &mut desk;
+    let studio = std::mem::replace(studio, Desk::new().studio);
+    let mut harness = Harness::builder().with_size([1200.0, 800.0]).build_eframe(|cc| {
+        install_fonts(&cc.egui_ctx);
+        Shown(Window::new(studio, Look::built_in().unwrap(), program().tabs))
+    });
+    (0..4).for_each(|_| harness.step());
+    assert!(harness.query_all_by_label("NOVO").next().is_some(), "the navigation has its tab");
+    assert!(harness.query_all_by(|node| node.value().as_deref() == Some("4321")).next().is_some());
+}
