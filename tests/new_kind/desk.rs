@@ -20,7 +20,7 @@ pub(crate) fn program() -> Program {
 
 pub(crate) struct Desk {
     pub(crate) studio: Studio,
-    folder: tempfile::TempDir,
+    pub(crate) folder: tempfile::TempDir,
 }
 
 impl Desk {

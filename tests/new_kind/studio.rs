@@ -1,12 +1,15 @@
 //! What the studio and the window do with the kind.
 
 use eframe::{App, Frame};
+use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::analysis::history::Value;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::review::Stage;
-use encoder_studio::app::{Action as StudioAction, DeviceCommand, DeviceModel, Look, ReviewAction, Severity};
+use encoder_studio::app::{
+    Action as StudioAction, DeviceCommand, DeviceModel, Language, Look, ReviewAction, Severity, Text,
+};
 use encoder_studio::devices::interbus::state::Action as Interbus;
 use encoder_studio::profile::{Body, Document};
 use encoder_studio::ui::{Window, install_fonts};
@@ -100,6 +103,24 @@ fn edits_are_undone_reviewed_written_and_restored() {
 }
 
 #[test]
+fn what_is_not_taken_is_told_and_stays_edited() {
+    // The second of two values, at 10h and 12h.
+    let mut desk = Desk::connected("?stuck=0x12");
+    desk.set(0, 100);
+    desk.set(2, 9);
+    desk.command(DeviceCommand::Review);
+    let Stage::Ready(plan) = desk.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };
+    desk.review(ReviewAction::Write(plan));
+    desk.until_stage(|stage| matches!(stage, Stage::Failed { begun: true, done: 1, .. }));
+    desk.until("it is read again", |desk| desk.shown().is_ready() && desk.shown().edits() == 1);
+    assert_eq!(desk.encoder().read.as_ref().unwrap().values, [100, 3, 0, 65535]);
+    desk.until("it is listed", |desk| matches!(desk.shown().writes(), Some(Ok(all)) if all.len() == 1));
+    let writes = desk.shown().writes().unwrap().as_ref().unwrap();
+    let spent = writes.iter().map(|write| write.conclusion.as_ref().unwrap().cycles_spent);
+    assert_eq!(spent.collect::<Vec<_>>(), [2]);
+}
+
+#[test]
 fn a_profile_is_saved_opened_and_edited_and_goes_into_no_other_encoder_unasked() {
     let mut desk = Desk::connected("");
     let (id, path) = (desk.shown().id(), desk.path("novo.ron"));
@@ -153,15 +174,21 @@ impl App for Shown {
 
 #[test]
 fn the_window_shows_its_tab_and_its_values() {
-    let mut desk = Desk::connected("");
+    let mut desk = Desk::connected("?rpm=60");
     desk.set(0, 4321);
-    let Desk { studio, .. } = &mut desk;
-    let studio = std::mem::replace(studio, Desk::new().studio);
+    desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
+    desk.until("something is recorded", |desk| desk.shown().recorder().recorded().is_some());
+    desk.command(DeviceCommand::Poll(None));
+    let Desk { studio, folder: _folder } = desk;
     let mut harness = Harness::builder().with_size([1200.0, 800.0]).build_eframe(|cc| {
         install_fonts(&cc.egui_ctx);
         Shown(Window::new(studio, Look::built_in().unwrap(), program().tabs))
     });
     (0..4).for_each(|_| harness.step());
     assert!(harness.query_all_by_label("NOVO").next().is_some(), "the navigation has its tab");
+    let chart = Text::new("recorder.chart").words(Language::English);
+    assert!(harness.query_by_role_and_label(Role::Image, &chart).is_some(), "the plot has its positions");
+    let position = harness.state().0.studio().shown_as::<Encoder>().unwrap().last.unwrap().1.to_string();
+    assert!(harness.query_all_by_label(&position).next().is_some(), "the newest stands large");
     assert!(harness.query_all_by(|node| node.value().as_deref() == Some("4321")).next().is_some());
 }

@@ -58,6 +58,9 @@ impl DeviceCommands for NovoCommands {
     }
     fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
         let mut runner = Runner::open(common)?;
+        if position.csv {
+            output.print("position\n")?;
+        }
         let read = |came: std::result::Result<Came, Box<JobError>>| match came {
             Ok(Came::Position((_, position))) => {
                 output.show(&json!({ "position": position }), &format!("{position}\n"))?;

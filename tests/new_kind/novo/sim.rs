@@ -10,6 +10,8 @@ use super::protocol::{FIRST, POSITION, Request, SERIAL, TURN, Values, reply};
 pub(crate) struct Virtual {
     serial: u16,
     rpm: f64,
+    /// The address of a value that does not change any more.
+    stuck: Option<u8>,
     values: Values,
     asked: Vec<u8>,
     answers: Vec<u8>,
@@ -18,13 +20,15 @@ pub(crate) struct Virtual {
 impl Virtual {
     /// As the query of a link says.
     pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut own = Virtual { serial: 1001, rpm: 0.0, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] };
+        let mut own =
+            Virtual { serial: 1001, rpm: 0.0, stuck: None, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] };
         for (key, value) in pairs {
             let setting = Setting { key, value };
             match key.as_str() {
                 "serial" => own.serial = setting.number("a number from 0 to 65535")?,
                 "rpm" => own.rpm = setting.rpm()?,
-                _ => return Err(setting.unknown("a virtual Novo encoder", &["serial", "rpm"])),
+                "stuck" => own.stuck = Some(setting.number("an address from 0 to 255")?),
+                _ => return Err(setting.unknown("a virtual Novo encoder", &["serial", "rpm", "stuck"])),
             }
         }
         Ok(own)
@@ -50,7 +54,8 @@ impl ByteDevice for Virtual {
         let address = match request {
             Request::Read(address) => address,
             Request::Write(address, word) => {
-                if let Some(value) = self.values.get_mut(usize::from(address.wrapping_sub(FIRST))) {
+                let kept = self.values.get_mut(usize::from(address.wrapping_sub(FIRST)));
+                if let Some(value) = kept.filter(|_| self.stuck != Some(address)) {
                     *value = word;
                 }
                 address

@@ -64,7 +64,7 @@ impl Encoder {
         self.staged.put(edits, is_edit);
     }
 
-    /// What was read is what is wanted is no edit any more.
+    /// What is wanted as it was read now is no edit any more.
     pub(super) fn take(&mut self, read: NovoProfile) {
         self.staged.settle(|item, value| read.values[item] != value);
         self.read = Some(read);
@@ -82,7 +82,9 @@ impl Encoder {
     }
     fn surveyed(&mut self, read: NovoProfile, services: &mut Services) {
         if self.read.as_ref().is_some_and(|own| own.serial != read.serial) {
-            self.session.tell_of_another(&read.serial.to_string(), services);
+            if self.staged.is_dirty() {
+                self.session.tell_of_another(&read.serial.to_string(), services);
+            }
             self.leave_draft(services);
             (self.staged, self.review, self.read) = (Edits::default(), None, None);
             self.track.forget();
