@@ -8,17 +8,22 @@ pub use kind::{Kind, Program, ToolTab};
 
 use crate::buses::bridge::sim::Attachable;
 use crate::buses::ethernet_ip::commands::EthernetIpDecoder;
-use crate::devices::{biss, hiperdrive, hiperface, interbus, ssi};
 use crate::signals;
 
 /// The kinds of devices, in the order of the navigation and of the help.
-pub const KINDS: [Kind; 5] = [hiperface::KIND, biss::KIND, ssi::KIND, interbus::KIND, hiperdrive::KIND];
+pub const KINDS: &[Kind] = &[
+    crate::devices::hiperface::KIND,
+    crate::devices::biss::KIND,
+    crate::devices::ssi::KIND,
+    crate::devices::interbus::KIND,
+    crate::devices::hiperdrive::KIND,
+];
 
 /// Returns the program with all of them.
 pub fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| {
-        Program::new(&KINDS, &[signals::TAB], &[&EthernetIpDecoder], &[&signals::commands::AnalyseCommand])
+        Program::new(KINDS, &[signals::TAB], &[&EthernetIpDecoder], &[&signals::commands::AnalyseCommand])
     })
 }
 

@@ -7,6 +7,7 @@ use super::program;
 use crate::profile::{Document, ProfileError};
 
 mod adapter;
+mod options;
 mod rewrite;
 
 fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {

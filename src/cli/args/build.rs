@@ -51,7 +51,7 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
 }
 
 /// The whole command line.
-pub(super) fn command(commands: Commands) -> clap::Command {
+pub(crate) fn command(commands: Commands) -> clap::Command {
     let front = commands.common_options().fold(Front::command(), |front, option| {
         // Several kinds of device may have it.
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());

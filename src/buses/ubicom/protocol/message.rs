@@ -1,5 +1,5 @@
 //! What a host asks and an encoder answers (manual 5.2). Registers have one number each: see
-//! [`RegisterAddress::global`](crate::devices::biss::protocol::RegisterAddress::global).
+//! `RegisterAddress::global` of BiSS.
 
 use super::frame::{Frame, NODE};
 use super::position::PositionWord;

@@ -1,4 +1,4 @@
-//! ARCHITECTURE.md says how a motion ends, as a table of phases and events; here it is read and played (issue 21, *What must
+//! docs/motion.md says how a motion ends, as a table of phases and events; here it is read and played (issue 21, *What must
 //! hold*).
 
 use std::time::Duration;
@@ -7,8 +7,7 @@ use super::{DeadMan, Effort, Goal, Intent, Lock, Permit, Phase, Wish};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, StatusWord};
 use crate::units::Moment;
 
-const ARCHITECTURE: &str = include_str!("../../../../../ARCHITECTURE.md");
-const CHAPTER: &str = "## How a motion ends";
+const DOCUMENT: &str = include_str!("../../../../../docs/motion.md");
 
 /// A drive and its dead-man, interval by interval.
 struct Bench {
@@ -150,14 +149,13 @@ impl Bench {
 
 /// The rows of the table, with its head: cells without blanks around them.
 fn table() -> Vec<Vec<&'static str>> {
-    let chapter = ARCHITECTURE.split(CHAPTER).nth(1).expect("the chapter");
-    let lines = chapter.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    let lines = DOCUMENT.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
     lines.filter(|line| !line.starts_with("|---")).map(cells).collect()
 }
 
 #[test]
-fn motions_end_as_the_architecture_says() {
+fn motions_end_as_the_document_says() {
     let rows = table();
     let (head, events) = rows.split_first().unwrap();
     assert_eq!((head.len(), events.len()), (9, 13), "all phases and all events");
