@@ -1,5 +1,5 @@
 //! Leading a drive through its states: one word after the other, each until the drive has followed, with a limit (reference 3,
-//! and the recipes of `protocol/hiperdrive`).
+//! and the recipes of `devices/hiperdrive/protocol/recipe`).
 
 use super::{Act, DeadMan, Ended, Goal, Mark, Motive, Refusal, SETTLE, STEP, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
