@@ -280,7 +280,7 @@ pub enum ReadError {
 }
 
 /// Whose recorder it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Desk {
     /// A device's.
     Device(SessionId),

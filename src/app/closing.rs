@@ -65,7 +65,7 @@ impl Studio {
         });
         self.diverged.take_if(|diverged| diverged.session() == id);
         self.devices.retain(|device| device.id() != id);
-        self.shown.remove(&self.devices, id);
+        self.shown.remove(self.services.world.kinds, &self.devices, id);
     }
 
     pub(super) fn close(&mut self) {
@@ -124,7 +124,7 @@ impl Studio {
                 let why = Text::new("session.maybe_drive");
                 self.with_device(id, |device, services| device.lose(why, services));
             }
-            Then::Find => {
+            Then::Find(_) => {
                 if let Some(connect) = &mut self.connect {
                     connect.problem = Some(Text::new("session.maybe_drive"));
                 }
@@ -147,7 +147,7 @@ impl Studio {
                 self.services.tasks.run("save", move || saving.run(formats));
             }
             Some(Then::OpenLink(id)) => self.open_confirmed(id),
-            Some(Then::Find) => self.find_confirmed(),
+            Some(Then::Find(tab)) => self.find_confirmed(tab),
             Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::Action::Clear),
             None => {}
         }

@@ -12,8 +12,8 @@ use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
 use super::{AnyDevice, Severity, Text};
-use crate::link::{LinkUrl, Scheme, TraceEntry};
-use crate::worker::{Ring, Session, Worker};
+use crate::link::{LinkUrl, Scheme, TraceEntry, UrlError};
+use crate::worker::{OpenError, Ring, Session, Worker};
 
 /// Frames that wait for the window, at most.
 const FRAMES: usize = 2_000;
@@ -31,7 +31,10 @@ impl Studio {
         let text = (link.scheme != Scheme::Sim).then(|| link.to_string());
         let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
         let tabs = || std::iter::once(shown).chain(kinds.devices().iter().map(|kind| kind.tab()));
-        tabs().find(used).or_else(|| tabs().find(fits)).unwrap_or(shown)
+        let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
+        let leads_there = |tab: &Tab| kinds.of_tab(*tab).is_some_and(|kind| !kind.check(link).is_err_and(is_elsewhere));
+        // One that none takes is told by a kind that such links lead to.
+        tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
     }
 
     /// Opens a link to a kind of device: in the session that has this wire already, else in a new one. A session of

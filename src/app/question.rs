@@ -7,6 +7,7 @@ use super::action::Desk;
 use super::file_question::FileQuestion;
 use super::session::{Saving, without_codes};
 use super::studio::SessionId;
+use super::tab::Tab;
 use crate::link::LinkUrl;
 
 /// A question that has to be answered before something is done.
@@ -31,8 +32,8 @@ pub(crate) enum Then {
     Save(Box<Saving>),
     /// The link of this session is opened.
     OpenLink(SessionId),
-    /// The search of the connection dialog goes on.
-    Find,
+    /// The search of the form of this tab, in the connection dialog, goes on.
+    Find(Tab),
 }
 
 impl Question {

@@ -226,11 +226,9 @@ impl Studio {
         self.tools.iter().any(|(own, _)| *own == tab)
     }
 
-    /// The virtual device of a tab; of a tool the first kind's.
+    /// The virtual device of a tab; `None` of a tool.
     fn virtual_link(&self, tab: Tab) -> Option<LinkUrl> {
-        let kinds = self.services.world.kinds;
-        let kind = kinds.of_tab(tab).or_else(|| kinds.devices().first().copied())?;
-        Some(kind.virtual_link())
+        Some(self.services.world.kinds.of_tab(tab)?.virtual_link())
     }
 
     /// Shows a tab. A kind whose profiles begin here needs no device: where there is none, a profile to begin with.

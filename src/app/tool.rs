@@ -145,12 +145,12 @@ impl Studio {
         Ok(())
     }
 
-    /// Opens a capture: in the open tab where that is a tool, else in the first one.
+    /// Opens a capture that was asked for: in the open tab where that is a tool, else in the first one. Another tab may be open by
+    /// now, and stays so.
     pub(super) fn open_capture(&mut self, path: PathBuf) {
         let tab = self.settings.tab;
         let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();
-        if let Some((tab, tool)) = self.tools.get_mut(at) {
-            self.settings.tab = *tab;
+        if let Some((_, tool)) = self.tools.get_mut(at) {
             tool.open(path, &mut self.services);
         }
     }

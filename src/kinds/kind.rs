@@ -13,7 +13,8 @@ pub struct Kind {
     pub view: &'static dyn DeviceView,
     /// Its part of the command line.
     pub commands: &'static dyn DeviceCommands,
-    /// Its virtual device on the virtual adapter; `None` for a kind that is reached without an adapter.
+    /// Its virtual device on the virtual adapter; `None` for a kind that is reached without an adapter. The adapter asks the
+    /// program's own list (`kinds::at_adapter`): a kind from outside is not on it.
     pub at_adapter: Option<&'static dyn Attachable>,
 }
 

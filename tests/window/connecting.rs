@@ -335,3 +335,32 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.wire().release();
     desk.until_written();
 }
+
+/// What a link lacks is told by a kind that such links lead to.
+#[test]
+fn a_link_that_no_kind_takes_is_opened_where_its_scheme_leads() {
+    for (link, tab) in [
+        ("bridge:/dev/nothing?clok=1", crate::tabs::BISS),
+        ("bridge:/dev/nothing?pause=30", crate::tabs::SSI),
+        ("modbus:nowhere.invalid?colour=red", crate::tabs::INTERBUS),
+    ] {
+        let mut desk = Desk::fresh("");
+        desk.act(Action::ShowTab(crate::tabs::HIPERFACE));
+        desk.studio.begin(Some(link.parse().unwrap()), None);
+        assert_eq!(desk.studio.settings.tab, tab, "{link}");
+    }
+}
+
+/// The answer is for the search that was asked about, and for no other dialog.
+#[test]
+fn a_late_answer_about_another_master_begins_no_search() {
+    let mut desk = Desk::fresh("");
+    desk.connect(Connect::Open);
+    desk.connect(Connect::Use("serial:/dev/nothing".to_owned()));
+    desk.studio.act(Action::Connect(crate::tabs::search_for(FindOptions::default())));
+    assert!(asks_for_drive(&desk.studio));
+    desk.studio.act(Action::Connect(Connect::Close));
+    desk.studio.act(Action::Connect(Connect::Open));
+    desk.studio.act(Action::Confirm);
+    assert!(crate::tabs::search(dialog(&desk)).is_none());
+}

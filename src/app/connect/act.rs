@@ -80,7 +80,13 @@ impl Studio {
     /// Asks what looks for devices.
     fn find(&mut self, action: Payload) {
         let is_its = |form: &dyn AnyForm| form.is_of_finder(&action);
-        let Some((tab, place)) = self.place_of_form(is_its) else { return };
+        let Some((tab, place)) = self.place_of_form(is_its) else {
+            // Without a dialog it comes too late.
+            if self.connect.is_some() {
+                self.refuse_kind(None);
+            }
+            return;
+        };
         let mut fills_in = Ok(false);
         self.with_finder(tab, place, |form, context| fills_in = form.find(action, context));
         match fills_in {
@@ -91,11 +97,10 @@ impl Studio {
     }
 
     /// The user says that no other master is on the line of the form.
-    pub(in crate::app) fn find_confirmed(&mut self) {
-        let Some(device) = self.connect.as_ref().map(|connect| connect.device) else { return };
-        let at = |connect: &Connect| connect.forms.iter().position(|(tab, _)| *tab == device);
+    pub(in crate::app) fn find_confirmed(&mut self, tab: Tab) {
+        let at = |connect: &Connect| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
-            self.with_finder(device, place, |form, context| form.confirmed(context));
+            self.with_finder(tab, place, |form, context| form.confirmed(context));
         }
     }
 
@@ -119,7 +124,7 @@ impl Studio {
     fn with_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
         let Some(mut connect) = self.connect.take() else { return };
         let link = connect.url();
-        let mut context = FinderContext::new(self, link);
+        let mut context = FinderContext::new(self, tab, link);
         if let Some((_, form)) = connect.forms.get_mut(place) {
             act(form.as_mut(), &mut context);
         }

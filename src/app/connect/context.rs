@@ -6,11 +6,13 @@ use crate::app::Text;
 use crate::app::question::{Question, Then};
 use crate::app::services::Services;
 use crate::app::studio::Studio;
+use crate::app::tab::Tab;
 use crate::link::LinkUrl;
 
 /// What a search may use beside the connection form it belongs to.
 pub struct FinderContext<'a> {
     studio: &'a mut Studio,
+    tab: Tab,
     link: Result<LinkUrl, Text>,
     found: Option<LinkUrl>,
     problem: Option<Text>,
@@ -26,8 +28,8 @@ pub(super) struct Next {
 }
 
 impl<'a> FinderContext<'a> {
-    pub(super) fn new(studio: &'a mut Studio, link: Result<LinkUrl, Text>) -> Self {
-        FinderContext { studio, link, found: None, problem: None }
+    pub(super) fn new(studio: &'a mut Studio, tab: Tab, link: Result<LinkUrl, Text>) -> Self {
+        FinderContext { studio, tab, link, found: None, problem: None }
     }
 
     pub(super) fn into_next(self) -> Next {
@@ -65,7 +67,7 @@ impl<'a> FinderContext<'a> {
 
     /// Asks whether another master is on the line; the search goes on where there is none.
     pub fn ask_other_master(&mut self, url: &LinkUrl) {
-        self.studio.question = Some(Question::other_master(url, Then::Find));
+        self.studio.question = Some(Question::other_master(url, Then::Find(self.tab)));
     }
 
     /// Says why what was asked for was not done.

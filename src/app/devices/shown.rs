@@ -1,15 +1,16 @@
 //! Which device each tab shows.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 use super::AnyDevice;
+use crate::app::kinds::Kinds;
 use crate::app::studio::SessionId;
 use crate::app::tab::Tab;
 
 /// Which device each tab shows.
 #[derive(Debug, Default)]
 pub(crate) struct Shown {
-    by_tab: BTreeMap<Tab, SessionId>,
+    by_tab: HashMap<Tab, SessionId>,
     last: Option<SessionId>,
 }
 
@@ -29,8 +30,8 @@ impl Shown {
         self.last = Some(id);
     }
 
-    /// A device is gone; `left` are the others. Its tab shows the one that came last.
-    pub(in crate::app) fn remove(&mut self, left: &[Box<AnyDevice>], id: SessionId) {
+    /// A device is gone; `left` are the others. Its tab shows the one that came last; what was shown last is that of the last tab.
+    pub(in crate::app) fn remove(&mut self, kinds: Kinds, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id
                 && let Some(other) = left.iter().rev().find(|device| device.tab() == *tab)
@@ -40,7 +41,8 @@ impl Shown {
         }
         self.by_tab.retain(|_, shown| *shown != id);
         if self.last == Some(id) {
-            self.last = self.by_tab.values().next_back().copied();
+            let tabs = kinds.devices().iter().rev().map(|kind| kind.tab());
+            self.last = tabs.filter_map(|tab| self.of(tab)).next();
         }
     }
 }

@@ -4,7 +4,7 @@
 pub(crate) mod entries;
 pub(in crate::ui) mod form;
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -22,7 +22,7 @@ pub use form::TypedConnectForm;
 /// What the dialog remembers.
 #[derive(Default)]
 pub(in crate::ui) struct ConnectView {
-    forms: BTreeMap<Tab, Box<dyn ConnectForm>>,
+    forms: HashMap<Tab, Box<dyn ConnectForm>>,
     /// What is rarely needed is unfolded.
     more: bool,
 }

@@ -123,7 +123,7 @@ pub struct SearchFinder {
     /// The search.
     pub search: Option<Search>,
     /// What is searched for, once the user has said that no drive is on the line.
-    asked: FindOptions,
+    asked: Option<FindOptions>,
 }
 
 /// What can be done with the search.
@@ -150,7 +150,7 @@ impl Finder for SearchFinder {
     fn act(&mut self, action: SearchAction, _form: &mut LinkForm, context: &mut FinderContext<'_>) {
         match action {
             SearchAction::Search(options) => {
-                self.asked = options;
+                self.asked = Some(options);
                 match context.link() {
                     Ok(url) if may_have_other_master(&url) => context.ask_other_master(&url),
                     _ => self.confirmed(context),
@@ -166,6 +166,7 @@ impl Finder for SearchFinder {
     }
 
     fn confirmed(&mut self, context: &mut FinderContext<'_>) {
+        let Some(options) = self.asked.take() else { return };
         let url = match context.link() {
             Ok(url) => url,
             Err(problem) => return context.refuse(problem),
@@ -177,7 +178,6 @@ impl Finder for SearchFinder {
         let number = context.new_number();
         let done = move |result| Done::finder::<SearchFinder>(Encoder::TAB, OpenedForSearch { number, result });
         let over = context.services().open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
-        let options = self.asked.clone();
         self.search = Some(Search { number, url, options, line: None, over, found: Vec::new(), end: None });
     }
 
