@@ -15,7 +15,7 @@ use super::novo::state::{Action, Encoder};
 /// The program with it behind its own kinds.
 pub(crate) fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
-    *PROGRAM.get_or_init(|| Program::new(&[&KINDS[..], &[NOVO]].concat(), &[], &[], &[]))
+    *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[], &[], &[]))
 }
 
 pub(crate) struct Desk {
