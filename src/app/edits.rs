@@ -58,34 +58,9 @@ impl<K: Ord + Copy, V: Copy + PartialEq> Edits<K, V> {
         self.edits.retain(|at, value| is_edit(*at, *value));
     }
 
-    /// There is a step to undo.
-    pub fn can_undo(&self) -> bool {
-        self.history.can_undo()
-    }
-
-    /// There is a step to do again.
-    pub fn can_redo(&self) -> bool {
-        self.history.can_redo()
-    }
-
-    /// Undoes the last step. False when there is none.
-    pub fn undo(&mut self) -> bool {
-        self.history.undo(&mut self.edits)
-    }
-
-    /// Does the last undone step again. False when there is none.
-    pub fn redo(&mut self) -> bool {
-        self.history.redo(&mut self.edits)
-    }
-
     /// What was undone belongs to another memory.
     pub fn forget_redo(&mut self) {
         self.history.forget_undone();
-    }
-
-    /// What led here cannot be undone any more.
-    pub fn forget_steps(&mut self) {
-        self.history.forget();
     }
 
     fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, V>)) -> bool {
@@ -105,22 +80,26 @@ impl<K: Ord + Copy, V: Copy + PartialEq> PendingEdits for Edits<K, V> {
     }
 
     fn can_undo(&self) -> bool {
-        Edits::can_undo(self)
+        self.history.can_undo()
     }
 
     fn can_redo(&self) -> bool {
-        Edits::can_redo(self)
+        self.history.can_redo()
     }
 
     fn undo(&mut self) -> bool {
-        Edits::undo(self)
+        self.history.undo(&mut self.edits)
     }
 
     fn redo(&mut self) -> bool {
-        Edits::redo(self)
+        self.history.redo(&mut self.edits)
     }
 
     fn revert(&mut self) -> bool {
         Edits::revert(self, |_| true)
+    }
+
+    fn forget_steps(&mut self) {
+        self.history.forget();
     }
 }

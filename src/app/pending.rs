@@ -22,6 +22,9 @@ pub trait PendingEdits {
 
     /// Takes all edits back, as one step that can be undone. False where there are none.
     fn revert(&mut self) -> bool;
+
+    /// The edits were written or saved: what led to them cannot be undone any more.
+    fn forget_steps(&mut self);
 }
 
 /// A step through the edits: one undone or done again, or all taken back.

@@ -16,13 +16,14 @@ use super::consent::{answer, can_ask};
 use super::output::say;
 use super::patience::{Pace, Patience};
 use super::{Failure, Result};
+use crate::app::session::Kind;
 use crate::app::{Given, Text, explain};
 use crate::link::{LinkError, LinkUrl, write_entry, write_header};
 use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// What the command line has to know of a device that it runs jobs on.
-pub trait Runs: Device {
+pub trait Runs: Kind {
     /// What is kept of a session when its thread has it.
     type Kept;
     /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
@@ -35,43 +36,22 @@ pub trait Runs: Device {
         false
     }
 
-    /// Opens a link.
-    ///
-    /// # Errors
-    /// See [`OpenError`]; nothing has been sent.
-    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError>
-    where
-        Self: Sized;
-
-    /// Why a link cannot be opened, and what to do.
-    fn open_error(error: &OpenError) -> Text {
-        explain::open(error)
-    }
-
     /// Makes a session ready, with what the options of every command give.
-    fn begin(session: &mut Session<Self>, given: &Given) -> Self::Kept
-    where
-        Self: Sized;
+    fn begin(session: &mut Session<Self>, given: &Given) -> Self::Kept;
 
     /// Says at once what the device said on the way.
     fn say(remark: &Self::Remark);
 
     /// A step, beside the bar at a terminal.
-    fn doing(doing: &Self::Doing) -> String;
+    fn step(doing: &Self::Doing) -> String;
 
     /// What somebody at the terminal should know of a step; told when it changes.
     fn announce(_doing: &Self::Doing) -> Option<String> {
         None
     }
 
-    /// A job that ended early, in words.
-    fn failure(error: &Self::Error) -> Vec<Text>;
-
     /// How long its replies take, where that is measured and the link says how long they may.
-    fn reply_pace(_session: &Session<Self>) -> Option<Pace>
-    where
-        Self: Sized,
-    {
+    fn reply_pace(_session: &Session<Self>) -> Option<Pace> {
         None
     }
 
@@ -95,7 +75,7 @@ pub struct Runner<D: Runs> {
 }
 
 /// A job that ended early.
-pub enum Ended<D: Device> {
+pub enum Ended<D: Runs> {
     /// With this error.
     Job(Box<D::Error>),
     /// Ctrl-C, between two jobs.
@@ -190,7 +170,7 @@ impl<D: Runs> Runner<D> {
                         bar.say(words);
                     }
                     announced = words;
-                    bar.show(progress.done, progress.total, &D::doing(&progress.what));
+                    bar.show(progress.done, progress.total, &D::step(&progress.what));
                 }
                 Event::Remark(remark) => {
                     D::say(&remark);
@@ -247,7 +227,7 @@ impl<D: Runs> Ended<D> {
     /// Returns it as what a command comes to.
     pub fn into_failure(self) -> Failure {
         match self {
-            Ended::Job(error) => Failure::Failed(lines(D::failure(&error).iter().map(Text::terminal).collect())),
+            Ended::Job(error) => Failure::Failed(lines(D::why(&error).iter().map(Text::terminal).collect())),
             Ended::Interrupted => failed(&Text::new("encoder.cancelled")),
             Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),

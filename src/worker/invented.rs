@@ -32,10 +32,6 @@ impl Device for Invented {
         false
     }
 
-    fn take_remark(&mut self) -> Option<()> {
-        None
-    }
-
     fn check(&mut self) -> Result<(), LinkError> {
         Ok(())
     }

@@ -88,7 +88,9 @@ pub trait Device: Send + 'static {
     fn is_cancelled(error: &Self::Error) -> bool;
 
     /// Takes what the device said since the last time.
-    fn take_remark(&mut self) -> Option<Self::Remark>;
+    fn take_remark(&mut self) -> Option<Self::Remark> {
+        None
+    }
 
     /// Looks whether the wire is still there.
     ///

@@ -57,8 +57,8 @@ pub fn open(error: &OpenError) -> Text {
     }
 }
 
-/// A link that could not be opened, or had no thread to run on.
-pub fn open_failed(failed: &OpenFailed) -> Text {
+/// A link that could not be opened, or had no thread to run on; `open` has the words of the kind for the former.
+pub fn open_failed(failed: &OpenFailed, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailed::Link(error) => open(error),
         OpenFailed::Thread(why) => Text::new("session.no_thread").with("why", why),

@@ -28,9 +28,14 @@ pub trait Kind: Device + Sized {
     /// The link cannot be opened, or says what is not for such a device.
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
-    /// Why a link could not be opened, and what to do.
+    /// Why a link cannot be opened, and what to do.
+    fn open_error(error: &OpenError) -> Text {
+        explain::open(error)
+    }
+
+    /// The same, or that it has no thread to run on.
     fn open_failed(failed: &OpenFailed) -> Text {
-        explain::open_failed(failed)
+        explain::open_failed(failed, Self::open_error)
     }
 
     /// A job in words.

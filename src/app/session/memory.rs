@@ -1,7 +1,7 @@
 //! A device whose memory is written through a review: from a wish to a plan, from the plan and the consent to it to the job
 //! that carries it out, and what came of it. A kind says what its changes, plans and jobs are, and what else hangs on them.
 
-use super::{Cut, Kind, OnDesk, OnLine};
+use super::{Cut, Drafted, Kind, OnDesk, OnLine};
 use crate::app::review::{OpWords, Permit, Review, ReviewState, Reviewed, Sheet, told};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
@@ -19,7 +19,7 @@ type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Writt
 pub type Agreed<K> = worker::commit::Agreed<<K as Reviewed>::Prepared>;
 
 /// Whoever has a memory.
-pub trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
+pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     /// A write on its way.
     fn review(&self) -> Option<&Review<Self::Device>>;
 
@@ -56,8 +56,8 @@ pub trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
     /// The job that carries a plan out.
     fn commit(&mut self, agreed: Agreed<Self::Device>) -> Job<Self>;
 
-    /// The edits were written: what led to them cannot be undone any more.
-    fn forget_steps(&mut self);
+    /// Forgets what it knows of the device: another one answers.
+    fn forget_device(&mut self);
 
     /// A review is about to stand over it.
     fn hands_off(&mut self) {}
@@ -150,6 +150,21 @@ pub trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         }
     }
 
+    /// Another device answers than the one that was read before: what was edited for that one stays on disk, where it has a
+    /// serial number to be kept under.
+    fn replaced_by(&mut self, serial: &str, services: &mut Services) {
+        if self.pending().is_dirty() {
+            let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
+            let text = if is_kept { "session.other_encoder" } else { "session.edits_gone" };
+            let text = Text::new(text).with("serial", serial);
+            services.tell(Severity::Warning, vec![text], Some(&self.session().name()));
+        }
+        self.leave_draft(services);
+        self.forget_device();
+        *self.review_mut() = None;
+        self.session_mut().forget_device();
+    }
+
     /// Carries out the plan that was drawn.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         if let Some(agreed) = self.agree(shown) {
@@ -205,7 +220,7 @@ pub trait WithMemory: OnLine + OnDesk<Device: Reviewed> {
         } else {
             services.tell(severity, texts, Some(&name));
         }
-        self.forget_steps();
+        self.pending_mut().forget_steps();
         self.reads_again();
         self.carried_out(&committed, services);
         if let Some(review) = self.review_mut()

@@ -113,6 +113,12 @@ impl SessionState {
         }
     }
 
+    /// Forgets what it knows of a device, because another one answers.
+    pub(super) fn forget_device(&mut self) {
+        (self.title, self.backups, self.writes, self.cycles) = (None, None, None, None);
+        self.statuses.clear();
+    }
+
     /// Another device was read than the one before.
     pub fn tell_of_another(&self, serial: &str, services: &mut Services) {
         let text = Text::new("session.other_encoder").with("serial", serial);

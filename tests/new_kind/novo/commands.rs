@@ -2,20 +2,18 @@
 
 use std::convert::Infallible;
 
-use encoder_studio::app::{Given, Text};
+use encoder_studio::app::Given;
 use encoder_studio::cli::{
     Common, DeviceCommands, Done, Ended, Failure, Left, Output, Position, Restore, Result, Runs, Save, Simulate,
     Simulated, agree, check_wear, keep, plan, readings, require_consent, restore_options, settings, show_dry_run,
     show_restored, unexpected,
 };
-use encoder_studio::link::LinkUrl;
 use encoder_studio::profile::{Body, Comparison, Consent, Operation, ProfileError};
-use encoder_studio::store::Store;
+use encoder_studio::worker::Session;
 use encoder_studio::worker::commit::Agreed;
-use encoder_studio::worker::{OpenError, Session};
 use serde_json::json;
 
-use super::jobs::{self, Change, Job, JobError, LIFE, Novo, Output as Came, Prepared};
+use super::jobs::{Change, Job, JobError, LIFE, Novo, Output as Came, Prepared};
 use super::profile::{NovoProfile, compare};
 use super::protocol::{ITEMS, KIND, name_of};
 use super::sim::Virtual;
@@ -26,19 +24,13 @@ impl Runs for Novo {
     type Kept = ();
     const COMMANDS: &'static dyn DeviceCommands = &NovoCommands;
 
-    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
-        jobs::open(url, store)
-    }
     fn begin(_: &mut Session<Self>, _: &Given) {}
 
     fn say(remark: &Infallible) {
         match *remark {}
     }
-    fn doing(item: &usize) -> String {
+    fn step(item: &usize) -> String {
         name_of(*item).to_owned()
-    }
-    fn failure(error: &JobError) -> Vec<Text> {
-        <Novo as encoder_studio::app::session::Kind>::why(error)
     }
 }
 

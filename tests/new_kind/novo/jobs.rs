@@ -182,9 +182,6 @@ impl Device for Novo {
     fn is_cancelled(error: &JobError) -> bool {
         error.device() == Some(&Error::Cancelled)
     }
-    fn take_remark(&mut self) -> Option<Infallible> {
-        None
-    }
     fn check(&mut self) -> Result<(), LinkError> {
         self.0.check()
     }

@@ -2,7 +2,7 @@
 
 use encoder_studio::app::review::{OpWords, Permit, Review, Reviewed};
 use encoder_studio::app::session::{Agreed, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
-use encoder_studio::app::{PendingEdits, Services, Text, explain};
+use encoder_studio::app::{Edits, PendingEdits, Services, Text, explain};
 use encoder_studio::profile::{Body, Document, Plan, ProfileError, Written};
 use encoder_studio::store::DeviceKey;
 
@@ -94,8 +94,9 @@ impl WithMemory for Encoder {
     fn commit(&mut self, agreed: Agreed<Novo>) -> Job {
         Job::Commit(Box::new(agreed))
     }
-    fn forget_steps(&mut self) {
-        self.staged.forget_steps();
+    fn forget_device(&mut self) {
+        (self.staged, self.read) = (Edits::default(), None);
+        self.track.forget();
     }
 }
 

@@ -42,7 +42,7 @@ pub(crate) struct Encoder {
     /// What is wanted otherwise, by the number of the item.
     pub(crate) staged: Edits<usize, u16>,
     pub(crate) last: Option<Sample>,
-    track: Track<Infallible>,
+    pub(super) track: Track<Infallible>,
     pub(super) review: Option<Review<Novo>>,
 }
 
@@ -82,12 +82,7 @@ impl Encoder {
     }
     fn surveyed(&mut self, read: NovoProfile, services: &mut Services) {
         if self.read.as_ref().is_some_and(|own| own.serial != read.serial) {
-            if self.staged.is_dirty() {
-                self.session.tell_of_another(&read.serial.to_string(), services);
-            }
-            self.leave_draft(services);
-            (self.staged, self.review, self.read) = (Edits::default(), None, None);
-            self.track.forget();
+            self.replaced_by(&read.serial.to_string(), services);
         }
         let is_first = self.read.is_none();
         self.session.title = Some(format!("Novo · {}", read.serial));

@@ -1,19 +1,17 @@
 //! Running jobs on a BiSS encoder, and what they give beside their results.
 
 use super::BissCommands;
-use crate::app::{Given, Text};
+use crate::app::Given;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::cli::{Failure, Result};
-use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, open};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, ReadRegisters, Remark};
 use crate::devices::biss::procedures::procedure::{Detail, News};
 use crate::devices::biss::procedures::{Identity, Way};
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::state::explain as words;
-use crate::link::LinkUrl;
-use crate::store::Store;
-use crate::worker::{OpenError, Session};
+use crate::worker::Session;
 
 /// A session with a BiSS encoder on its thread.
 pub(super) type Runner = runner::Runner<Biss>;
@@ -22,10 +20,6 @@ impl Runs for Biss {
     /// How the encoder is reached.
     type Kept = Way;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
-
-    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
-        open(url, store)
-    }
 
     fn begin(session: &mut Session<Self>, _given: &Given) -> Way {
         session.station().way
@@ -39,7 +33,7 @@ impl Runs for Biss {
         }
     }
 
-    fn doing(doing: &Doing) -> String {
+    fn step(doing: &Doing) -> String {
         match doing {
             Doing::Operation { news, .. } => detail(news),
             other => other.to_string(),
@@ -52,10 +46,6 @@ impl Runs for Biss {
             Doing::Operation { item, news } => Some(format!("{item}: {}", words::step(news.step).terminal())),
             Doing::Register(_) | Doing::Bank(_) => None,
         }
-    }
-
-    fn failure(error: &JobError) -> Vec<Text> {
-        words::job(error)
     }
 }
 

@@ -11,8 +11,8 @@ use super::review::Review;
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved, Session, Source};
-use crate::app::{PendingEdits, Severity, Text};
+use crate::app::session::{Drafted, Saved, Session, Source, WithMemory};
+use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::procedures::{Identity, Status, Survey};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
@@ -150,13 +150,7 @@ impl Encoder {
         // Without a serial number, it may be any of its type.
         let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();
         if unproven || self.is_another(&survey.identity) {
-            if self.memory.is_dirty() {
-                let kept = self.serial_number().is_some_and(|serial| !serial.is_empty());
-                let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
-                let text = text.with("serial", &survey.identity.serial_number);
-                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
-            }
-            self.forget_encoder(services);
+            self.replaced_by(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
         let Survey { identity, status, registers, .. } = &survey;
@@ -201,24 +195,6 @@ impl Encoder {
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))
-    }
-
-    fn forget_encoder(&mut self, services: &mut Services) {
-        self.leave_draft(services);
-        self.survey = None;
-        self.status = None;
-        self.check = None;
-        self.session.title = None;
-        self.memory.clear();
-        self.record.forget();
-        self.session.backups = None;
-        self.session.writes = None;
-        self.session.statuses.clear();
-        self.seen.clear();
-        self.read_after.clear();
-        self.review = None;
-        self.guide = None;
-        self.refusal = None;
     }
 }
 

@@ -136,11 +136,6 @@ impl Memory {
         self.edits.revert(|at| range.contains(&at.global()));
     }
 
-    /// The edits were written: what led to them cannot be undone any more.
-    pub fn forget_steps(&mut self) {
-        self.edits.forget_steps();
-    }
-
     /// Runs of edited bytes; none reaches beyond its bank.
     pub fn changes(&self) -> Runs {
         let mut runs: Runs = Vec::new();
@@ -212,6 +207,10 @@ impl PendingEdits for Memory {
 
     fn revert(&mut self) -> bool {
         self.edits.revert(|_| true)
+    }
+
+    fn forget_steps(&mut self) {
+        self.edits.forget_steps();
     }
 }
 

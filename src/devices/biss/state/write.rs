@@ -121,10 +121,6 @@ impl WithMemory for Encoder {
         commit(agreed, Attendance::Nobody(UNATTENDED))
     }
 
-    fn forget_steps(&mut self) {
-        self.memory.forget_steps();
-    }
-
     /// A plan that needs somebody at the motor is followed step by step from here on.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         let Some(agreed) = self.agree(shown) else { return };
@@ -157,6 +153,14 @@ impl WithMemory for Encoder {
 
     fn log_begin(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
         self.log_operations(what, prepared, services);
+    }
+
+    fn forget_device(&mut self) {
+        (self.survey, self.status, self.check, self.guide, self.refusal) = (None, None, None, None, None);
+        self.memory.clear();
+        self.record.forget();
+        self.seen.clear();
+        self.read_after.clear();
     }
 }
 

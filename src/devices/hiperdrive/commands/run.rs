@@ -5,22 +5,18 @@ use std::time::{Duration, Instant};
 
 use super::HiperdriveCommands;
 use super::args::OfDrive;
-use crate::app::{Given, Text};
+use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::patience::Pace;
 use crate::cli::runner::{self, Runs, unexpected};
-use crate::devices::hiperdrive::jobs::{
-    Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark, open,
-};
+use crate::devices::hiperdrive::jobs::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, Remark};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
-use crate::link::LinkUrl;
-use crate::store::Store;
-use crate::worker::{OpenError, Session};
+use crate::worker::Session;
 
 /// Some of the longest intervals: a stop word is out before the program may end.
 const STOPPED: Duration = Duration::from_millis(500);
@@ -34,10 +30,6 @@ pub(super) type Runner = runner::Runner<Hiperdrive>;
 impl Runs for Hiperdrive {
     type Kept = Motion;
     const COMMANDS: &'static dyn DeviceCommands = &HiperdriveCommands;
-
-    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
-        open(url, store)
-    }
 
     fn begin(session: &mut Session<Self>, _given: &Given) -> Motion {
         session.motion()
@@ -54,12 +46,8 @@ impl Runs for Hiperdrive {
         }
     }
 
-    fn doing(doing: &Doing) -> String {
+    fn step(doing: &Doing) -> String {
         doing.to_string()
-    }
-
-    fn failure(error: &JobError) -> Vec<Text> {
-        words::job(error)
     }
 
     fn reply_pace(session: &Session<Self>) -> Option<Pace> {

@@ -120,11 +120,6 @@ impl Staged {
         matches!(self.ground, Ground::Device)
     }
 
-    /// The edits were written: what led to them cannot be undone any more.
-    pub fn forget_steps(&mut self) {
-        self.history.forget();
-    }
-
     /// Forgets everything: another device.
     pub fn clear(&mut self) {
         *self = Staged { ground: self.ground, ..Staged::default() };
@@ -255,6 +250,10 @@ impl PendingEdits for Staged {
 
     fn revert(&mut self) -> bool {
         self.base.clone().is_some_and(|base| self.step(base))
+    }
+
+    fn forget_steps(&mut self) {
+        self.history.forget();
     }
 }
 

@@ -1,13 +1,10 @@
 //! What was read of a device: it is taken over with a survey, as drives say it, and where somebody else has changed it since.
 
-use super::record::Record;
-use super::ruler::Measure;
 use super::staged::is_editable;
 use super::unit::Unit;
-use super::unsaved::Unsaved;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved};
-use crate::app::{Marks, PendingEdits, Recording, Severity, Text};
+use crate::app::session::{Drafted, Saved, WithMemory};
+use crate::app::{Marks, Severity, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, LimitsSeen, Reading, Survey};
 use crate::devices::hiperdrive::profile::Image;
@@ -19,10 +16,7 @@ impl Unit {
     /// Takes over what was read from the device; edits stay, unless they are another device's.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
-            if self.staged.is_dirty() {
-                self.session.tell_of_another(&survey.identity.serial_number, services);
-            }
-            self.forget_device(services);
+            self.replaced_by(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
         let image = image(&survey);
@@ -167,23 +161,6 @@ impl Unit {
             .with("version", &identity.version)
             .with("drives", identity.drives.len());
         self.session.log_answer(vec![fact], services);
-    }
-
-    fn forget_device(&mut self, services: &mut Services) {
-        self.leave_draft(services);
-        (self.survey, self.status, self.check, self.review, self.refusal) = (None, None, None, None, None);
-        self.session.title = None;
-        self.staged.clear();
-        self.moves.forget();
-        self.record.forget();
-        self.records.values_mut().for_each(Record::forget);
-        self.records.retain(|_, record| !record.recorder().is_empty());
-        self.readings.clear();
-        self.pitches.clear();
-        self.axes.clear();
-        self.unsaved = Unsaved::default();
-        (self.exchanged, self.measure) = (None, Measure::default());
-        (self.session.backups, self.session.writes) = (None, None);
     }
 
     /// The connection is gone: where drives are nobody knows any more.

@@ -1,12 +1,15 @@
 //! What is written into a device: the edits or a profile as a wish, and its jobs.
 
+use super::record::Record;
 use super::review::{Review, op_words};
+use super::ruler::Measure;
 use super::unit::Unit;
+use super::unsaved::Unsaved;
 use super::words;
 use crate::app::review::OpWords;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
-use crate::app::{PendingEdits, Text};
+use crate::app::{PendingEdits, Recording, Text};
 use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
 use crate::devices::hiperdrive::profile::{
     HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types,
@@ -71,10 +74,6 @@ impl WithMemory for Unit {
         }
     }
 
-    fn forget_steps(&mut self) {
-        self.staged.forget_steps();
-    }
-
     /// What is held is let go.
     fn hands_off(&mut self) {
         self.moves.let_go();
@@ -84,6 +83,20 @@ impl WithMemory for Unit {
         if !self.is_dirty() {
             self.session.tell_of_another(&prepared.identity.serial_number, services);
         }
+    }
+
+    fn forget_device(&mut self) {
+        (self.survey, self.status, self.check, self.refusal) = (None, None, None, None);
+        self.staged.clear();
+        self.moves.forget();
+        self.record.forget();
+        self.records.values_mut().for_each(Record::forget);
+        self.records.retain(|_, record| !record.recorder().is_empty());
+        self.readings.clear();
+        self.pitches.clear();
+        self.axes.clear();
+        self.unsaved = Unsaved::default();
+        (self.exchanged, self.measure) = (None, Measure::default());
     }
 }
 

@@ -1,18 +1,17 @@
 //! Running jobs on a HIPERFACE encoder: the access codes of the command line, and the codes that the encoder announces.
 
 use super::HiperfaceCommands;
-use crate::app::{Given, Text};
+use crate::app::Given;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs};
-use crate::devices::hiperface::jobs::{Doing, Hiperface, JobError, Remark, may_have_other_master, open};
+use crate::devices::hiperface::jobs::{Doing, Hiperface, Remark, may_have_other_master};
 use crate::devices::hiperface::procedures::AccessCodes;
 use crate::devices::hiperface::protocol::StatusCode;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
-use crate::store::Store;
 use crate::units::CharacterFormat;
-use crate::worker::{OpenError, Session};
+use crate::worker::Session;
 
 /// A session with a HIPERFACE encoder on its thread.
 pub(super) type Runner = runner::Runner<Hiperface>;
@@ -25,14 +24,6 @@ impl Runs for Hiperface {
 
     fn may_have_other_master(url: &LinkUrl) -> bool {
         may_have_other_master(url)
-    }
-
-    fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
-        open(url, store)
-    }
-
-    fn open_error(error: &OpenError) -> Text {
-        words::open(error)
     }
 
     fn begin(session: &mut Session<Self>, given: &Given) -> CharacterFormat {
@@ -53,12 +44,8 @@ impl Runs for Hiperface {
         }
     }
 
-    fn doing(doing: &Doing) -> String {
+    fn step(doing: &Doing) -> String {
         doing.to_string()
-    }
-
-    fn failure(error: &JobError) -> Vec<Text> {
-        words::job(error)
     }
 }
 

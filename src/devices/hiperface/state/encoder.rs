@@ -9,7 +9,7 @@ use super::rest::RestAsked;
 use super::review::Review;
 use super::{Staged, rules};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Saved, Session, Source};
+use crate::app::session::{Drafted, Saved, Session, Source, WithMemory};
 use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::procedures::{Identity, LineQuality, Sample, Survey, UnreadableField, check};
@@ -135,13 +135,7 @@ impl Encoder {
         // Without a serial number, it may be any of its type; the same memory makes it as good as the same.
         let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
         if self.is_another(&identity) || (self.identity.is_some() && unproven) {
-            if self.staged.is_dirty() {
-                let kept = self.identity.as_ref().is_some_and(|known| !known.serial.serial_number.is_empty());
-                let text = if kept { Text::new("session.other_encoder") } else { Text::new("session.edits_gone") };
-                let text = text.with("serial", &identity.serial.serial_number);
-                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
-            }
-            self.forget_encoder(services);
+            self.replaced_by(&identity.serial.serial_number, services);
         }
         let first = self.identity.is_none();
         self.identify(identity);
@@ -210,24 +204,5 @@ impl Encoder {
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
         self.identity.as_ref().is_some_and(|known| who(known) != who(identity))
-    }
-
-    fn forget_encoder(&mut self, services: &mut Services) {
-        self.leave_draft(services);
-        self.identity = None;
-        self.session.title = None;
-        self.staged.clear();
-        self.check = None;
-        self.unreadable.clear();
-        self.position_set = None;
-        self.analogue.clear();
-        self.record.forget();
-        self.session.backups = None;
-        self.session.writes = None;
-        self.session.statuses.clear();
-        self.access_codes.clear();
-        self.tried_code = None;
-        self.commutation = Commutation::default();
-        self.review = None;
     }
 }

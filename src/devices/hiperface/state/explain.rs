@@ -25,7 +25,7 @@ pub use doing::doing;
 pub use frame::frame;
 pub use label::{LabelRow, label};
 pub use op::op;
-pub use types::{open, open_failed, store};
+pub use types::{open, store};
 pub use words::{
     field_access, field_code_required, field_status, geometry, line_settings, position, raw_position, status,
     status_with_number,

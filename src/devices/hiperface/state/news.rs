@@ -4,7 +4,6 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::words;
-use crate::app::action::OpenFailed;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
@@ -32,8 +31,8 @@ impl Kind for Hiperface {
         crate::devices::hiperface::jobs::open(url, store)
     }
 
-    fn open_failed(failed: &OpenFailed) -> Text {
-        explained::open_failed(failed)
+    fn open_error(error: &OpenError) -> Text {
+        explained::open(error)
     }
 
     fn job(job: &HiperfaceJob) -> Text {

@@ -9,6 +9,7 @@ use crate::app::connect::form::Finder;
 use crate::app::leaving::Leaver;
 use crate::app::line::Line;
 use crate::app::services::Services;
+use crate::app::session::Kind as _;
 use crate::app::studio::SessionId;
 use crate::app::{DeviceModel, Text, explain};
 use crate::devices::hiperface::jobs::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark, may_have_other_master};
@@ -64,7 +65,7 @@ impl Search {
                 }
                 self.line = Some(line);
             }
-            Err(failed) => self.end = Some(words::open_failed(&failed)),
+            Err(failed) => self.end = Some(Hiperface::open_failed(&failed)),
         }
     }
 

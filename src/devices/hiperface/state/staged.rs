@@ -50,11 +50,6 @@ impl Staged {
         self.edits.forget_redo();
     }
 
-    /// The edits were written: what led to them cannot be undone any more.
-    pub fn forget_steps(&mut self) {
-        self.edits.forget_steps();
-    }
-
     /// Forgets everything: another encoder.
     pub fn clear(&mut self) {
         *self = Staged::default();
@@ -193,6 +188,10 @@ impl PendingEdits for Staged {
 
     fn revert(&mut self) -> bool {
         self.edits.revert(|_| true)
+    }
+
+    fn forget_steps(&mut self) {
+        self.edits.forget_steps();
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is written into an encoder: the edits or a profile as a wish, its jobs, and what the session follows after it.
 
+use super::commutation::Commutation;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::rules;
@@ -67,10 +68,6 @@ impl WithMemory for Encoder {
         HiperfaceJob::Commit(Box::new(agreed))
     }
 
-    fn forget_steps(&mut self) {
-        self.staged.forget_steps();
-    }
-
     fn objection(&self, change: &Change) -> Option<Text> {
         rules::change(&self.staged, change).err()
     }
@@ -92,6 +89,19 @@ impl WithMemory for Encoder {
         if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
             self.plan_again(change, services);
         }
+    }
+
+    fn forget_device(&mut self) {
+        self.identity = None;
+        self.staged.clear();
+        self.check = None;
+        self.unreadable.clear();
+        self.position_set = None;
+        self.analogue.clear();
+        self.record.forget();
+        self.access_codes.clear();
+        self.tried_code = None;
+        self.commutation = Commutation::default();
     }
 }
 

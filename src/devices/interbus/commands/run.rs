@@ -1,17 +1,15 @@
 //! Running jobs on an INTERBUS encoder.
 
 use super::InterbusCommands;
-use crate::app::{Given, Text};
+use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::runner::{self, Runs, failed, unexpected};
-use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark, open};
+use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, Remark};
 use crate::devices::interbus::procedures::{Identity, Survey};
 use crate::devices::interbus::protocol::{Program, ProgramNumber, WindowShift};
 use crate::devices::interbus::state::explain as words;
-use crate::link::LinkUrl;
-use crate::store::Store;
-use crate::worker::{OpenError, Session};
+use crate::worker::Session;
 
 /// A session with an INTERBUS encoder on its thread.
 pub(super) type Runner = runner::Runner<Interbus>;
@@ -20,21 +18,13 @@ impl Runs for Interbus {
     type Kept = ();
     const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;
 
-    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
-        open(url, store)
-    }
-
     fn begin(_session: &mut Session<Self>, _given: &Given) {}
 
     /// Steps of the handshake are for the window; a recording has their bytes.
     fn say(_remark: &Remark) {}
 
-    fn doing(doing: &Doing) -> String {
+    fn step(doing: &Doing) -> String {
         doing.to_string()
-    }
-
-    fn failure(error: &JobError) -> Vec<Text> {
-        words::job(error)
     }
 }
 

@@ -146,10 +146,6 @@ impl Device for Interbus {
         error.device().is_some_and(Error::is_cancelled)
     }
 
-    fn take_remark(&mut self) -> Option<Remark> {
-        None
-    }
-
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check()
     }

@@ -12,7 +12,7 @@ use super::trace::Meaning;
 use super::{cams, words};
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
-use crate::app::session::{Drafted, Phase, Saved, Session, Source, some};
+use crate::app::session::{Drafted, Phase, Saved, Session, Source, WithMemory, some};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::procedures::{Handshake, Identity, Reading, Survey};
@@ -216,10 +216,7 @@ impl Encoder {
     /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
-            if self.staged.is_dirty() {
-                self.session.tell_of_another(&survey.identity.serial_number, services);
-            }
-            self.forget_encoder(services);
+            self.replaced_by(&survey.identity.serial_number, services);
         }
         let first = self.survey.is_none();
         self.session.title = Some(title(&survey.identity));
@@ -250,16 +247,6 @@ impl Encoder {
             .with("version", identity.software_version)
             .with_text("range", words::range(identity.steps, identity.revolutions));
         services.note(Severity::Note, vec![fact], Some(&self.session.name()));
-    }
-
-    fn forget_encoder(&mut self, services: &mut Services) {
-        self.leave_draft(services);
-        (self.survey, self.check, self.review, self.refusal) = (None, None, None, None);
-        self.session.title = None;
-        self.staged.clear();
-        self.read_outs.clear();
-        self.record.forget();
-        (self.session.backups, self.session.writes) = (None, None);
     }
 
     /// A word of a handshake passed.

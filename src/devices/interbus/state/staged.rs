@@ -151,11 +151,6 @@ impl Staged {
         self.take_draft(waiting);
     }
 
-    /// The edits were written: what led to them cannot be undone any more.
-    pub fn forget_steps(&mut self) {
-        self.history.forget();
-    }
-
     /// Forgets everything: another encoder.
     pub fn clear(&mut self) {
         *self = Staged { ground: self.ground, ..Staged::default() };
@@ -232,5 +227,9 @@ impl PendingEdits for Staged {
 
     fn revert(&mut self) -> bool {
         self.base.clone().is_some_and(|base| self.step(base))
+    }
+
+    fn forget_steps(&mut self) {
+        self.history.forget();
     }
 }

@@ -74,10 +74,6 @@ impl WithMemory for Encoder {
         InterbusJob::Commit(Box::new(agreed))
     }
 
-    fn forget_steps(&mut self) {
-        self.staged.forget_steps();
-    }
-
     fn tell_of_another(&self, prepared: &Prepared, services: &mut Services) {
         if !self.is_dirty() {
             self.session.tell_of_another(&prepared.identity.serial_number, services);
@@ -87,6 +83,13 @@ impl WithMemory for Encoder {
     fn reads_again(&mut self) {
         let programs = self.review.as_ref().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
+    }
+
+    fn forget_device(&mut self) {
+        (self.survey, self.check, self.refusal) = (None, None, None);
+        self.staged.clear();
+        self.read_outs.clear();
+        self.record.forget();
     }
 }
 

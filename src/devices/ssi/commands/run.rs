@@ -4,19 +4,17 @@ use std::convert::Infallible;
 
 use super::SsiCommands;
 use super::layout::Chosen;
-use crate::app::{Given, Text};
+use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::args::Common;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::Output;
 use crate::cli::runner::{self, Runs, unexpected};
-use crate::devices::ssi::jobs::{Doing, JobError, Ssi, SsiJob, SsiOutput, open};
+use crate::devices::ssi::jobs::{Doing, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{Asking, Words};
 use crate::devices::ssi::protocol::Reads;
 use crate::devices::ssi::state::explain as words;
-use crate::link::LinkUrl;
-use crate::store::Store;
-use crate::worker::{OpenError, Session};
+use crate::worker::Session;
 
 /// A session with an adapter before an SSI encoder on its thread.
 pub(super) type Runner = runner::Runner<Ssi>;
@@ -26,10 +24,6 @@ impl Runs for Ssi {
     type Kept = Asking;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
-    fn open(url: &LinkUrl, store: Store) -> std::result::Result<Session<Self>, OpenError> {
-        open(url, store)
-    }
-
     fn begin(session: &mut Session<Self>, _given: &Given) -> Asking {
         session.station().asking
     }
@@ -38,12 +32,8 @@ impl Runs for Ssi {
         match *remark {}
     }
 
-    fn doing(_: &Doing) -> String {
+    fn step(_: &Doing) -> String {
         "words".to_owned()
-    }
-
-    fn failure(error: &JobError) -> Vec<Text> {
-        words::job(error)
     }
 }
 

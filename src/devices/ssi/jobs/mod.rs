@@ -165,10 +165,6 @@ impl Device for Ssi {
         *error == Error::Cancelled
     }
 
-    fn take_remark(&mut self) -> Option<Infallible> {
-        None
-    }
-
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check()
     }

@@ -307,6 +307,10 @@ impl PendingEdits for Designer {
     fn revert(&mut self) -> bool {
         self.edit(Edit::Whole(Box::new(self.saved.clone())))
     }
+
+    fn forget_steps(&mut self) {
+        self.history.forget();
+    }
 }
 
 /// How one reads over a link, as those of its parameters say that count.

@@ -1,7 +1,6 @@
 //! The user's own table of encoder types that cannot be used, and a link that cannot be opened for it.
 
 use crate::app::Text;
-use crate::app::action::OpenFailed;
 use crate::app::explain::{self as general, syntax};
 use crate::devices::hiperface::jobs::BrokenTypes;
 use crate::devices::hiperface::protocol::TypeTableError;
@@ -25,14 +24,6 @@ pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Store(error) => store(error),
         other => general::open(other),
-    }
-}
-
-/// A link that could not be opened, or had no thread to run on.
-pub fn open_failed(failed: &OpenFailed) -> Text {
-    match failed {
-        OpenFailed::Link(error) => open(error),
-        other => general::open_failed(other),
     }
 }
 
@@ -64,9 +55,9 @@ mod tests {
         assert_eq!(why.terminal(), cause.to_string());
         assert_eq!(why.words(German), "Typ 01h: periods muss zwischen 1 und 134217728 liegen");
         let broken = BrokenTypes { path: "own.ron".into(), cause };
-        let failed = OpenFailed::Link(StoreError::Refused(Cause::new(broken)).into());
+        let error = StoreError::Refused(Cause::new(broken)).into();
         assert_eq!(
-            open_failed(&failed).words(English),
+            open(&error).words(English),
             "The table of encoder types own.ron cannot be used: type 01h: periods must lie within 1 and 134217728. Mend it \
              or move it away."
         );
