@@ -320,7 +320,7 @@ impl Commands {
     ///
     /// # Errors
     /// There is none.
-    pub(super) fn device(self, name: &str) -> Result<&'static dyn DeviceCommands> {
+    pub fn device(self, name: &str) -> Result<&'static dyn DeviceCommands> {
         let named = self.devices.iter().copied().find(|device| device.name() == name);
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }

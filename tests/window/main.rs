@@ -29,6 +29,8 @@ mod interbus;
 mod leaving;
 mod losing;
 mod monkey;
+#[path = "../new_kind/novo/mod.rs"]
+mod novo;
 mod pressing;
 mod profiles;
 mod recording;

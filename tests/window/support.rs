@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use crate::tabs::program;
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, Recording, ReviewAction, Severity, Studio, World, connect};
@@ -22,11 +23,11 @@ use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder, Review, ReviewState};
 use encoder_studio::devices::interbus::jobs as interbus;
-use encoder_studio::kinds::program;
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::store::{Folders, Store};
 use encoder_studio::worker::Session;
 
+use crate::novo::jobs::Novo;
 use crate::texts;
 use crate::wire::{TestLink, Wire};
 
@@ -64,6 +65,8 @@ pub(crate) const ADAPTER: &str = "/dev/adapter0";
 pub(crate) const GATE: &str = "gate:502";
 /// An adapter with a HIPERDRIVE.
 pub(crate) const DRIVE: &str = "drive:44818";
+/// A port with an encoder of the kind that the tests bring along.
+pub(crate) const NOVO_PORT: &str = "/dev/novo0";
 /// Device servers in front of [`PORT`], [`KIT`] and [`ADAPTER`], as links name them.
 pub(crate) const SERVERS: [(&str, &str); 3] = [("moxa:4001", PORT), ("moxa:4002", KIT), ("tcp:adapter:5000", ADAPTER)];
 
@@ -77,6 +80,7 @@ impl Outside {
             Wire::to_pin(KIT, ""),
             Wire::to_adapter(ADAPTER, ""),
             Wire::to_target(DRIVE, ""),
+            Wire::to_novo(NOVO_PORT, ""),
             Wire::to_gateway(GATE, "steps=3600&revolutions=1&cams=demo"),
         ];
         let mut wires: BTreeMap<String, Arc<Wire>> =
@@ -103,6 +107,7 @@ impl Outside {
     pub(crate) fn world(&self) -> World {
         let (wires, opens, found) = (self.wires.clone(), self.opens.clone(), self.found.clone());
         let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
+        let novos = self.wires.clone();
         World {
             given: Given::default()
                 .with(Opener::new(move |url, store| {
@@ -129,6 +134,10 @@ impl Outside {
                     let link = Box::new(TestLink::plug_into(wire)?);
                     let way = hiperdrive::Way { wire: link, port: None, station, target: None };
                     Ok(Session::to_target(way, wire.clock(), store))
+                }))
+                .with(Opener::new(move |url, store| {
+                    let Some(wire) = novos.get(&url.target) else { return crate::novo::jobs::open(url, store) };
+                    Ok(Session::with(Novo(Box::new(TestLink::plug_into(wire)?)), wire.clock(), store, false))
                 }))
                 .with(Opener::new(move |url, store| {
                     if url.to_string() == HANGING {

@@ -1,12 +1,18 @@
 //! The tabs of the program, and what each shows.
 
+use std::sync::OnceLock;
+
 use encoder_studio::app::connect::{Action, Connect};
 use encoder_studio::app::{Studio, Tab};
 use encoder_studio::devices::hiperdrive::state::{Discovery, DiscoveryAction, DiscoveryFinder};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::{Search, SearchAction, SearchFinder};
 use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
+use encoder_studio::kinds::{KINDS, Program};
+use encoder_studio::signals;
 use encoder_studio::signals::state::Signals;
+
+use crate::novo::NOVO;
 
 pub(crate) const HIPERFACE: Tab = Tab::named("Hiperface");
 pub(crate) const BISS: Tab = Tab::named("Biss");
@@ -14,6 +20,14 @@ pub(crate) const SSI: Tab = Tab::named("Ssi");
 pub(crate) const INTERBUS: Tab = Tab::named("Interbus");
 pub(crate) const HIPERDRIVE: Tab = Tab::named("Hiperdrive");
 pub(crate) const SIGNALS: Tab = Tab::named("Signals");
+/// That of the kind that the tests bring along.
+pub(crate) const NOVEL: Tab = Tab::named("Novo");
+
+/// The program with a kind from outside behind its own.
+pub(crate) fn program() -> Program {
+    static PROGRAM: OnceLock<Program> = OnceLock::new();
+    *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[signals::TAB], &[], &[]))
+}
 
 /// What the tabs of a studio show.
 pub(crate) trait Tabs {

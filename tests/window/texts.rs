@@ -24,7 +24,7 @@ struct Row {
 }
 
 /// All catalogues of texts.
-const CATALOGUES: [&Catalogue; 8] = [
+const CATALOGUES: [&Catalogue; 9] = [
     &COMMON,
     &hiperface::state::TEXTS,
     &biss::state::TEXTS,
@@ -33,6 +33,7 @@ const CATALOGUES: [&Catalogue; 8] = [
     &hiperdrive::state::TEXTS,
     &bridge::state::TEXTS,
     &signals::state::TEXTS,
+    &crate::novo::state::TEXTS,
 ];
 
 /// The rows of all of them.

@@ -16,6 +16,7 @@ use encoder_studio::link::{ByteLink, Clock, LinkError, LinkErrorKind, SimLink, V
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::{CharacterFormat, Moment};
 
+use crate::novo::sim::Virtual;
 use crate::support::LONG;
 
 /// A cable with virtual encoders at its end.
@@ -39,6 +40,8 @@ enum End {
     Gateway(Arc<Mutex<Gateway>>),
     /// An adapter with its drive.
     Target(Arc<Mutex<Target>>),
+    /// An encoder of the kind from outside.
+    Novo(Arc<Mutex<Virtual>>),
 }
 
 impl End {
@@ -49,6 +52,7 @@ impl End {
             End::Adapter(adapter) => adapter.clone(),
             End::Gateway(gateway) => gateway.clone(),
             End::Target(target) => target.clone(),
+            End::Novo(encoder) => encoder.clone(),
         }
     }
 
@@ -58,6 +62,7 @@ impl End {
             End::Hiperface(_) => frame.get(1).copied(),
             End::Pin(_) => frame.get(2).copied(),
             End::Adapter(_) => None,
+            End::Novo(_) => frame.first().copied(),
             // Behind the header of the frame and those of its items the service.
             End::Target(_) => frame.get(40).copied(),
             // Behind number, protocol, length and unit the function; of one that writes the first byte of its OUT word.
@@ -97,6 +102,11 @@ impl Wire {
     /// To an adapter with its drive.
     pub(crate) fn to_target(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Target(Arc::new(Mutex::new(drive(query)))))
+    }
+
+    /// To an encoder of the kind from outside.
+    pub(crate) fn to_novo(target: &str, query: &str) -> Arc<Self> {
+        Self::to(target, End::Novo(Arc::new(Mutex::new(novo(query)))))
     }
 
     /// To an adapter on the bus of a BiSS encoder.
@@ -149,6 +159,7 @@ impl Wire {
             End::Pin(own) => *own.lock().unwrap() = port(query),
             End::Gateway(own) => *own.lock().unwrap() = gateway(query),
             End::Target(own) => *own.lock().unwrap() = drive(query),
+            End::Novo(own) => *own.lock().unwrap() = novo(query),
             End::Adapter(_) => panic!("the encoder is behind it"),
         }
     }
@@ -294,6 +305,10 @@ fn gateway(query: &str) -> Gateway {
 
 fn drive(query: &str) -> Target {
     Target::new(&hiperdrive::Config::from_pairs(&pairs(query)).unwrap())
+}
+
+fn novo(query: &str) -> Virtual {
+    Virtual::from_pairs(&pairs(query)).unwrap()
 }
 
 fn port(query: &str) -> Port {

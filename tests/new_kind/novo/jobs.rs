@@ -24,7 +24,7 @@ const TRIES: u16 = 3;
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Its wire.
-pub(crate) struct Novo(Box<dyn ByteLink>);
+pub(crate) struct Novo(pub(crate) Box<dyn ByteLink>);
 
 /// When, and the position.
 pub(crate) type Sample = (Moment, u16);

@@ -2,11 +2,11 @@
 
 mod commands;
 mod device_type;
-mod jobs;
+pub(crate) mod jobs;
 mod memory;
 pub(crate) mod profile;
 pub(crate) mod protocol;
-mod sim;
+pub(crate) mod sim;
 pub(crate) mod state;
 mod view;
 mod write;
