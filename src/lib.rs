@@ -28,5 +28,6 @@ pub mod store;
 // what is saved, and what numbers and samples mean; no I/O
 pub mod analysis;
 pub mod bits;
+pub mod expected;
 pub mod profile;
 pub mod units;

@@ -90,6 +90,9 @@ impl Parity {
     /// Every parity, the most usual first.
     pub const ALL: [Parity; 3] = [Parity::Even, Parity::None, Parity::Odd];
 
+    /// The words of link URLs and JSON, as they are listed.
+    pub const WORDS: [&str; 3] = ["none", "even", "odd"];
+
     /// The word used in link URLs and JSON: `none`, `even`, `odd`.
     pub const fn word(self) -> &'static str {
         match self {

@@ -117,6 +117,13 @@ impl Text {
         self
     }
 
+    /// With a number for `{name}` that is in digits already, as English writes it.
+    #[must_use]
+    pub(crate) fn with_digits(mut self, name: &'static str, digits: impl ToString) -> Self {
+        self.arguments.push((name, Argument::Number(digits.to_string())));
+        self
+    }
+
     /// With other texts for `{name}`, one after the other with commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {

@@ -1,6 +1,7 @@
 //! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; what the parameters mean is the
 //! business of whoever opens the link.
 
+use crate::expected::Expected;
 use std::fmt;
 use std::str::FromStr;
 
@@ -123,7 +124,7 @@ pub enum UrlError {
         /// What was written.
         value: String,
         /// What could be written.
-        allowed: String,
+        allowed: Expected,
     },
 }
 
@@ -267,15 +268,13 @@ impl Query {
     pub fn read<T>(
         &self,
         name: &str,
-        allowed: &str,
+        allowed: Expected,
         read: impl FnOnce(&str) -> Option<T>,
     ) -> Result<Option<T>, UrlError> {
         let Some(value) = self.get(name) else { return Ok(None) };
         match read(value) {
             Some(value) => Ok(Some(value)),
-            None => {
-                Err(UrlError::Value { name: name.to_owned(), value: value.to_owned(), allowed: allowed.to_owned() })
-            }
+            None => Err(UrlError::Value { name: name.to_owned(), value: value.to_owned(), allowed }),
         }
     }
 }
@@ -371,8 +370,8 @@ mod tests {
     #[test]
     fn a_bad_value_names_what_is_allowed() {
         let query: Query = "baud=fast".parse().unwrap();
-        let error = query.read("baud", "a number", |value| value.parse::<u32>().ok()).unwrap_err();
-        assert_eq!(error.to_string(), "baud=fast: a number");
-        assert_eq!(query.read("parity", "", |value| value.parse::<u32>().ok()), Ok(None));
+        let error = query.read("baud", Expected::Whole, |value| value.parse::<u32>().ok()).unwrap_err();
+        assert_eq!(error.to_string(), "baud=fast: a whole number");
+        assert_eq!(query.read("parity", Expected::Whole, |value| value.parse::<u32>().ok()), Ok(None));
     }
 }

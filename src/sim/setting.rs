@@ -4,6 +4,7 @@
 use std::ops::{RangeBounds, RangeInclusive};
 
 use super::FaultError;
+use crate::expected::Expected;
 
 /// Why settings cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -25,8 +26,8 @@ pub enum ConfigError {
         key: String,
         /// The value as written.
         value: String,
-        /// What would do, in words.
-        allowed: String,
+        /// What would do.
+        allowed: Expected,
     },
     /// The value of `fault`.
     #[error(transparent)]
@@ -45,54 +46,59 @@ pub struct Setting<'a> {
 type Result<T> = std::result::Result<T, ConfigError>;
 
 impl Setting<'_> {
-    const MAX_RPM: f64 = 12_000.0;
+    const MAX_RPM: u32 = 12_000;
 
     /// `device` has no such key; what it has is `known`.
     pub fn unknown(self, device: &'static str, known: &[&str]) -> ConfigError {
         ConfigError::Key { device, key: self.key.to_owned(), known: known.join(", ") }
     }
 
-    pub(crate) fn refused(self, allowed: &str) -> ConfigError {
-        ConfigError::Value { key: self.key.to_owned(), value: self.value.to_owned(), allowed: allowed.to_owned() }
+    pub(crate) fn refused(self, allowed: Expected) -> ConfigError {
+        ConfigError::Value { key: self.key.to_owned(), value: self.value.to_owned(), allowed }
     }
 
     /// A whole number that fits into its type.
-    pub fn number<T: TryFrom<u64>>(self, allowed: &str) -> Result<T> {
+    pub fn number<T: TryFrom<u64>>(self, allowed: Expected) -> Result<T> {
         integer(self.value).and_then(|number| T::try_from(number).ok()).ok_or_else(|| self.refused(allowed))
     }
 
     /// A whole number of the range.
-    pub(crate) fn within<T: TryFrom<u64> + PartialOrd>(self, range: impl RangeBounds<T>, allowed: &str) -> Result<T> {
-        let number = Some(self.number(allowed)?).filter(|number| range.contains(number));
+    pub(crate) fn within<T: TryFrom<u64> + PartialOrd>(
+        self,
+        range: impl RangeBounds<T>,
+        allowed: Expected,
+    ) -> Result<T> {
+        let number = Some(self.number(allowed.clone())?).filter(|number| range.contains(number));
         number.ok_or_else(|| self.refused(allowed))
     }
 
     /// A whole number of the range, which may be negative, and is decimal.
-    pub(crate) fn signed(self, range: RangeInclusive<i16>, allowed: &str) -> Result<i16> {
+    pub(crate) fn signed(self, range: RangeInclusive<i16>, allowed: Expected) -> Result<i16> {
         let number = self.value.parse().ok().filter(|number| range.contains(number));
         number.ok_or_else(|| self.refused(allowed))
     }
 
     /// A number of the range, with a decimal point where it needs one.
-    pub(crate) fn decimal(self, range: RangeInclusive<f64>, allowed: &str) -> Result<f64> {
+    pub(crate) fn decimal(self, range: RangeInclusive<f64>, allowed: Expected) -> Result<f64> {
         let number = self.value.parse().ok().filter(|number| range.contains(number));
         number.ok_or_else(|| self.refused(allowed))
     }
 
     /// Revolutions a minute, either way.
     pub fn rpm(self) -> Result<f64> {
-        let range = -Self::MAX_RPM..=Self::MAX_RPM;
-        self.decimal(range, "a speed from -12000 to 12000 revolutions a minute")
+        let most = f64::from(Self::MAX_RPM);
+        self.decimal(-most..=most, Expected::Speed { most: Self::MAX_RPM })
     }
 
     /// One of these words.
-    pub(crate) fn one_of<T: Copy>(self, words: &[(&str, T)], allowed: &str) -> Result<T> {
+    pub(crate) fn one_of<T: Copy>(self, words: &[(&'static str, T)]) -> Result<T> {
         let found = words.iter().find(|(word, _)| *word == self.value);
-        found.map(|(_, meaning)| *meaning).ok_or_else(|| self.refused(allowed))
+        let allowed = || Expected::Words(words.iter().map(|(word, _)| *word).collect());
+        found.map(|(_, meaning)| *meaning).ok_or_else(|| self.refused(allowed()))
     }
 
     pub(crate) fn switch(self) -> Result<bool> {
-        self.one_of(&[("on", true), ("off", false)], "on or off")
+        self.one_of(&[("on", true), ("off", false)])
     }
 }
 

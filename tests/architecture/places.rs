@@ -1,9 +1,10 @@
 //! Whose a module is, and how high it stands: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
 
 /// Layers and their floors.
-const LAYERS: [(&str, u8); 16] = [
+const LAYERS: [(&str, u8); 17] = [
     ("units", 1),
     ("bits", 1),
+    ("expected", 1),
     ("analysis", 1),
     ("protocol", 2),
     ("profile", 2),

@@ -65,7 +65,7 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
         None => Text::new("form.parameter")
             .with("name", name)
             .with("value", value)
-            .with_text("why", explain::phrase(allowed)),
+            .with_text("why", explain::expected(allowed)),
     }
 }
 

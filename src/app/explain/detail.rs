@@ -4,7 +4,7 @@
 #[cfg(test)]
 pub(crate) mod tests;
 
-use super::{file, plain};
+use super::{expected, file, plain};
 use crate::app::{COMMON, Text};
 use crate::link::{TraceFileError, UrlError};
 use crate::profile::ProfileError;
@@ -22,61 +22,12 @@ const PHRASES: &[&str] = &[
     "phrase.port",
     "phrase.file",
     "phrase.host",
-    "phrase.one_of",
-    "phrase.parity",
-    "phrase.bus_address",
-    "phrase.auto_on_off",
-    "phrase.time_out",
-    "phrase.milliseconds",
-    "phrase.baud",
-    "phrase.byte_order",
-    "phrase.frame_crc",
-    "phrase.with_st",
-    "phrase.frame_bits",
-    "phrase.bits",
-    "phrase.leave_supply",
-    "phrase.clock",
-    "phrase.voltage",
-    "phrase.ssi_voltage",
-    "phrase.pause",
-    "phrase.periods",
-    "phrase.turns",
-    "phrase.with_periods",
     "phrase.no_setting",
     "phrase.sim_adapter",
-    "phrase.sim_release",
-    "phrase.sim_waver",
-    "phrase.sim_errors",
-    "phrase.sim_filter",
-    "phrase.sim_cycles",
-    "phrase.sim_pulses",
-    "phrase.sim_seconds",
-    "phrase.sim_order",
-    "phrase.sim_motor",
-    "phrase.sim_line",
-    "phrase.sim_noise",
-    "phrase.sim_ssi",
-    "phrase.sim_ssi_error",
-    "phrase.sim_ssi_no_error",
-    "phrase.sim_supply",
-    "phrase.sim_uart",
-    "phrase.sim_version",
     "phrase.no_fault",
     "phrase.fault_probability",
     "phrase.fault_number",
     "phrase.whole_number",
-    "phrase.type_byte",
-    "phrase.serial",
-    "phrase.address_for_all",
-    "phrase.address",
-    "phrase.settings",
-    "phrase.rpm",
-    "phrase.position",
-    "phrase.position_within",
-    "phrase.celsius",
-    "phrase.on_off",
-    "phrase.pace",
-    "phrase.codes",
     "phrase.byte",
     "phrase.number",
     "phrase.text_such_as",
@@ -189,9 +140,10 @@ pub fn url(error: &UrlError) -> Text {
             Text::new("detail.needs").with("scheme", scheme).with_text("what", phrase(what))
         }
         UrlError::Port { scheme, port } => Text::new("detail.no_port").with("scheme", scheme).with("port", port),
-        UrlError::Value { name, value, allowed } => {
-            Text::new("detail.parameter").with("name", name).with("value", value).with_text("allowed", phrase(allowed))
-        }
+        UrlError::Value { name, value, allowed } => Text::new("detail.parameter")
+            .with("name", name)
+            .with("value", value)
+            .with_text("allowed", expected(allowed)),
         UrlError::Scheme(_)
         | UrlError::Device { .. }
         | UrlError::Parameter(_)
@@ -204,7 +156,7 @@ pub fn url(error: &UrlError) -> Text {
 pub fn setting(error: &ConfigError) -> Text {
     match error {
         ConfigError::Value { key, value, allowed } => {
-            Text::new("detail.setting").with("name", key).with("value", value).with_text("allowed", phrase(allowed))
+            Text::new("detail.setting").with("name", key).with("value", value).with_text("allowed", expected(allowed))
         }
         ConfigError::Key { .. } | ConfigError::Fault(_) => phrase(&error.to_string()),
     }

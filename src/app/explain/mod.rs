@@ -2,6 +2,7 @@
 //! device stands in a module of its own.
 
 mod detail;
+mod expected;
 pub mod signal;
 
 use std::path::Path;
@@ -10,6 +11,7 @@ pub(crate) use detail::syntax;
 #[cfg(test)]
 pub(crate) use detail::tests::check as in_both_languages;
 pub use detail::{document, logbook_problem, phrase, phrase_with, recording, setting, url};
+pub use expected::expected;
 
 use super::Text;
 use super::action::OpenFailed;

@@ -1,5 +1,7 @@
 //! The echo of a line on which an adapter gives back what the host sends.
 
+use crate::expected::Expected;
+
 /// Whether the adapter gives our own bytes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
@@ -13,7 +15,7 @@ pub enum Echo {
 
 impl Echo {
     /// The values of `echo=`.
-    pub(crate) const ALLOWED: &'static str = "auto, on or off";
+    pub(crate) const ALLOWED: Expected = Expected::words(&["auto", "on", "off"]);
 
     /// A value of `echo=`.
     pub(crate) fn read(text: &str) -> Option<Self> {

@@ -3,13 +3,15 @@
 use std::time::Duration;
 
 use super::{Echo, LineQuality};
+use crate::expected::{Expected, Limit, Quantity};
 use crate::units::Moment;
 
 /// No wire is slower than this.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
 /// The values of `margin=`.
-pub(crate) const MARGIN_ALLOWED: &str = "milliseconds from 0 to 2000";
+pub(crate) const MARGIN_ALLOWED: Expected =
+    Expected::Range { quantity: Quantity::Milliseconds, low: Limit::whole(0), high: Limit::whole(2000) };
 
 /// A value of `margin=`.
 pub(crate) fn read_margin(text: &str) -> Option<Duration> {

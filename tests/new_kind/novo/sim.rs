@@ -1,6 +1,7 @@
 //! The virtual encoder.
 
 use encoder_studio::cli::Simulated;
+use encoder_studio::expected::{Expected, Quantity};
 use encoder_studio::sim::{ByteDevice, ConfigError, Setting};
 use encoder_studio::units::{CharacterFormat, Moment};
 
@@ -25,9 +26,9 @@ impl Virtual {
         for (key, value) in pairs {
             let setting = Setting { key, value };
             match key.as_str() {
-                "serial" => own.serial = setting.number("a number from 0 to 65535")?,
+                "serial" => own.serial = setting.number(Expected::number(0, u16::MAX))?,
                 "rpm" => own.rpm = setting.rpm()?,
-                "stuck" => own.stuck = Some(setting.number("an address from 0 to 255")?),
+                "stuck" => own.stuck = Some(setting.number(Expected::range(Quantity::Address, 0, u8::MAX))?),
                 _ => return Err(setting.unknown("a virtual Novo encoder", &["serial", "rpm", "stuck"])),
             }
         }

@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use super::Open;
 use crate::buses::bridge::sim::{Adapter, Attachable};
+use crate::expected::Expected;
+use crate::link::line::{self, MARGIN_ALLOWED};
 use crate::link::{Clock, LinkUrl, Query, Scheme, UrlError};
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
@@ -33,7 +35,7 @@ pub fn open_adapter(
             Vec::new()
         }
         Scheme::Sim => {
-            url.query.read(BRIDGE, "on", |text| (text == "on").then_some(()))?;
+            url.query.read(BRIDGE, Expected::words(&["on"]), |text| (text == "on").then_some(()))?;
             url.query.without(&[BRIDGE, MARGIN])
         }
         Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip | Scheme::Replay => {
@@ -48,8 +50,7 @@ pub fn open_adapter(
 }
 
 fn read_margin(query: &Query) -> Result<Option<Duration>, UrlError> {
-    let milliseconds = |text: &str| text.parse().ok().filter(|ms| *ms <= 2000).map(Duration::from_millis);
-    query.read(MARGIN, "milliseconds from 0 to 2000", milliseconds)
+    query.read(MARGIN, MARGIN_ALLOWED, line::read_margin)
 }
 
 #[cfg(test)]

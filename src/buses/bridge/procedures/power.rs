@@ -1,5 +1,7 @@
 //! The encoder's supply, where an adapter switches it: how it was found when the session began, and how it is left at its end.
 
+use crate::expected::Expected;
+
 /// How the supply is left at the end of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfter {
@@ -18,7 +20,7 @@ impl SupplyAfter {
     /// The parameter of a link whose session leaves the supply on, with its value.
     pub const LEFT_ON: (&str, &str) = (Self::PARAMETER, "on");
     /// What the parameter takes.
-    pub const ALLOWED: &str = "as-found, on or off";
+    pub const ALLOWED: Expected = Expected::words(&["as-found", "on", "off"]);
 
     /// By its word in a link.
     pub fn read(word: &str) -> Option<Self> {

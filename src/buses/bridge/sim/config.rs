@@ -1,6 +1,7 @@
 //! The settings of a virtual adapter, as the query of a `sim:` link gives them: its own. What hangs on it has others.
 
 use crate::buses::bridge::protocol::VERSION;
+use crate::expected::{Expected, Quantity};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 
@@ -63,19 +64,19 @@ impl Config {
     /// Takes a key with its value; false where it is none of the adapter's.
     pub(super) fn set(&mut self, setting: Setting) -> Result<bool, ConfigError> {
         match setting.key {
-            "seed" => self.seed = setting.number("a whole number")?,
+            "seed" => self.seed = setting.number(Expected::Whole)?,
             "fault" => self.faults = setting.value.parse()?,
             "line" => {
                 let lines = [("good", Line::Good), ("open", Line::Open), ("low", Line::Low), ("high", Line::High)];
-                self.line = setting.one_of(&lines, "good, open, low or high")?;
+                self.line = setting.one_of(&lines)?;
             }
             Self::RPM => self.rpm = setting.rpm()?,
-            "noise" => self.noise = setting.decimal(0.0..=1.0, "the share of damaged frames from 0 to 1")?,
+            "noise" => self.noise = setting.decimal(0.0..=1.0, Expected::range(Quantity::DamagedFrames, 0, 1))?,
             "supply" => {
                 let supplies = [("external", false), ("switched", true)];
-                self.switched_supply = setting.one_of(&supplies, "external or switched")?;
+                self.switched_supply = setting.one_of(&supplies)?;
             }
-            "version" => self.version = setting.number("a version from 0 to 255")?,
+            "version" => self.version = setting.number(Expected::range(Quantity::Version, 0, 255))?,
             _ => return Ok(false),
         }
         Ok(true)

@@ -7,6 +7,7 @@ use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim::{self as bridge, Adapter};
 use crate::devices::biss::procedures::{Echo, Station, Way};
 use crate::devices::biss::sim::{Config, Port};
+use crate::expected::Expected;
 use crate::kinds::at_adapter;
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
 use crate::sim::{ConfigError, Motor};
@@ -76,7 +77,9 @@ fn way(url: &LinkUrl) -> Result<Way, OpenError> {
         Scheme::Bridge => Ok(Way::Adapter),
         Scheme::Serial | Scheme::Tcp => Ok(Way::ConfigPin),
         Scheme::Modbus | Scheme::Enip => Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
-        Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, "on or off", by_word)?.unwrap_or(Way::ConfigPin)),
+        Scheme::Sim | Scheme::Replay => {
+            Ok(url.query.read(BRIDGE, Expected::words(&["on", "off"]), by_word)?.unwrap_or(Way::ConfigPin))
+        }
     }
 }
 

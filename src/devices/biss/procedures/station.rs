@@ -12,6 +12,7 @@ use crate::buses::bridge::procedures::flow::Flow;
 use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
 use crate::buses::ubicom::protocol::{FORMAT, REPLY_TIME_OUT};
 use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Layout, RegisterAddress};
+use crate::expected::{Expected, Limit, Quantity};
 use crate::link::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
@@ -177,26 +178,33 @@ impl Station {
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, way: Way, margin: Duration) -> Result<Self, UrlError> {
         let mut station = Station::new(way, margin);
-        if let Some(baud) = query.read("baud", "bit/s from 300 to 4000000, usually 115200", read_baud)? {
+        if let Some(baud) = query.read("baud", Expected::BitRate { low: 300, high: 4_000_000 }, read_baud)? {
             station.format.baud = baud;
         }
-        if let Some(parity) = query.read("parity", "none, even or odd", Parity::from_word)? {
+        if let Some(parity) = query.read("parity", Expected::words(&Parity::WORDS), Parity::from_word)? {
             station.format.parity = parity;
         }
-        station.order = query.read("order", "auto, low-first or high-first", read_order)?.flatten();
+        station.order =
+            query.read("order", Expected::words(&["auto", "low-first", "high-first"]), read_order)?.flatten();
         if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
             station.line.echo = echo;
         }
-        if let Some(timeout) = query.read("timeout", "milliseconds from 1 to 10000", read_timeout)? {
+        if let Some(timeout) =
+            query.read("timeout", Expected::range(Quantity::Milliseconds, 1, 10_000), read_timeout)?
+        {
             station.timeout = timeout;
         }
         if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
             station.line.margin = margin;
         }
-        if let Some(clock) = query.read("clock", "hertz from 80000 to 10000000", read_clock)? {
+        if let Some(clock) = query.read("clock", Expected::range(Quantity::Hertz, 80_000, 10_000_000), read_clock)? {
             station.clock_hz = clock;
         }
-        let millivolt = query.read("voltage", "volts from 4.75 to 12.5", read_voltage)?;
+        let millivolt = query.read(
+            "voltage",
+            Expected::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500)),
+            read_voltage,
+        )?;
         station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
         station.given = read_frame(query)?;
         if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
@@ -272,24 +280,22 @@ impl fmt::Display for Station {
 /// The frame as a link gives it: bits of turns and steps, and the checksum, which is the usual one where none is given.
 fn read_frame(query: &Query) -> Result<Option<Layout>, UrlError> {
     let bits = |least: u8| move |text: &str| text.parse().ok().filter(|bits| (least..=32).contains(bits));
-    let multiturn: Option<u8> = query.read("mt", "bits from 0 to 32", bits(0))?;
-    let singleturn: Option<u8> = query.read("st", "bits from 1 to 32", bits(1))?;
-    let crc = query.read("crc", "a polynomial with all its terms such as 0x43, or none", read_crc)?;
-    let alone = |name: &str, what: &str| UrlError::Value {
+    let multiturn: Option<u8> = query.read("mt", Expected::range(Quantity::Bits, 0, 32), bits(0))?;
+    let singleturn: Option<u8> = query.read("st", Expected::range(Quantity::Bits, 1, 32), bits(1))?;
+    let crc = query.read("crc", Expected::Polynomial, read_crc)?;
+    let alone = |name: &str, allowed: Expected| UrlError::Value {
         name: name.to_owned(),
         value: query.get(name).unwrap_or_default().to_owned(),
-        allowed: what.to_owned(),
+        allowed,
     };
     let Some(singleturn) = singleturn else {
         let other = ["mt", "crc"].into_iter().find(|name| query.get(name).is_some());
-        return other.map_or(Ok(None), |name| Err(alone(name, "only together with st")));
+        return other.map_or(Ok(None), |name| Err(alone(name, Expected::OnlyWith("st"))));
     };
     let crc = crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
     // 32 and 32 bits leave no room for flags and checksum.
     let layout = Layout::new(multiturn.unwrap_or(0), singleturn, true, true, crc);
-    layout
-        .map(Some)
-        .map_err(|_| alone("st", "bits that leave a frame of no more than 64 with turns, two flags and CRC"))
+    layout.map(Some).map_err(|_| alone("st", Expected::ShortFrame))
 }
 
 /// `Some(None)`: the frames have none.

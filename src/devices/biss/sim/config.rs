@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::wiegand::Pulses;
 use crate::bits::ByteOrder;
 use crate::devices::biss::protocol::{Filter, Firmware};
+use crate::expected::{Expected, Limit, Quantity};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 
@@ -113,42 +114,46 @@ impl Config {
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
         let setting = Setting { key, value };
-        let refuse = |allowed: &str| setting.refused(allowed);
+        let refuse = |allowed: Expected| setting.refused(allowed);
         match key {
-            "seed" => self.seed = setting.number("a whole number")?,
+            "seed" => self.seed = setting.number(Expected::Whole)?,
             "fault" => self.faults = value.parse()?,
-            "firmware" => self.firmware = firmware(value).ok_or_else(|| refuse("a release as 1.6.0"))?,
-            "serial" => self.serial_number = setting.number("a number from 0 to 0xFFFFFFFF")?,
+            "firmware" => self.firmware = firmware(value).ok_or_else(|| refuse(Expected::Release))?,
+            "serial" => self.serial_number = setting.number(Expected::Number32)?,
             "rpm" => self.rpm = setting.rpm()?,
             "motor" => {
-                self.reverses = setting.one_of(&[("steady", false), ("reverse", true)], "steady or reverse")?;
+                self.reverses = setting.one_of(&[("steady", false), ("reverse", true)])?;
             }
-            "waver" => self.waver = setting.decimal(0.0..=1000.0, "0 to 1000 revolutions a minute")?,
-            "position" => self.position = setting.within(..Self::POSITIONS, "a position from 0 to 8589934591")?,
+            "waver" => self.waver = setting.decimal(0.0..=1000.0, Expected::Revolutions { most: 1000 })?,
+            "position" => {
+                self.position =
+                    setting.within(..Self::POSITIONS, Expected::range(Quantity::Position, 0, Self::POSITIONS - 1))?
+            }
             "temperature" => {
-                self.temperature = setting.signed(-50..=205, "whole degrees Celsius from -50 to 205")?;
+                self.temperature = setting.signed(-50..=205, Expected::range(Quantity::WholeCelsius, -50, 205))?;
             }
-            "errors" => self.errors = setting.number("the error register's value from 0x00 to 0xFF")?,
+            "errors" => self.errors = setting.number(Expected::ErrorRegister)?,
             "filter" => {
                 let filters = [("balanced", Filter::Balanced), ("dynamic", Filter::Dynamic)];
-                self.filter = setting.one_of(&filters, "balanced or dynamic")?;
+                self.filter = setting.one_of(&filters)?;
             }
-            "cycles" => self.cycles = setting.number("the number of write cycles its flash has had")?,
+            "cycles" => self.cycles = setting.number(Expected::WriteCycles)?,
             "pulses" => {
-                self.pulses =
-                    pulses(value).ok_or_else(|| refuse("AVERAGE,LOWEST in volts from 0 to 25.5, as 6.3,5.8"))?;
+                self.pulses = pulses(value).ok_or_else(|| refuse(Expected::Pulses))?;
             }
             "calibration" => {
-                self.calibration_time = Duration::from_secs_f64(setting.decimal(0.1..=60.0, "0.1 to 60 seconds")?);
+                self.calibration_time = Duration::from_secs_f64(
+                    setting.decimal(0.1..=60.0, Expected::Seconds { low: Limit::thousandths(100), high: 60.into() })?,
+                );
             }
             "calibration-silent" => self.silent_calibration = setting.switch()?,
             "calibration-status" => {
-                self.keeps_status = setting.one_of(&[("fresh", false), ("kept", true)], "fresh or kept")?;
+                self.keeps_status = setting.one_of(&[("fresh", false), ("kept", true)])?;
             }
             "echo" => self.echo = setting.switch()?,
             "order" => {
                 let orders = [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)];
-                self.order = setting.one_of(&orders, "low-first or high-first")?;
+                self.order = setting.one_of(&orders)?;
             }
             _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
         }

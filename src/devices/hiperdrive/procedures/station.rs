@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
 use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
+use crate::expected::{Expected, Quantity};
 use crate::link::line::LineState;
 use crate::link::{Query, Replies, UrlError};
 use crate::units::Moment;
@@ -98,14 +99,15 @@ impl Station {
         if let Some(port) = tcp.filter(|port| *port != EXPLICIT_PORT) {
             station.udp = port;
         }
-        let time = |name, allowed, range: std::ops::RangeInclusive<u64>| {
+        let time = |name, range: std::ops::RangeInclusive<u64>| {
+            let allowed = Expected::range(Quantity::Milliseconds, *range.start(), *range.end());
             let read = |text: &str| text.parse().ok().filter(|ms| range.contains(ms)).map(Duration::from_millis);
             query.read(name, allowed, read)
         };
-        if let Some(interval) = time("rpi", "milliseconds from 5 to 100", 5..=100)? {
+        if let Some(interval) = time("rpi", 5..=100)? {
             station.interval = interval;
         }
-        if let Some(timeout) = time("timeout", "milliseconds from 10 to 2000", 10..=2000)? {
+        if let Some(timeout) = time("timeout", 10..=2000)? {
             station.timeout = timeout;
         }
         let order = |text: &str| match text {
@@ -113,11 +115,11 @@ impl Station {
             "big" => Some(ByteOrder::Big),
             _ => None,
         };
-        if let Some(order) = query.read("order", "little or big", order)? {
+        if let Some(order) = query.read("order", Expected::words(&["little", "big"]), order)? {
             station.order = order;
         }
         let port = |text: &str| text.parse().ok().filter(|port| *port != 0);
-        if let Some(port) = query.read("udp", "a port from 1 to 65535", port)? {
+        if let Some(port) = query.read("udp", Expected::range(Quantity::Port, 1, u16::MAX), port)? {
             station.udp = port;
         }
         Ok(station)

@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::axis::{Defect, Load};
 use super::station::RESETS;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
+use crate::expected::{Expected, Quantity};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 
@@ -132,13 +133,13 @@ impl Config {
     fn set_drives(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
         match setting.key {
             "variant" => self.variant = variant(setting)?,
-            "requested" => self.requested = Some(setting.one_of(&[("0", false), ("1", true)], "0 or 1")?),
+            "requested" => self.requested = Some(setting.one_of(&[("0", false), ("1", true)])?),
             "position" => {
-                let allowed = "steps from -2147483648 to 2147483647";
-                self.position = setting.value.parse().map_err(|_| setting.refused(allowed))?;
+                let allowed = || Expected::range(Quantity::Steps, i32::MIN, i32::MAX);
+                self.position = setting.value.parse().map_err(|_| setting.refused(allowed()))?;
             }
-            "speed" => self.speed = Some(setting.within(5..=350, "tenths of rpm from 5 to 350")?),
-            "load" => self.load = setting.within(0..=200, "percent of the nominal torque from 0 to 200")?,
+            "speed" => self.speed = Some(setting.within(5..=350, Expected::range(Quantity::TenthsOfRpm, 5, 350))?),
+            "load" => self.load = setting.within(0..=200, Expected::range(Quantity::Torque, 0, 200))?,
             "blocked" => self.blocked = setting.switch()?,
             "defect" => {
                 let defects = [
@@ -146,9 +147,11 @@ impl Config {
                     ("reversed", Defect::Reversed),
                     ("says-outside", Defect::SaysOutside),
                 ];
-                self.defect = Some(setting.one_of(&defects, "runs-on, reversed or says-outside")?);
+                self.defect = Some(setting.one_of(&defects)?);
             }
-            "temperature" => self.temperature = setting.decimal(-40.0..=120.0, "degrees Celsius from -40 to 120")?,
+            "temperature" => {
+                self.temperature = setting.decimal(-40.0..=120.0, Expected::range(Quantity::Celsius, -40, 120))?
+            }
             _ => return Ok(false),
         }
         Ok(true)
@@ -158,37 +161,39 @@ impl Config {
         match setting.key {
             "hub" => {
                 let hubs = [("4", Topology::Hub4), ("8", Topology::Hub8)];
-                self.topology = setting.one_of(&hubs, "4 or 8; without it there is an adapter with one drive")?;
+                let found = hubs.into_iter().find(|(word, _)| *word == setting.value);
+                self.topology = found.ok_or_else(|| setting.refused(Expected::Hub))?.1;
             }
-            "s3" => self.s3 = setting.within(0..=9, "a position of the switch from 0 to 9")?,
+            "s3" => self.s3 = setting.within(0..=9, Expected::range(Quantity::SwitchPosition, 0, 9))?,
             "switch" => {
-                let allowed = "the two digits of the switch, from 0 to 99";
-                let switch = AddressSwitch::parse(setting.number(allowed)?).ok_or_else(|| setting.refused(allowed))?;
+                let refused = || setting.refused(Expected::SwitchDigits);
+                let switch = AddressSwitch::parse(setting.number(Expected::SwitchDigits)?).ok_or_else(refused)?;
                 self.switch = switch.number();
             }
             "supply" => {
                 // At most 1000 tenths.
-                self.supply_tenths = (setting.decimal(0.0..=100.0, "volts from 0 to 100")? * 10.0).round() as u16;
+                self.supply_tenths =
+                    (setting.decimal(0.0..=100.0, Expected::range(Quantity::Volts, 0, 100))? * 10.0).round() as u16;
             }
             "reset" => {
-                let ms: u16 = setting.within(0..=8000, "milliseconds from 0 to 8000")?;
+                let ms: u16 = setting.within(0..=8000, Expected::range(Quantity::Milliseconds, 0, 8000))?;
                 self.resets = Duration::from_millis(ms.into());
             }
-            "serial" => self.serial_number = setting.number("a number from 0 to 65535")?,
+            "serial" => self.serial_number = setting.number(Expected::number(0, u16::MAX))?,
             "name" => {
                 let fits =
                     setting.value.len() <= Self::MAX_NAME && setting.value.bytes().all(|c| (b' '..=b'~').contains(&c));
                 let name = Some(setting.value).filter(|_| fits);
-                self.name = name.ok_or_else(|| setting.refused("up to 32 characters of ASCII"))?.to_owned();
+                self.name = name.ok_or_else(|| setting.refused(Expected::Ascii { most: 32 }))?.to_owned();
             }
             "order" => {
                 let orders = [("little", ByteOrder::Little), ("big", ByteOrder::Big)];
-                self.order = setting.one_of(&orders, "little or big")?;
+                self.order = setting.one_of(&orders)?;
             }
             "text" => {
-                self.counted_texts = setting.one_of(&[("plain", false), ("counted", true)], "plain or counted")?;
+                self.counted_texts = setting.one_of(&[("plain", false), ("counted", true)])?;
             }
-            "seed" => self.seed = setting.number("a whole number")?,
+            "seed" => self.seed = setting.number(Expected::Whole)?,
             "fault" => self.faults = setting.value.parse()?,
             _ => return Ok(false),
         }
@@ -218,13 +223,13 @@ impl Config {
 fn variant(setting: Setting<'_>) -> Result<Variant, ConfigError> {
     let row =
         VARIANTS.iter().find(|row| row.name == setting.value || row.variant.number().to_string() == setting.value);
-    row.map(|row| row.variant).ok_or_else(|| setting.refused("a variant from 1 to 13, or its name as HDA30A"))
+    row.map(|row| row.variant).ok_or_else(|| setting.refused(Expected::Variant))
 }
 
 /// Which places have a drive.
 fn places(setting: Setting<'_>, topology: Topology) -> Result<Vec<bool>, ConfigError> {
     let count = topology.drives();
-    let refused = || setting.refused(&format!("0 or 1 for each of {count} places, separated by commas, as 1,0"));
+    let refused = || setting.refused(Expected::Places { count });
     let place = |text: &str| match text.trim() {
         "1" => Ok(true),
         "0" => Ok(false),

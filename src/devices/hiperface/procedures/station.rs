@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::devices::hiperface::protocol::{
     AccessCode, BAUDS, BROADCAST, CodeNumber, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
 };
+use crate::expected::Expected;
 use crate::link::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::units::{Baud, CharacterFormat, Parity};
@@ -108,22 +109,20 @@ impl Station {
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         let mut station = Station::new(margin);
-        let bauds = BAUDS.map(|baud| baud.to_string()).join(", ");
-        if let Some(baud) = query.read("baud", &format!("one of {bauds}"), read_baud)? {
+        let bauds = Expected::OneOf(BAUDS.map(|baud| baud.to_string()).to_vec());
+        if let Some(baud) = query.read("baud", bauds, read_baud)? {
             station.format.baud = baud;
         }
-        if let Some(parity) = query.read("parity", "none, even or odd", Parity::from_word)? {
+        if let Some(parity) = query.read("parity", Expected::words(&Parity::WORDS), Parity::from_word)? {
             station.format.parity = parity;
         }
-        if let Some(address) =
-            query.read("address", "0x40 to 0x5F, or 0xFF with one encoder connected", read_address)?
-        {
+        if let Some(address) = query.read("address", Expected::AddressOrOnlyOne, read_address)? {
             station.address = address;
         }
         if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
             station.line.echo = echo;
         }
-        if let Some(long) = query.read("timeout", "44 or 11 bits, as the encoder is set", read_timeout)? {
+        if let Some(long) = query.read("timeout", Expected::TimeoutBits, read_timeout)? {
             station.long_timeout = long;
         }
         if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
@@ -200,16 +199,16 @@ fn read_timeout(text: &str) -> Option<bool> {
 fn read_geometry(query: &Query) -> Result<Option<Geometry>, UrlError> {
     const MOST: u32 = 1 << 27; // 32 steps a period in a word of 32 bits
     let within = |most: u32| move |text: &str| text.parse().ok().filter(|n| (1..=most).contains(n));
-    let periods = query.read("periods", "1 to 134217728 periods in a revolution", within(MOST))?;
+    let periods = query.read("periods", Expected::Periods { most: MOST }, within(MOST))?;
     let most_turns = MOST / periods.unwrap_or(1);
-    let turns = query.read("turns", &format!("1 to {most_turns} turns"), within(most_turns))?;
+    let turns = query.read("turns", Expected::MostTurns { most: most_turns }, within(most_turns))?;
     match (periods, turns) {
         (Some(periods), turns) => Ok(Some(Geometry::Rotary { periods, turns: turns.unwrap_or(1) })),
         (None, None) => Ok(None),
         (None, Some(turns)) => Err(UrlError::Value {
             name: "turns".to_owned(),
             value: turns.to_string(),
-            allowed: "only together with periods=".to_owned(),
+            allowed: Expected::OnlyWith("periods="),
         }),
     }
 }

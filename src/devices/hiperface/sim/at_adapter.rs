@@ -19,7 +19,7 @@ impl Attachable for AtAdapter {
         let mut is_there = false;
         for (key, value) in pairs {
             let choices = [("none", false), ("hiperface", true)];
-            is_there = Setting { key, value }.one_of(&choices, "none or hiperface")?;
+            is_there = Setting { key, value }.one_of(&choices)?;
         }
         Ok(is_there.then(|| Attached::Serial(Box::new(Bus::new(&Config::default())))))
     }

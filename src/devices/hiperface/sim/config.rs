@@ -4,6 +4,7 @@
 use super::encoder::Pace;
 use super::models::{MODELS, Model};
 use crate::devices::hiperface::protocol::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
+use crate::expected::{Expected, Quantity};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 
@@ -115,44 +116,46 @@ impl Config {
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
         let setting = Setting { key, value };
-        let refuse = |allowed: &str| setting.refused(allowed);
+        let refuse = |allowed: Expected| setting.refused(allowed);
         match key {
-            "seed" => self.seed = setting.number("a whole number")?,
+            "seed" => self.seed = setting.number(Expected::Whole)?,
             "fault" => self.faults = value.parse()?,
             "model" => {
-                let names = || MODELS.map(|model| model.name).join(", ");
-                self.model = *Model::find(value).ok_or_else(|| refuse(&format!("one of {}", names())))?;
+                let names = || Expected::OneOf(MODELS.map(|model| model.name.to_owned()).to_vec());
+                self.model = *Model::find(value).ok_or_else(|| refuse(names()))?;
             }
-            "type" => self.encoder_type = Some(setting.number("a type byte from 0x00 to 0xFF")?),
+            "type" => self.encoder_type = Some(setting.number(Expected::TypeByte)?),
             "serial" => {
                 let fits = (1..=9).contains(&value.len()) && value.bytes().all(|c| matches!(c, b' '..=b'~'));
                 self.serial_number =
-                    Some(fits.then(|| value.to_owned()).ok_or_else(|| refuse("one to nine ASCII characters"))?);
+                    Some(fits.then(|| value.to_owned()).ok_or_else(|| refuse(Expected::SerialNumber))?);
             }
             "address" => {
-                let allowed = "an address from 0x40 to 0x5F";
-                self.address = DeviceAddress::new(setting.number(allowed)?).ok_or_else(|| refuse(allowed))?;
+                let allowed = || Expected::BusAddress { last: 0x5F };
+                self.address = DeviceAddress::new(setting.number(allowed())?).ok_or_else(|| refuse(allowed()))?;
             }
             "settings" => {
-                let allowed = "a settings byte without reserved values, as 0xE4";
-                let settings = LineSettings::from_byte(setting.number(allowed)?);
-                self.settings = Some(settings).filter(|settings| settings.is_valid()).ok_or_else(|| refuse(allowed))?;
+                let settings = LineSettings::from_byte(setting.number(Expected::SettingsByte)?);
+                let valid = Some(settings).filter(|settings| settings.is_valid());
+                self.settings = valid.ok_or_else(|| refuse(Expected::SettingsByte))?;
             }
             "rpm" => self.rpm = setting.rpm()?,
-            "position" => self.position = Some(setting.number("a position in steps")?),
+            "position" => self.position = Some(setting.number(Expected::Steps)?),
             "temperature" => {
-                self.temperature = setting.signed(-100..=300, "whole degrees Celsius from -100 to 300")?;
+                self.temperature = setting.signed(-100..=300, Expected::range(Quantity::WholeCelsius, -100, 300))?;
             }
             "echo" => self.echo = setting.switch()?,
-            "encoders" => self.encoders = setting.within(1..=Self::MAX_ENCODERS, "a number from 1 to 8")?,
+            "encoders" => {
+                self.encoders = setting.within(1..=Self::MAX_ENCODERS, Expected::number(1, Self::MAX_ENCODERS))?
+            }
             "pace" => {
                 let paces = [("typical", Pace::Typical), ("worst", Pace::Worst)];
-                self.pace = setting.one_of(&paces, "typical or worst")?;
+                self.pace = setting.one_of(&paces)?;
             }
             "codes" => {
                 // The text itself is not repeated in the error: it holds access codes.
-                let allowed = "NUMBER:HEX for the codes 0 to 3, separated by commas, as 0:55,2:66";
-                self.codes = codes(value).ok_or_else(|| Setting { key, value: "**" }.refused(allowed))?;
+                let hidden = Setting { key, value: "**" };
+                self.codes = codes(value).ok_or_else(|| hidden.refused(Expected::AccessCodes))?;
             }
             _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
         }
@@ -165,14 +168,15 @@ impl Config {
         if let (Some(position), Some(range)) = (self.position, range)
             && u64::from(position) >= range
         {
-            let allowed = format!("a position from 0 to {}", range - 1);
-            return Err(Setting { key: "position", value: &position.to_string() }.refused(&allowed));
+            let allowed = Expected::range(Quantity::Position, 0, range - 1);
+            return Err(Setting { key: "position", value: &position.to_string() }.refused(allowed));
         }
         let last_first = 0x5F - (self.encoders - 1);
         if self.address.byte() > last_first {
-            let allowed = format!("an address from 0x40 to {last_first:#04X}, so that all encoders have one");
             let address = format!("{:#04X}", self.address.byte());
-            return Err(Setting { key: "address", value: &address }.refused(&allowed));
+            return Err(
+                Setting { key: "address", value: &address }.refused(Expected::FirstAddress { last: last_first })
+            );
         }
         Ok(())
     }

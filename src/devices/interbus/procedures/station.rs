@@ -4,6 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::devices::interbus::protocol::{Command, Gear, StartupMode, WindowShift, WordOrder};
+use crate::expected::{Expected, Quantity};
 use crate::link::line::LineState;
 use crate::link::{Query, UrlError};
 
@@ -89,29 +90,34 @@ impl Station {
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         let mut station = Station::new(margin);
-        if let Some(unit) = query.read("unit", "a unit from 0 to 255", number)? {
+        if let Some(unit) = query.read("unit", Expected::range(Quantity::Unit, 0, u8::MAX), number)? {
             station.unit = unit;
         }
-        if let Some(register) = query.read("input", "an input register from 0 to 65534", register)? {
+        if let Some(register) =
+            query.read("input", Expected::range(Quantity::InputRegister, 0, u16::MAX - 1), register)?
+        {
             station.input = register;
         }
-        if let Some(register) = query.read("output", "a holding register from 0 to 65534", register)? {
+        if let Some(register) =
+            query.read("output", Expected::range(Quantity::HoldingRegister, 0, u16::MAX - 1), register)?
+        {
             station.output = register;
         }
-        if let Some(order) = query.read("order", "high-first or low-first", WordOrder::read)? {
+        if let Some(order) = query.read("order", Expected::words(&WordOrder::WORDS), WordOrder::read)? {
             station.order = order;
         }
-        let time = |name, allowed, range: std::ops::RangeInclusive<u64>| {
+        let time = |name, range: std::ops::RangeInclusive<u64>| {
+            let allowed = Expected::range(Quantity::Milliseconds, *range.start(), *range.end());
             let read = |text: &str| text.parse().ok().filter(|ms| range.contains(ms)).map(Duration::from_millis);
             query.read(name, allowed, read)
         };
-        if let Some(handshake) = time("handshake", "milliseconds from 50 to 8000", 50..=8000)? {
+        if let Some(handshake) = time("handshake", 50..=8000)? {
             station.handshake = handshake;
         }
-        if let Some(cycle) = time("cycle", "milliseconds from 1 to 1000", 1..=1000)? {
+        if let Some(cycle) = time("cycle", 1..=1000)? {
             station.cycle = cycle;
         }
-        if let Some(timeout) = time("timeout", "milliseconds from 10 to 2000", 10..=2000)? {
+        if let Some(timeout) = time("timeout", 10..=2000)? {
             station.timeout = timeout;
         }
         Ok(station)

@@ -11,6 +11,9 @@ pub enum WordOrder {
 }
 
 impl WordOrder {
+    /// The words that [`read`](Self::read) takes.
+    pub const WORDS: [&str; 2] = ["high-first", "low-first"];
+
     /// The registers of a word.
     pub const fn registers(self, word: u32) -> [u16; 2] {
         let (high, low) = ((word >> 16) as u16, word as u16);

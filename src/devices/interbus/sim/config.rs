@@ -7,6 +7,7 @@ use super::memory::{Memory, PLACES};
 use crate::devices::interbus::protocol::{
     Class, Gear, Parameter, ProgramNumber, STEPS_PER_TURN, StartupMode, Value, WordOrder,
 };
+use crate::expected::{Expected, Quantity};
 use crate::sim::setting::Setting;
 use crate::sim::{ConfigError, Faults};
 
@@ -145,42 +146,47 @@ impl Config {
     fn set_encoder(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
         match setting.key {
             "direction" => {
-                self.memory.counterclockwise = setting.one_of(&[("cw", false), ("ccw", true)], "cw or ccw")?;
+                self.memory.counterclockwise = setting.one_of(&[("cw", false), ("ccw", true)])?;
             }
             "rpm" => self.rpm = setting.rpm()?,
-            "position" => self.position = setting.within(..PLACES, "a place of the disc from 0 to 33554431")?,
+            "position" => {
+                self.position = setting.within(..PLACES, Expected::range(Quantity::PlaceOfDisc, 0, PLACES - 1))?
+            }
             "serial" => self.serial_number = value(setting)?,
             "operating-time" => self.operating_time = value(setting)?,
             "temperature" => {
-                let celsius = setting.decimal(-273.0..=1000.0, "degrees Celsius from -273 to 1000")?;
+                let celsius = setting.decimal(-273.0..=1000.0, Expected::range(Quantity::Celsius, -273, 1000))?;
                 self.temperature = (celsius * 10.0).round() as i32;
             }
             "temperature-bits" => {
-                self.narrow_temperature = setting.one_of(&[("25", false), ("16", true)], "25 or 16")?;
+                self.narrow_temperature = setting.one_of(&[("25", false), ("16", true)])?;
             }
             "complement" => {
-                self.complement_bit = setting.one_of(&[("code", false), ("bit", true)], "code or bit")?;
+                self.complement_bit = setting.one_of(&[("code", false), ("bit", true)])?;
             }
             "program" => {
-                let allowed = "a program from 1 to 8, or 0 for none";
-                self.mode = match setting.number::<u8>(allowed)? {
+                let refused = || setting.refused(Expected::Program);
+                self.mode = match setting.number::<u8>(Expected::Program)? {
                     0 => StartupMode::K3,
-                    number => StartupMode::Cams(ProgramNumber::new(number).ok_or_else(|| setting.refused(allowed))?),
+                    number => StartupMode::Cams(ProgramNumber::new(number).ok_or_else(refused)?),
                 };
             }
-            "stores" => self.stores = setting.number("the number of stores its EEPROM has had")?,
+            "stores" => self.stores = setting.number(Expected::Stores)?,
             "steps-minus-one" => self.steps_minus_one = setting.switch()?,
             "busy" => {
-                let allowed = "milliseconds from 0 to 60000";
+                let allowed = Expected::range(Quantity::Milliseconds, 0, Self::MAX_BUSY_MS);
                 self.busy = Duration::from_millis(setting.within(..=Self::MAX_BUSY_MS, allowed)?.into());
             }
-            "stale" => self.stale = setting.within(..=Self::MAX_STALE, "a number of cycles from 0 to 1000")?,
+            "stale" => {
+                self.stale =
+                    setting.within(..=Self::MAX_STALE, Expected::range(Quantity::Cycles, 0, Self::MAX_STALE))?
+            }
             "selection" => {
-                self.acknowledges_selection = setting.one_of(&[("echo", true), ("output", false)], "echo or output")?;
+                self.acknowledges_selection = setting.one_of(&[("echo", true), ("output", false)])?;
             }
             "class" => {
                 let classes = [("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)];
-                self.class = setting.one_of(&classes, "K1, K2 or K3")?;
+                self.class = setting.one_of(&classes)?;
             }
             _ => return Ok(false),
         }
@@ -190,17 +196,20 @@ impl Config {
     fn set_gateway(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
         match setting.key {
             "encoders" => {
-                self.encoders = setting.within(1..=Self::MAX_ENCODERS, "a number of encoders from 1 to 8")?;
+                self.encoders = setting
+                    .within(1..=Self::MAX_ENCODERS, Expected::range(Quantity::Encoders, 1, Self::MAX_ENCODERS))?;
             }
-            "unit" => self.unit = setting.number("a unit from 0 to 255")?,
-            "input" => self.input = setting.number("a register from 0 to 65535")?,
-            "output" => self.output = setting.number("a register from 0 to 65535")?,
+            "unit" => self.unit = setting.number(Expected::range(Quantity::Unit, 0, u8::MAX))?,
+            "input" => self.input = setting.number(Expected::range(Quantity::Register, 0, u16::MAX))?,
+            "output" => self.output = setting.number(Expected::range(Quantity::Register, 0, u16::MAX))?,
             "order" => {
                 let order = WordOrder::read(setting.value);
-                self.order = order.ok_or_else(|| setting.refused("high-first or low-first"))?;
+                self.order = order.ok_or_else(|| setting.refused(Expected::words(&WordOrder::WORDS)))?;
             }
-            "exception" => self.exceptions = setting.decimal(0.0..=1.0, "the share of requests from 0 to 1")?,
-            "seed" => self.seed = setting.number("a whole number")?,
+            "exception" => {
+                self.exceptions = setting.decimal(0.0..=1.0, Expected::range(Quantity::RefusedRequests, 0, 1))?
+            }
+            "seed" => self.seed = setting.number(Expected::Whole)?,
             "fault" => self.faults = setting.value.parse()?,
             _ => return Ok(false),
         }
@@ -225,7 +234,7 @@ impl<'a> Geared<'a> {
             "revolutions" => self.revolutions = Some(setting),
             "preset" => self.preset = Some(setting),
             "zero-shift" => self.zero_shift = Some(setting),
-            "cams" => self.demonstration = setting.one_of(&[("none", false), ("demo", true)], "demo or none")?,
+            "cams" => self.demonstration = setting.one_of(&[("demo", true), ("none", false)])?,
             _ => return Ok(false),
         }
         Ok(true)
@@ -235,19 +244,20 @@ impl<'a> Geared<'a> {
     fn put_into(self, memory: &mut Memory) -> Result<(), ConfigError> {
         let Geared { steps, revolutions, preset, zero_shift, demonstration } = self;
         if let Some(setting) = revolutions {
-            let allowed = "turns from 1 to 4096";
-            let turns = setting.number(allowed)?;
+            let allowed = || Expected::range(Quantity::Turns, 1, 4096);
+            let turns = setting.number(allowed())?;
             let steps = memory.gear.steps().min(STEPS_PER_TURN.saturating_mul(turns));
-            memory.gear = Gear::new(steps, turns).map_err(|_| setting.refused(allowed))?;
+            memory.gear = Gear::new(steps, turns).map_err(|_| setting.refused(allowed()))?;
         }
         if let Some(setting) = steps {
             let range = Parameter::Steps.range(memory.gear);
-            let allowed = format!("steps from {} to {}, which is what its turns have", range.start(), range.end());
-            let gear = Gear::new(setting.number(&allowed)?, memory.gear.turns());
-            memory.gear = gear.map_err(|_| setting.refused(&allowed))?;
+            let allowed = || Expected::StepsOfTurns { low: *range.start(), high: *range.end() };
+            let gear = Gear::new(setting.number(allowed())?, memory.gear.turns());
+            memory.gear = gear.map_err(|_| setting.refused(allowed()))?;
         }
-        let (steps, allowed) = (memory.gear.steps(), format!("steps from 0 to {}", memory.gear.steps() - 1));
-        memory.preset = preset.map_or(Ok(0), |setting| setting.within(..steps, &allowed))?;
+        let steps = memory.gear.steps();
+        let allowed = Expected::range(Quantity::Steps, 0, steps - 1);
+        memory.preset = preset.map_or(Ok(0), |setting| setting.within(..steps, allowed.clone()))?;
         memory.zero_shift = zero_shift.map_or(Ok(0), value)?;
         if demonstration {
             *memory = memory.clone().with_demonstration();
@@ -258,7 +268,7 @@ impl<'a> Geared<'a> {
 
 /// A number that a word has room for.
 fn value(setting: Setting<'_>) -> Result<u32, ConfigError> {
-    setting.within(..=Value::MAX.get(), "a number from 0 to 33554431")
+    setting.within(..=Value::MAX.get(), Expected::number(0, Value::MAX.get()))
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::analysis::Time;
 use crate::buses::bridge::procedures::flow::Flow;
 use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
 use crate::buses::bridge::protocol::Hello;
+use crate::expected::{Expected, Limit, Quantity};
 use crate::link::line::{LineState, MARGIN_ALLOWED, read_margin};
 use crate::link::{Query, UrlError};
 use crate::units::SupplyVoltage;
@@ -112,13 +113,14 @@ impl Station {
         if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
             station.line.margin = margin;
         }
-        if let Some(clock) = query.read("clock", "hertz from 80000 to 10000000", read_clock)? {
+        if let Some(clock) = query.read("clock", Expected::range(Quantity::Hertz, 80_000, 10_000_000), read_clock)? {
             station.asking.clock_hz = clock;
         }
-        if let Some(pause) = query.read("pause", "microseconds from 1 to 65535", read_pause)? {
+        if let Some(pause) = query.read("pause", Expected::range(Quantity::Microseconds, 1, u16::MAX), read_pause)? {
             station.asking.pause_us = pause;
         }
-        let millivolt = query.read("voltage", "volts from 4.5 to 30", read_voltage)?;
+        let millivolt =
+            query.read("voltage", Expected::range(Quantity::Volts, Limit::thousandths(4500), 30), read_voltage)?;
         station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
         if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
             station.adapter.leave_supply(after);

@@ -3,6 +3,7 @@
 use super::encoder::{Encoder, Sending};
 use super::trouble::Trouble;
 use crate::buses::bridge::sim::{Attachable, Attached};
+use crate::expected::Expected;
 use crate::sim::ConfigError;
 use crate::sim::setting::Setting;
 
@@ -47,8 +48,7 @@ impl Attachable for AtAdapter {
             if key == TROUBLES {
                 troubles = value;
             } else {
-                let allowed = "a family of SSI encoders with its settings, as atm60,code=gray";
-                encoder = Some(Encoder::named(value).ok_or_else(|| setting.refused(allowed))?);
+                encoder = Some(Encoder::named(value).ok_or_else(|| setting.refused(Expected::Family))?);
             }
         }
         let Some(encoder) = encoder else { return Ok(None) };
@@ -58,10 +58,10 @@ impl Attachable for AtAdapter {
 }
 
 fn read_troubles(value: &str, encoder: &Encoder) -> Result<Vec<Trouble>, ConfigError> {
-    let allowed = || match Trouble::names(&encoder.layout).join(", ") {
-        own if own.is_empty() => "nothing, as this encoder's frame has no error bits".to_owned(),
-        own => format!("{own}, each with :SECONDS where it happens again and again, separated by commas"),
+    let allowed = || match Trouble::names(&encoder.layout) {
+        own if own.is_empty() => Expected::NoErrorBits,
+        own => Expected::ErrorBits(own),
     };
     let troubles = Trouble::read(value, &encoder.layout);
-    troubles.ok_or_else(|| Setting { key: TROUBLES, value }.refused(&allowed()))
+    troubles.ok_or_else(|| Setting { key: TROUBLES, value }.refused(allowed()))
 }

@@ -1,0 +1,336 @@
+//! What a parameter, a setting or an entry may be: a fact with its limits, English here, in the window a text of its own
+//! (`app::explain::expected`).
+
+use std::borrow::Cow;
+use std::fmt;
+
+use thiserror::Error;
+
+/// What would do where something else was written.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Expected {
+    /// One of these words, few enough to be read as a sentence.
+    #[error("{}", alternatives(.0))]
+    Words(Cow<'static, [&'static str]>),
+    /// One of many names or numbers.
+    #[error("one of {}", .0.join(", "))]
+    OneOf(Vec<String>),
+    /// A number with what it counts, and its limits.
+    #[error("{quantity} from {low} to {high}")]
+    Range {
+        /// What it counts.
+        quantity: Quantity,
+        /// The least.
+        low: Limit,
+        /// The greatest.
+        high: Limit,
+    },
+    /// A whole number of whatever size fits.
+    #[error("a whole number")]
+    Whole,
+    /// A number of 32 bits.
+    #[error("a number from 0 to 0xFFFFFFFF")]
+    Number32,
+    /// Revolutions a minute in either direction.
+    #[error("a speed from -{most} to {most} revolutions a minute")]
+    Speed {
+        /// The greatest.
+        most: u32,
+    },
+    /// Revolutions a minute in one direction.
+    #[error("0 to {most} revolutions a minute")]
+    Revolutions {
+        /// The greatest.
+        most: u32,
+    },
+    /// Seconds.
+    #[error("{low} to {high} seconds")]
+    Seconds {
+        /// The least.
+        low: Limit,
+        /// The greatest.
+        high: Limit,
+    },
+    /// A speed of a serial line.
+    #[error("bit/s from {low} to {high}, usually 115200")]
+    BitRate {
+        /// The least.
+        low: u32,
+        /// The greatest.
+        high: u32,
+    },
+    /// Periods in a revolution.
+    #[error("1 to {most} periods in a revolution")]
+    Periods {
+        /// The greatest number.
+        most: u32,
+    },
+    /// Revolutions that are counted.
+    #[error("1 to {most} turns")]
+    MostTurns {
+        /// The greatest number.
+        most: u32,
+    },
+    /// A gear.
+    #[error("steps from {low} to {high}, which is what its turns have")]
+    StepsOfTurns {
+        /// The least.
+        low: u32,
+        /// The greatest.
+        high: u32,
+    },
+    /// Another parameter is missing.
+    #[error("only together with {0}")]
+    OnlyWith(&'static str),
+    /// A checksum's polynomial.
+    #[error("a polynomial with all its terms such as 0x43, or none")]
+    Polynomial,
+    /// A frame that is not too long.
+    #[error("bits that leave a frame of no more than 64 with turns, two flags and CRC")]
+    ShortFrame,
+    /// The address of an encoder on a bus, or of the only one.
+    #[error("0x40 to 0x5F, or 0xFF with one encoder connected")]
+    AddressOrOnlyOne,
+    /// The address of an encoder on a bus.
+    #[error("an address from 0x40 to {last:#04X}")]
+    BusAddress {
+        /// The greatest.
+        last: u8,
+    },
+    /// The address of the first of several encoders.
+    #[error("an address from 0x40 to {last:#04X}, so that all encoders have one")]
+    FirstAddress {
+        /// The greatest.
+        last: u8,
+    },
+    /// A time-out of HIPERFACE, counted in bits.
+    #[error("44 or 11 bits, as the encoder is set")]
+    TimeoutBits,
+    /// The byte of an encoder's type.
+    #[error("a type byte from 0x00 to 0xFF")]
+    TypeByte,
+    /// The byte of an encoder's line settings.
+    #[error("a settings byte without reserved values, as 0xE4")]
+    SettingsByte,
+    /// A serial number.
+    #[error("one to nine ASCII characters")]
+    SerialNumber,
+    /// A name.
+    #[error("up to {most} characters of ASCII")]
+    Ascii {
+        /// How many.
+        most: u32,
+    },
+    /// A position that has no limits yet.
+    #[error("a position in steps")]
+    Steps,
+    /// Access codes.
+    #[error("NUMBER:HEX for the codes 0 to 3, separated by commas, as 0:55,2:66")]
+    AccessCodes,
+    /// The release of a firmware.
+    #[error("a release as 1.6.0")]
+    Release,
+    /// The value of an error register.
+    #[error("the error register's value from 0x00 to 0xFF")]
+    ErrorRegister,
+    /// Write cycles of a flash.
+    #[error("the number of write cycles its flash has had")]
+    WriteCycles,
+    /// Stores into an EEPROM.
+    #[error("the number of stores its EEPROM has had")]
+    Stores,
+    /// Voltages of Wiegand pulses.
+    #[error("AVERAGE,LOWEST in volts from 0 to 25.5, as 6.3,5.8")]
+    Pulses,
+    /// The number of a cam program.
+    #[error("a program from 1 to 8, or 0 for none")]
+    Program,
+    /// Places for drives of a hub.
+    #[error("4 or 8; without it there is an adapter with one drive")]
+    Hub,
+    /// The setting of an address switch.
+    #[error("the two digits of the switch, from 0 to 99")]
+    SwitchDigits,
+    /// The variant of a drive.
+    #[error("a variant from 1 to 13, or its name as HDA30A")]
+    Variant,
+    /// Which places have a drive.
+    #[error("0 or 1 for each of {count} places, separated by commas, as 1,0")]
+    Places {
+        /// How many places there are.
+        count: u8,
+    },
+    /// A layout of SSI frames.
+    #[error("a family of SSI encoders with its settings, as atm60,code=gray")]
+    Family,
+    /// Error bits of a frame.
+    #[error("{}, each with :SECONDS where it happens again and again, separated by commas", .0.join(", "))]
+    ErrorBits(Vec<String>),
+    /// A frame without error bits.
+    #[error("nothing, as this encoder's frame has no error bits")]
+    NoErrorBits,
+}
+
+/// What the number of a range counts, with its article.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Quantity {
+    /// Nothing in particular.
+    #[error("a number")]
+    Number,
+    /// Milliseconds.
+    #[error("milliseconds")]
+    Milliseconds,
+    /// Microseconds.
+    #[error("microseconds")]
+    Microseconds,
+    /// Hertz.
+    #[error("hertz")]
+    Hertz,
+    /// Bits.
+    #[error("bits")]
+    Bits,
+    /// Steps.
+    #[error("steps")]
+    Steps,
+    /// Revolutions.
+    #[error("turns")]
+    Turns,
+    /// A position of an encoder.
+    #[error("a position")]
+    Position,
+    /// A place of a code disc.
+    #[error("a place of the disc")]
+    PlaceOfDisc,
+    /// Degrees Celsius.
+    #[error("degrees Celsius")]
+    Celsius,
+    /// Degrees Celsius without decimals.
+    #[error("whole degrees Celsius")]
+    WholeCelsius,
+    /// Tenths of a revolution a minute.
+    #[error("tenths of rpm")]
+    TenthsOfRpm,
+    /// Percent of the nominal torque.
+    #[error("percent of the nominal torque")]
+    Torque,
+    /// The version of a protocol.
+    #[error("a version")]
+    Version,
+    /// An address.
+    #[error("an address")]
+    Address,
+    /// A TCP or UDP port.
+    #[error("a port")]
+    Port,
+    /// A unit of Modbus.
+    #[error("a unit")]
+    Unit,
+    /// A register of Modbus.
+    #[error("a register")]
+    Register,
+    /// An input register of Modbus.
+    #[error("an input register")]
+    InputRegister,
+    /// A holding register of Modbus.
+    #[error("a holding register")]
+    HoldingRegister,
+    /// A number of cycles.
+    #[error("a number of cycles")]
+    Cycles,
+    /// A number of encoders.
+    #[error("a number of encoders")]
+    Encoders,
+    /// A position of a rotary switch.
+    #[error("a position of the switch")]
+    SwitchPosition,
+    /// Volts.
+    #[error("volts")]
+    Volts,
+    /// The share of frames with a bit inverted.
+    #[error("the share of damaged frames")]
+    DamagedFrames,
+    /// The share of requests that are answered with an exception.
+    #[error("the share of requests")]
+    RefusedRequests,
+}
+
+/// A limit of a range, exact to a thousandth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limit {
+    thousandths: i128,
+}
+
+impl Expected {
+    /// One of these words.
+    pub const fn words(words: &'static [&'static str]) -> Self {
+        Expected::Words(Cow::Borrowed(words))
+    }
+
+    /// A number of a range.
+    pub fn range(quantity: Quantity, low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
+        Expected::Range { quantity, low: low.into(), high: high.into() }
+    }
+
+    /// A number without a unit.
+    pub fn number(low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
+        Expected::range(Quantity::Number, low, high)
+    }
+}
+
+impl Limit {
+    /// A number with decimals, in thousandths.
+    pub const fn thousandths(thousandths: i128) -> Self {
+        Limit { thousandths }
+    }
+
+    /// A whole number.
+    pub const fn whole(number: i128) -> Self {
+        Limit { thousandths: number * 1000 }
+    }
+}
+
+impl<N: Into<i128>> From<N> for Limit {
+    fn from(number: N) -> Self {
+        Limit::whole(number.into())
+    }
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (whole, part) = (self.thousandths / 1000, self.thousandths % 1000);
+        match part {
+            0 => whole.fmt(f),
+            part => f.write_str(format!("{whole}.{:03}", part.abs()).trim_end_matches('0')),
+        }
+    }
+}
+
+fn alternatives(words: &[&str]) -> String {
+    match words {
+        [before @ .., last] if !before.is_empty() => format!("{} or {last}", before.join(", ")),
+        words => words.concat(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_limits_are_told() {
+        let cases = [
+            (Expected::words(&["on"]), "on"),
+            (Expected::words(&["auto", "on", "off"]), "auto, on or off"),
+            (Expected::range(Quantity::Milliseconds, 0, 2000), "milliseconds from 0 to 2000"),
+            (
+                Expected::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500)),
+                "volts from 4.75 to 12.5",
+            ),
+            (Expected::Seconds { low: Limit::thousandths(100), high: 60.into() }, "0.1 to 60 seconds"),
+            (Expected::BusAddress { last: 0x5F }, "an address from 0x40 to 0x5F"),
+        ];
+        for (expected, words) in cases {
+            assert_eq!(expected.to_string(), words);
+        }
+    }
+}
