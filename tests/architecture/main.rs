@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -33,6 +33,11 @@ impl Source {
     fn without_tests(&self) -> &str {
         let end = self.text.find("\n#[cfg(test)]\nmod tests {").unwrap_or(self.text.len());
         &self.text[..end]
+    }
+
+    /// The folder in which it stands, under `src`.
+    fn folder(&self) -> Option<&str> {
+        Some(self.path.strip_prefix("src/")?.rsplit_once('/')?.0)
     }
 
     fn is_test(&self) -> bool {
@@ -104,6 +109,29 @@ fn neighbours_are_known_only_where_it_is_allowed() {
             assert!(allowed, "{}:{} uses its neighbour {}", source.path, used.line, used.path.join("::"));
         }
     }
+}
+
+/// Two folders of the core that use each other would be one. A folder and what it contains are.
+#[test]
+fn no_two_folders_of_the_core_use_each_other() {
+    let sources: Vec<Source> = sources().into_iter().filter(|source| source.place.owner == Owner::Core).collect();
+    let folders: BTreeSet<&str> = sources.iter().filter_map(|source| source.folder()).collect();
+    let mut uses: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for source in sources.iter().filter(|source| !source.is_test()) {
+        let Some(own) = source.folder() else { continue };
+        for used in paths(&source.modules, source.without_tests()) {
+            let longest = (1..=used.path.len()).rev().map(|count| used.path[..count].join("/"));
+            let other = longest.filter_map(|path| folders.get(path.as_str()).copied()).next();
+            let apart = |other: &&str| !Path::new(own).starts_with(other) && !Path::new(other).starts_with(own);
+            uses.entry(own).or_default().extend(other.filter(apart));
+        }
+    }
+    // Whatever uses nothing that is left cannot be in a circle.
+    while let Some(last) = uses.iter().find(|(_, used)| !used.iter().any(|own| uses.contains_key(own))) {
+        let last = *last.0;
+        uses.remove(last);
+    }
+    assert!(uses.is_empty(), "these use each other: {uses:?}");
 }
 
 /// A device is known by nobody but itself and by the list of kinds, a bus by what is on it: devices, and Signals at an

@@ -3,9 +3,8 @@
 use egui::{RichText, ScrollArea, Ui};
 use egui_extras::{Column, TableBuilder};
 
-use super::nothing;
 use crate::app::{JobEnd, Studio};
-use crate::ui::controls::severity;
+use crate::ui::controls::{empty, severity};
 use crate::ui::{Skin, icons};
 
 const ROW: f32 = 22.0;
@@ -17,7 +16,7 @@ const TIME: &str = "%H:%M:%S";
 pub(in crate::ui) fn jobs_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
     let jobs: Vec<_> = studio.services.jobs().rev().collect();
     if jobs.is_empty() {
-        nothing(ui, skin, &skin.say("jobs.nothing"));
+        empty(ui, skin, &skin.say("jobs.nothing"), None);
         return;
     }
     let palette = skin.palette;
@@ -64,7 +63,7 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
 pub(in crate::ui) fn log_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
     let palette = skin.palette;
     if studio.services.log.notices().len() == 0 {
-        nothing(ui, skin, &skin.say("log.nothing"));
+        empty(ui, skin, &skin.say("log.nothing"), None);
         return;
     }
     ScrollArea::vertical().id_salt("log").auto_shrink(false).show(ui, |ui| {

@@ -4,10 +4,9 @@ use std::time::Duration;
 
 use egui::{RichText, Ui};
 
-use super::nothing;
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, Desk, DeviceCommand, Rgb, Studio, Text};
-use crate::ui::controls::{choice, enabled_button, icon_button};
+use crate::ui::controls::{choice, empty, enabled_button, icon_button};
 use crate::ui::page::apart;
 use crate::ui::{Skin, Views, icons, plot};
 
@@ -28,7 +27,7 @@ const NOTICED: f32 = 0.4;
 /// Draws the panel.
 pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let Some(device) = studio.shown() else {
-        nothing(ui, skin, &skin.say("live.nothing"));
+        empty(ui, skin, &skin.say("live.nothing"), None);
         return;
     };
     let paused = is_paused(ui, device);

@@ -4,10 +4,9 @@
 use egui::{RichText, Ui};
 use egui_extras::{Column, TableBuilder};
 
-use super::nothing;
-
 use crate::app::{AnyDevice, Studio, TraceFault};
 use crate::link::Direction;
+use crate::ui::controls::empty;
 use crate::ui::{Skin, Views};
 
 const ROW: f32 = 18.0;
@@ -17,7 +16,7 @@ const TIME: &str = "%H:%M:%S%.3f";
 pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views: &mut Views) {
     let lines = studio.shown().map(AnyDevice::trace);
     let Some(trace) = lines.filter(|trace| !trace.lines().is_empty()) else {
-        nothing(ui, skin, &skin.say("trace.nothing"));
+        empty(ui, skin, &skin.say("trace.nothing"), None);
         return;
     };
     let palette = skin.palette;

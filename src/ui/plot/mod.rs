@@ -16,7 +16,7 @@ mod trigger;
 use egui::{Rect, Sense, Ui, WidgetInfo, vec2};
 
 use super::Skin;
-use super::panels::nothing;
+use super::controls::empty;
 use crate::app::recorder::{self, Recorder};
 use crate::app::{Action, Desk};
 
@@ -67,14 +67,14 @@ impl Context<'_> {
     }
 }
 
-/// Draws a recorder with its toolbar in what room there is. `empty` says what fills it.
+/// Draws a recorder with its toolbar in what room there is. `invitation` says what fills it.
 pub fn plot_ui(
     ui: &mut Ui,
     skin: &Skin,
     recorder: &Recorder,
     desk: Desk,
     view: &mut View,
-    empty: &str,
+    invitation: &str,
     actions: &mut Vec<Action>,
 ) {
     if view.desk.replace(desk).is_some_and(|before| before != desk) {
@@ -90,7 +90,7 @@ pub fn plot_ui(
     let readout = ui.data(|data| data.get_temp::<f32>(readout_id)).unwrap_or(0.0);
     // In a low panel the numbers scroll: the chart keeps half of the room.
     let height = (below - readout.min(below * 0.5) - ui.spacing().item_spacing.y).max(60.0);
-    let hovered = chart_ui(ui, context, view, height, empty);
+    let hovered = chart_ui(ui, context, view, height, invitation);
     let numbers = egui::ScrollArea::vertical().id_salt("readout").auto_shrink([false, true]);
     let used = numbers.show(ui, |ui| readout::readout_ui(ui, context, hovered)).content_size.y;
     if (used - readout).abs() > 0.5 {
@@ -110,7 +110,7 @@ fn chart_ui(
     context: &mut Context<'_>,
     view: &mut View,
     height: f32,
-    empty: &str,
+    invitation: &str,
 ) -> Option<crate::analysis::Time> {
     let (skin, recorder) = (context.skin, context.recorder);
     let size = vec2(ui.available_width().max(0.0), height);
@@ -122,10 +122,10 @@ fn chart_ui(
         return None;
     }
     if recorder.is_empty() || recorder.shown().next().is_none() {
-        let words = if recorder.is_empty() { empty.to_owned() } else { skin.say("recorder.no_line") };
+        let words = if recorder.is_empty() { invitation.to_owned() } else { skin.say("recorder.no_line") };
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
         inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));
-        nothing(&mut inner, skin, &words);
+        empty(&mut inner, skin, &words, None);
         return None;
     }
     let layout = lanes::layout(recorder, rect.shrink(6.0), ui.pixels_per_point(), &mut view.reduced);
