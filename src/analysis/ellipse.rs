@@ -168,6 +168,21 @@ impl Ellipse {
         )
     }
 
+    /// The circle that the signals draw once they are corrected.
+    pub fn corrected(&self) -> Ellipse {
+        let Ellipse { amplitude_v, .. } = *self;
+        Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
+    }
+
+    /// So many points of it as (cosine, sine) in volts, and the first once more.
+    pub fn outline(&self, points: usize) -> Vec<(f64, f64)> {
+        let point = |at: usize| {
+            let (sine, cosine) = self.at(at as f64 / points as f64 * std::f64::consts::TAU);
+            (cosine, sine)
+        };
+        (0..=points).map(point).collect()
+    }
+
     /// Amplitude of the sine channel, peak, in volts.
     pub fn amplitude_sine_v(&self) -> f64 {
         self.amplitude_v / self.gain_ratio

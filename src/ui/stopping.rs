@@ -1,29 +1,23 @@
-//! What a press means that comes on the heels of a stop: whoever stops a machine presses twice, holds the key, and lets go of
-//! the button when the machine stands already. None of that is meant for whatever else runs. It stops motion all the same:
-//! something may have begun meanwhile.
+//! Presses of what stops, as the toolkit tells them; what they mean is [`StopPresses`]'.
 
 use egui::{Context, Event, Id, Key, Response, Ui};
 
-/// So soon after a stop, in seconds, another press means the same.
-const FRIGHT: f64 = 0.5;
+use crate::app::StopPresses;
 
 /// Whether what was pressed at this time, by the clock of the pictures, means what moves, or has moved until just now.
 pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
-    let means = moves || has_just_stopped(ctx, pressed);
-    if means {
-        let now = ctx.input(|input| input.time);
-        ctx.data_mut(|data| data.insert_temp(last_stop(), now));
-    }
-    means
+    let now = ctx.input(|input| input.time);
+    with(ctx, |presses| presses.means_motion(moves, pressed, now))
 }
 
 /// Something was stopped by a press so shortly before this time that another press means the same.
 pub(super) fn has_just_stopped(ctx: &Context, pressed: f64) -> bool {
-    ctx.data(|data| data.get_temp::<f64>(last_stop())).is_some_and(|stopped| pressed - stopped <= FRIGHT)
+    with(ctx, |presses| presses.has_just_stopped(pressed))
 }
 
-fn last_stop() -> Id {
-    Id::unique("the last stop of a motion")
+fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
+    let id = Id::unique("presses of what stops");
+    ctx.data_mut(|data| act(data.get_temp_mut_or_default(id)))
 }
 
 /// The pointer goes down on a button that stops, in this picture.
@@ -31,21 +25,15 @@ pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     let goes = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if goes {
         let now = ui.input(|input| input.time);
-        ui.data_mut(|data| data.insert_temp(last_press(), now));
+        with(ui.ctx(), |presses| presses.goes_down(now));
     }
     goes
 }
 
 /// When what counts in this picture, on a button that stops, was pressed.
 pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
-    let now = ui.input(|input| input.time);
-    // A click by the keyboard has no press of its own.
-    let by_pointer = goes_down || ui.input(|input| input.pointer.any_released());
-    ui.data(|data| data.get_temp(last_press())).filter(|_| by_pointer).unwrap_or(now)
-}
-
-fn last_press() -> Id {
-    Id::unique("press of stop")
+    let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
+    with(ui.ctx(), |presses| presses.pressed_at(goes_down || released, now))
 }
 
 /// Esc goes down in this picture; a key that is held and repeats itself does not.

@@ -143,3 +143,22 @@ fn what_is_no_ellipse_is_refused_with_its_reason() {
         assert_eq!(Ellipse::fit(sine, cosine), Err(expected), "{label}");
     }
 }
+
+#[test]
+fn an_outline_goes_once_around_the_middle() {
+    let ellipse = Ellipse {
+        amplitude_v: 0.5,
+        offset_cosine_v: 0.25,
+        offset_sine_v: -0.125,
+        gain_ratio: 2.0,
+        phase_error_rad: 0.0,
+    };
+    let near = |points: Vec<(f64, f64)>, expected: [(f64, f64); 5]| {
+        assert_eq!(points.len(), 5);
+        for ((x, y), (own_x, own_y)) in points.into_iter().zip(expected) {
+            assert!((x - own_x).abs() < 1e-12 && (y - own_y).abs() < 1e-12, "{x} {y}");
+        }
+    };
+    near(ellipse.outline(4), [(0.75, -0.125), (0.25, 0.125), (-0.25, -0.125), (0.25, -0.375), (0.75, -0.125)]);
+    near(ellipse.corrected().outline(4), [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]);
+}

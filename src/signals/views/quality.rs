@@ -127,15 +127,8 @@ fn figure_of(
     (colour, dashed): (usize, bool),
 ) -> Figure {
     let curve = |analysis: &Analysis| {
-        let angle = |at: usize| at as f64 / CURVE as f64 * std::f64::consts::TAU;
-        let point = |at: usize| match corrected {
-            true => (analysis.ellipse.amplitude_v * angle(at).cos(), analysis.ellipse.amplitude_v * angle(at).sin()),
-            false => {
-                let (sine, cosine) = analysis.ellipse.at(angle(at));
-                (cosine, sine)
-            }
-        };
-        (0..=CURVE).map(point).collect()
+        let ellipse = if corrected { analysis.ellipse.corrected() } else { analysis.ellipse };
+        ellipse.outline(CURVE)
     };
     Figure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }

@@ -1,5 +1,6 @@
 //! What may be asked of a drive at the moment, why not, and how it stands with what was asked: in words.
 
+use super::action::Motor;
 use super::ruler::Measure;
 use super::unit::Unit;
 use crate::app::number::decimals_of;
@@ -204,14 +205,16 @@ impl Unit {
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
-    /// The goal that leads to a state; `None` for those that nothing leads to by itself. A fault is left by acknowledging.
-    pub fn goal(to: State) -> Option<Goal> {
+    /// What leads a drive to a state that is [`reachable`](Self::reachable); `None` for those to which no word leads. A fault
+    /// is left by acknowledging, which locks.
+    pub const fn leads_to(to: State) -> Option<Motor> {
         match to {
-            State::NotReady => Some(Goal::Off),
-            State::Ready => Some(Goal::Ready),
-            State::Operational => Some(Goal::Operational),
-            State::Enabled => Some(Goal::Enabled),
-            State::Moving | State::Fault | State::Locked => None,
+            State::NotReady => Some(Motor::Lead(Goal::Off)),
+            State::Ready => Some(Motor::Lead(Goal::Ready)),
+            State::Operational => Some(Motor::Lead(Goal::Operational)),
+            State::Enabled => Some(Motor::Lead(Goal::Enabled)),
+            State::Locked => Some(Motor::Acknowledge),
+            State::Moving | State::Fault => None,
         }
     }
 

@@ -5,7 +5,7 @@ use egui::{Id, RichText, Ui, UiBuilder, vec2};
 use super::state_machine::{StateMachine, state_machine};
 use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, Motive, Phase};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Lock, Motive, Phase};
 use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, RunEnd, State};
 use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
@@ -126,15 +126,8 @@ fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
         let reachable: Vec<State> = if open { unit.reachable(drive) } else { Vec::new() };
         let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| skin.words(&hint)));
         let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
-        if let Some(state) = state_machine(ui, skin, &machine) {
-            let wanted = match state {
-                State::NotReady => Motor::Lead(Goal::Off),
-                State::Ready => Motor::Lead(Goal::Ready),
-                State::Operational => Motor::Lead(Goal::Operational),
-                State::Locked => Motor::Acknowledge,
-                State::Enabled | State::Moving | State::Fault => Motor::Lead(Goal::Enabled),
-            };
-            actions.push(Action::device(unit.session.id, Hiperdrive::Drive(wanted)));
+        if let Some(act) = state_machine(ui, skin, &machine).and_then(Unit::leads_to) {
+            motor(actions, unit.session.id, act);
         }
         if !beside {
             let top = ui.cursor().top();

@@ -151,19 +151,24 @@ pub enum Wear {
     Unknown,
 }
 
+impl Wear {
+    /// After so many stores; `None` where nobody needs to know.
+    pub const fn of(stores: u64) -> Option<Self> {
+        match stores {
+            WEAR_LIMIT.. => Some(Wear::Worn(stores)),
+            _ if stores > WEAR_ASK => Some(Wear::Ask(stores)),
+            WEAR_WARNING.. => Some(Wear::Known(stores)),
+            _ => None,
+        }
+    }
+}
+
 impl Prepared {
     /// How much of the EEPROM's life the plan leaves; `None` where nobody needs to know.
     pub fn wear(&self) -> Option<Wear> {
         let cost = self.plan.write_cycles();
         let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };
-        let after = seen.saturating_add(cost);
-        match after {
-            _ if cost == 0 => None,
-            WEAR_LIMIT.. => Some(Wear::Worn(after)),
-            _ if after > WEAR_ASK => Some(Wear::Ask(after)),
-            _ if after >= WEAR_WARNING => Some(Wear::Known(after)),
-            _ => None,
-        }
+        Wear::of(seen.saturating_add(cost)).filter(|_| cost > 0)
     }
 }
 

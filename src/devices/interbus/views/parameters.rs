@@ -8,7 +8,7 @@ use crate::devices::interbus::views::say;
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
-use crate::devices::interbus::jobs::{Change, WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING};
+use crate::devices::interbus::jobs::{Change, WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
@@ -163,10 +163,10 @@ fn wear(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
             return;
         };
         let palette = skin.palette;
-        let ink = match stores {
-            _ if stores >= WEAR_LIMIT => palette.bad,
-            _ if stores >= WEAR_WARNING => palette.warn,
-            _ => palette.accent,
+        let ink = match Wear::of(stores) {
+            Some(Wear::Worn(_) | Wear::Unknown) => palette.bad,
+            Some(Wear::Known(_) | Wear::Ask(_)) => palette.warn,
+            None => palette.accent,
         };
         let text = TEXTS.text("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
         ui.label(skin.words(&text));

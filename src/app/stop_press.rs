@@ -1,0 +1,67 @@
+//! What a press means that comes on the heels of a stop: whoever stops a machine presses twice, holds the key, and lets go of
+//! the button when the machine stands already. None of that is meant for whatever else runs. It stops motion all the same:
+//! something may have begun meanwhile. Pure: times are those of the pictures, in seconds.
+
+/// So soon after a stop, in seconds, another press means the same.
+const FRIGHT: f64 = 0.5;
+
+/// When motion was stopped last, and when a button that stops was pressed last.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StopPresses {
+    stopped: Option<f64>,
+    pressed: Option<f64>,
+}
+
+impl StopPresses {
+    /// Whether what was pressed at this time means what moves, or has moved until just now; then it is a stop itself.
+    pub fn means_motion(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
+        let means = moves || self.has_just_stopped(pressed);
+        if means {
+            self.stopped = Some(now);
+        }
+        means
+    }
+
+    /// Something was stopped by a press so shortly before this time that another press means the same.
+    pub fn has_just_stopped(&self, pressed: f64) -> bool {
+        self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
+    }
+
+    /// The pointer goes down on a button that stops.
+    pub fn goes_down(&mut self, now: f64) {
+        self.pressed = Some(now);
+    }
+
+    /// When what counts now was pressed. A click by the keyboard has no press of its own.
+    pub fn pressed_at(&self, by_pointer: bool, now: f64) -> f64 {
+        self.pressed.filter(|_| by_pointer).unwrap_or(now)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_second_press_within_half_a_second_is_meant_for_the_same_motion() {
+        let mut presses = StopPresses::default();
+        assert!(!presses.means_motion(false, 9.0, 9.0), "nothing moves, and nothing has");
+        assert!(presses.means_motion(true, 10.0, 10.0));
+        assert!(presses.means_motion(false, 10.5, 10.5), "half a second later");
+        // It counts from the last of them.
+        assert!(presses.means_motion(false, 11.0, 11.0));
+        assert!(!presses.means_motion(false, 11.75, 11.75));
+    }
+
+    #[test]
+    fn a_click_counts_from_when_the_button_went_down() {
+        let mut presses = StopPresses::default();
+        presses.means_motion(true, 10.0, 10.0);
+        presses.goes_down(10.25);
+        // Let go long after.
+        let pressed = presses.pressed_at(true, 12.0);
+        assert_eq!(pressed, 10.25);
+        assert!(presses.means_motion(false, pressed, 12.0));
+        assert_eq!(presses.pressed_at(false, 13.0), 13.0, "by the keyboard");
+    }
+}
