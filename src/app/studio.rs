@@ -83,6 +83,7 @@ impl Studio {
 
     /// Does what is asked.
     pub fn act(&mut self, action: Action) {
+        self.devices.iter_mut().for_each(|device| device.may_have_changed());
         match self.with_whole_path(action) {
             Action::ShowTab(tab) => self.show_tab(tab),
             Action::New(tab) => self.new_profile(tab),

@@ -114,6 +114,8 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn let_go(&mut self, end: JobEnd, services: &mut Services);
     #[doc(hidden)]
+    fn may_have_changed(&mut self);
+    #[doc(hidden)]
     fn keep_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
     fn leave_draft(&mut self, services: &mut Services);
@@ -316,6 +318,10 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         OnLine::let_go(self, end, services);
+    }
+
+    fn may_have_changed(&mut self) {
+        self.session_mut().drafting.may_have_changed();
     }
 
     fn keep_draft(&mut self, services: &mut Services) {

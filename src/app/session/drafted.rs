@@ -75,8 +75,11 @@ pub trait Drafted: OnDesk {
         }
     }
 
-    /// Keeps the edits when they have changed.
+    /// Keeps the edits when they have changed. Called for every picture.
     fn keep_draft(&mut self, services: &mut Services) {
+        if !self.session().drafting.is_due() {
+            return;
+        }
         let (key, name, edits) = (self.draft_key(), self.session().name(), self.edited());
         let nameless = key.is_none() && self.type_and_serial().is_some();
         if nameless && !edits.is_nothing() {

@@ -81,6 +81,8 @@ pub(crate) struct Drafting<E> {
     kept: E,
     /// A task is at it.
     busy: bool,
+    /// The edits may be others than those that were handed over.
+    due: bool,
     /// The draft of an earlier time has been looked for: before that, nothing is kept over it.
     looked: bool,
     /// The right to keep it; without, it belongs to another window or session.
@@ -103,7 +105,7 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 impl<E: DraftEdits> Drafting<E> {
     /// Of a session; nothing has been looked for.
     pub(in crate::app) fn new(session: SessionId) -> Self {
-        Drafting { session, kept: E::default(), busy: false, looked: false, claim: None, told: false }
+        Drafting { session, kept: E::default(), busy: false, due: true, looked: false, claim: None, told: false }
     }
 
     /// Looks for the draft of an earlier time.
@@ -210,9 +212,23 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
+    /// Something has happened that may change edits.
+    pub(in crate::app) fn may_have_changed(&mut self) {
+        self.due = true;
+    }
+
+    /// The edits are to be looked at: something has happened since the last time.
+    pub(in crate::app) fn is_due(&self) -> bool {
+        self.due && !self.busy
+    }
+
     /// Keeps the edits when they have changed. One task at a time: what comes meanwhile goes with the next one.
     pub(in crate::app) fn keep(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
-        if self.busy || !self.looked || edits == self.kept {
+        if self.busy {
+            return;
+        }
+        self.due = false;
+        if !self.looked || edits == self.kept {
             return;
         }
         let Some(key) = key else { return };

@@ -123,6 +123,7 @@ pub trait OnLine: OnDesk {
             Event::PollFailed(error) => self.poll_failed(&error, services),
             Event::Lost(error) => self.lose(explain::link(&error), services),
         }
+        self.session_mut().drafting.may_have_changed();
     }
 
     /// A sample failed, and polling is off.
