@@ -225,9 +225,6 @@ pub enum Quantity {
     /// A unit of Modbus.
     #[error("a unit")]
     Unit,
-    /// A register of Modbus.
-    #[error("a register")]
-    Register,
     /// An input register of Modbus.
     #[error("an input register")]
     InputRegister,

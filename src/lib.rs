@@ -29,5 +29,6 @@ pub mod store;
 pub mod analysis;
 pub mod bits;
 pub mod expected;
+pub mod parameter;
 pub mod profile;
 pub mod units;

@@ -5,6 +5,8 @@ use std::fmt;
 use std::ops::{Add, Sub};
 use std::time::Duration;
 
+use crate::parameter::Words;
+
 /// A point in time, counted from the start of the clock that gave it. Moments of different clocks do not compare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Moment(Duration);
@@ -90,10 +92,10 @@ impl Parity {
     /// Every parity, the most usual first.
     pub const ALL: [Parity; 3] = [Parity::Even, Parity::None, Parity::Odd];
 
-    /// The words of link URLs and JSON, as they are listed.
-    pub const WORDS: [&str; 3] = ["none", "even", "odd"];
+    /// The words used in link URLs and JSON.
+    pub const WORDS: Words<Parity> = Words(&[("none", Parity::None), ("even", Parity::Even), ("odd", Parity::Odd)]);
 
-    /// The word used in link URLs and JSON: `none`, `even`, `odd`.
+    /// The word used in link URLs and JSON.
     pub const fn word(self) -> &'static str {
         match self {
             Parity::None => "none",
@@ -109,11 +111,6 @@ impl Parity {
             Parity::Even => 'E',
             Parity::Odd => 'O',
         }
-    }
-
-    /// Reads the [word](Parity::word) of a parity.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|parity| parity.word() == word)
     }
 }
 

@@ -11,7 +11,7 @@ use std::time::Duration;
 pub use echo::Echo;
 pub use quality::LineQuality;
 pub use state::LineState;
-pub(crate) use state::{MARGIN_ALLOWED, read_margin};
+pub(crate) use state::MARGIN;
 
 use state::LONGEST_MARGIN;
 

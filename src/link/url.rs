@@ -1,9 +1,11 @@
 //! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; what the parameters mean is the
 //! business of whoever opens the link.
 
-use crate::expected::Expected;
 use std::fmt;
 use std::str::FromStr;
+
+use crate::expected::Expected;
+use crate::parameter::{Refused, Values};
 
 /// Which kind of wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +128,12 @@ pub enum UrlError {
         /// What could be written.
         allowed: Expected,
     },
+}
+
+impl From<Refused> for UrlError {
+    fn from(Refused { key: name, value, allowed }: Refused) -> Self {
+        UrlError::Value { name, value, allowed }
+    }
 }
 
 impl FromStr for LinkUrl {
@@ -264,24 +272,17 @@ impl Query {
     /// Reads a parameter; `None` when it was left out.
     ///
     /// # Errors
-    /// When `read` makes nothing of the value; `allowed` says what could be written.
-    pub fn read<T>(
-        &self,
-        name: &str,
-        allowed: Expected,
-        read: impl FnOnce(&str) -> Option<T>,
-    ) -> Result<Option<T>, UrlError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        match read(value) {
-            Some(value) => Ok(Some(value)),
-            None => Err(UrlError::Value { name: name.to_owned(), value: value.to_owned(), allowed }),
-        }
+    /// A value that it does not take.
+    pub fn read<V: Values>(&self, name: &str, values: &V) -> Result<Option<V::Value>, UrlError> {
+        Ok(self.get(name).map(|value| values.take(name, value)).transpose()?)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::expected::Quantity;
+    use crate::parameter::Whole;
 
     #[test]
     fn links_are_taken_apart_and_written_as_they_were() {
@@ -370,8 +371,9 @@ mod tests {
     #[test]
     fn a_bad_value_names_what_is_allowed() {
         let query: Query = "baud=fast".parse().unwrap();
-        let error = query.read("baud", Expected::Whole, |value| value.parse::<u32>().ok()).unwrap_err();
-        assert_eq!(error.to_string(), "baud=fast: a whole number");
-        assert_eq!(query.read("parity", Expected::Whole, |value| value.parse::<u32>().ok()), Ok(None));
+        let speeds = Whole(Quantity::Number, 1..=9);
+        let error = query.read("baud", &speeds).unwrap_err();
+        assert_eq!(error.to_string(), "baud=fast: a number from 1 to 9");
+        assert_eq!(query.read("parity", &speeds), Ok(None));
     }
 }

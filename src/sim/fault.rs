@@ -17,6 +17,33 @@ pub struct Faults {
     die_in_store: Option<u32>,
 }
 
+/// The values of a setting for faults.
+pub const FAULTS: FaultList = FaultList;
+
+/// See [`FAULTS`].
+#[derive(Clone, Copy, Debug)]
+pub struct FaultList;
+
+impl FaultList {
+    /// The faults that a setting names.
+    ///
+    /// # Errors
+    /// The first of them that is none.
+    pub fn take(&self, _key: &str, value: &str) -> Result<Faults, FaultError> {
+        value.parse()
+    }
+
+    /// They have no unit.
+    pub fn unit(&self) -> &'static str {
+        ""
+    }
+
+    /// They are no number.
+    pub fn is_decimal(&self) -> bool {
+        false
+    }
+}
+
 /// Why a fault specification cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultError {

@@ -7,12 +7,12 @@
 mod fault;
 pub(crate) mod line;
 mod motor;
-pub(crate) mod setting;
+pub mod setting;
 pub mod sine_cosine;
 
-pub use fault::{Carried, FaultError, Faults, Passage};
+pub use fault::{Carried, FAULTS, FaultError, Faults, Passage};
 pub use motor::Motor;
-pub use setting::{ConfigError, Setting};
+pub use setting::{ConfigError, RPM, SEED};
 
 use std::net::SocketAddrV4;
 

@@ -1,10 +1,9 @@
 //! Settings of a virtual device, as the query of a `sim:` link gives them, a key with its value each: what can be written
 //! for a value, and what is wrong with one. Which keys there are is each device's matter.
 
-use std::ops::{RangeBounds, RangeInclusive};
-
 use super::FaultError;
 use crate::expected::Expected;
+use crate::parameter::{Checked, Parameters, Refused, Values, number};
 
 /// Why settings cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -34,79 +33,68 @@ pub enum ConfigError {
     Fault(#[from] FaultError),
 }
 
-/// A key with its value, about to be read. What cannot be used is refused with words that say what can.
-#[derive(Clone, Copy)]
-pub struct Setting<'a> {
-    /// The key.
-    pub key: &'a str,
-    /// The value as it was written.
-    pub value: &'a str,
-}
-
-type Result<T> = std::result::Result<T, ConfigError>;
-
-impl Setting<'_> {
-    const MAX_RPM: u32 = 12_000;
-
-    /// `device` has no such key; what it has is `known`.
-    pub fn unknown(self, device: &'static str, known: &[&str]) -> ConfigError {
-        ConfigError::Key { device, key: self.key.to_owned(), known: known.join(", ") }
-    }
-
-    pub(crate) fn refused(self, allowed: Expected) -> ConfigError {
-        ConfigError::Value { key: self.key.to_owned(), value: self.value.to_owned(), allowed }
-    }
-
-    /// A whole number that fits into its type.
-    pub fn number<T: TryFrom<u64>>(self, allowed: Expected) -> Result<T> {
-        integer(self.value).and_then(|number| T::try_from(number).ok()).ok_or_else(|| self.refused(allowed))
-    }
-
-    /// A whole number of the range.
-    pub(crate) fn within<T: TryFrom<u64> + PartialOrd>(
-        self,
-        range: impl RangeBounds<T>,
-        allowed: Expected,
-    ) -> Result<T> {
-        let number = Some(self.number(allowed.clone())?).filter(|number| range.contains(number));
-        number.ok_or_else(|| self.refused(allowed))
-    }
-
-    /// A whole number of the range, which may be negative, and is decimal.
-    pub(crate) fn signed(self, range: RangeInclusive<i16>, allowed: Expected) -> Result<i16> {
-        let number = self.value.parse().ok().filter(|number| range.contains(number));
-        number.ok_or_else(|| self.refused(allowed))
-    }
-
-    /// A number of the range, with a decimal point where it needs one.
-    pub(crate) fn decimal(self, range: RangeInclusive<f64>, allowed: Expected) -> Result<f64> {
-        let number = self.value.parse().ok().filter(|number| range.contains(number));
-        number.ok_or_else(|| self.refused(allowed))
-    }
-
-    /// Revolutions a minute, either way.
-    pub fn rpm(self) -> Result<f64> {
-        let most = f64::from(Self::MAX_RPM);
-        self.decimal(-most..=most, Expected::Speed { most: Self::MAX_RPM })
-    }
-
-    /// One of these words.
-    pub(crate) fn one_of<T: Copy>(self, words: &[(&'static str, T)]) -> Result<T> {
-        let found = words.iter().find(|(word, _)| *word == self.value);
-        let allowed = || Expected::Words(words.iter().map(|(word, _)| *word).collect());
-        found.map(|(_, meaning)| *meaning).ok_or_else(|| self.refused(allowed()))
-    }
-
-    pub(crate) fn switch(self) -> Result<bool> {
-        self.one_of(&[("on", true), ("off", false)])
+impl ConfigError {
+    /// `device` has no setting `key`; those that it has are `known`.
+    pub fn unknown(device: &'static str, key: &str, known: &[&str]) -> Self {
+        ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
 }
 
-/// Decimal, or hexadecimal after `0x`.
-pub(super) fn integer(text: &str) -> Option<u64> {
-    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u64::from_str_radix(digits, 16).ok(),
-        None => text.parse().ok(),
+impl From<Refused> for ConfigError {
+    fn from(Refused { key, value, allowed }: Refused) -> Self {
+        ConfigError::Value { key, value, allowed }
+    }
+}
+
+/// Reads the settings of `device`, already percent-decoded. Of a key given twice the last counts.
+///
+/// # Errors
+/// With a sentence that names the key and what is allowed.
+pub fn read<P: Parameters<Error = ConfigError>>(
+    device: &'static str,
+    pairs: &[(String, String)],
+) -> Result<P, ConfigError> {
+    let mut own = P::default();
+    for (key, value) in pairs {
+        if !own.set(key, value)? {
+            return Err(ConfigError::unknown(device, key, P::KEYS));
+        }
+    }
+    Ok(own)
+}
+
+/// Any number: where noise begins.
+pub const SEED: Checked<u64> = Checked(Expected::Whole, number);
+
+/// Revolutions a minute, either way.
+pub const RPM: Rpm = Rpm;
+
+/// See [`RPM`].
+#[derive(Clone, Copy, Debug)]
+pub struct Rpm;
+
+impl Rpm {
+    const MAX: u32 = 12_000;
+}
+
+impl Values for Rpm {
+    type Value = f64;
+
+    fn read(&self, text: &str) -> Option<f64> {
+        let most = f64::from(Self::MAX);
+        text.parse().ok().filter(|rpm| (-most..=most).contains(rpm))
+    }
+
+    fn allowed(&self) -> Expected {
+        Expected::Speed { most: Self::MAX }
+    }
+
+    fn print(&self, value: &f64) -> String {
+        value.to_string()
+    }
+
+    fn is_decimal(&self) -> bool {
+        true
     }
 }
 

@@ -95,8 +95,24 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
 /// # Errors
 /// [`UrlError::Unknown`].
 pub fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result<(), UrlError> {
-    match query.without(known).into_iter().next() {
+    match query.pairs().iter().find(|(name, _)| !known.contains(&name.as_str())) {
         None => Ok(()),
-        Some((name, _)) => Err(UrlError::Unknown { name, scheme: scheme.word(), known: known.join(", ") }),
+        Some((name, _)) => {
+            Err(UrlError::Unknown { name: name.clone(), scheme: scheme.word(), known: known.join(", ") })
+        }
     }
+}
+
+/// The settings of the virtual device that a link gives: its parameters but those that only the `line` has, and none where
+/// the link leads to a real one.
+///
+/// # Errors
+/// [`UrlError::Unknown`], for a parameter that the line to a real one has not.
+pub(crate) fn simulated(url: &LinkUrl, line: &[&str], device: &[&str]) -> Result<Vec<(String, String)>, UrlError> {
+    if url.scheme != Scheme::Sim {
+        check_parameters(&url.query, url.scheme, line)?;
+        return Ok(Vec::new());
+    }
+    let concerns_it = |name: &str| device.contains(&name) || !line.contains(&name);
+    Ok(url.query.pairs().iter().filter(|(name, _)| concerns_it(name)).cloned().collect())
 }

@@ -1,9 +1,10 @@
 //! Whose a module is, and how high it stands: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
 
 /// Layers and their floors.
-const LAYERS: [(&str, u8); 17] = [
+const LAYERS: [(&str, u8); 18] = [
     ("units", 1),
     ("bits", 1),
+    ("parameter", 1),
     ("expected", 1),
     ("analysis", 1),
     ("protocol", 2),

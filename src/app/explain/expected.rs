@@ -78,7 +78,6 @@ fn quantity(quantity: Quantity) -> Text {
         Quantity::Address => "quantity.address",
         Quantity::Port => "quantity.port",
         Quantity::Unit => "quantity.unit",
-        Quantity::Register => "quantity.register",
         Quantity::InputRegister => "quantity.input_register",
         Quantity::HoldingRegister => "quantity.holding_register",
         Quantity::Cycles => "quantity.cycles",
@@ -100,7 +99,7 @@ mod tests {
     use crate::app::explain::in_both_languages;
     use crate::expected::Limit;
 
-    const QUANTITIES: [Quantity; 26] = [
+    const QUANTITIES: [Quantity; 25] = [
         Quantity::Number,
         Quantity::Milliseconds,
         Quantity::Microseconds,
@@ -118,7 +117,6 @@ mod tests {
         Quantity::Address,
         Quantity::Port,
         Quantity::Unit,
-        Quantity::Register,
         Quantity::InputRegister,
         Quantity::HoldingRegister,
         Quantity::Cycles,

@@ -1,6 +1,6 @@
 //! The echo of a line on which an adapter gives back what the host sends.
 
-use crate::expected::Expected;
+use crate::parameter::Words;
 
 /// Whether the adapter gives our own bytes back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,17 +15,7 @@ pub enum Echo {
 
 impl Echo {
     /// The values of `echo=`.
-    pub(crate) const ALLOWED: Expected = Expected::words(&["auto", "on", "off"]);
-
-    /// A value of `echo=`.
-    pub(crate) fn read(text: &str) -> Option<Self> {
-        match text {
-            "auto" => Some(Echo::Unknown),
-            "on" => Some(Echo::On),
-            "off" => Some(Echo::Off),
-            _ => None,
-        }
-    }
+    pub(crate) const WORDS: Words<Echo> = Words(&[("auto", Echo::Unknown), ("on", Echo::On), ("off", Echo::Off)]);
 
     /// What has come behind the echo of `sent`; `None` while it may still be the echo.
     pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {

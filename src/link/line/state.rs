@@ -3,20 +3,14 @@
 use std::time::Duration;
 
 use super::{Echo, LineQuality};
-use crate::expected::{Expected, Limit, Quantity};
+use crate::parameter::Milliseconds;
 use crate::units::Moment;
 
 /// No wire is slower than this.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
-/// The values of `margin=`.
-pub(crate) const MARGIN_ALLOWED: Expected =
-    Expected::Range { quantity: Quantity::Milliseconds, low: Limit::whole(0), high: Limit::whole(2000) };
-
-/// A value of `margin=`.
-pub(crate) fn read_margin(text: &str) -> Option<Duration> {
-    text.parse().ok().filter(|ms| *ms <= 2000).map(Duration::from_millis)
-}
+/// How much later than the protocol's worst case a reply may come.
+pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_millis() as u64);
 
 /// What is known about a line, from one job to the next.
 #[derive(Clone, Debug)]

@@ -1,18 +1,27 @@
 //! The virtual encoder.
 
 use encoder_studio::cli::Simulated;
-use encoder_studio::expected::{Expected, Quantity};
-use encoder_studio::sim::{ByteDevice, ConfigError, Setting};
+use encoder_studio::expected::Quantity;
+use encoder_studio::parameter::{Maybe, Whole};
+use encoder_studio::parameters;
+use encoder_studio::sim::{ByteDevice, ConfigError, RPM, setting};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::protocol::{FIRST, POSITION, Request, SERIAL, TURN, Values, reply};
 
+parameters! {
+    /// What a virtual encoder shall be like.
+    struct Settings: ConfigError {
+        serial: u16 = 1001, "serial" => Whole(Quantity::Number, 0..=65535);
+        rpm: f64 = 0.0, "rpm" => RPM;
+        /// The address of a value that does not change any more.
+        stuck: Option<u8> = None, "stuck" => Maybe(Whole(Quantity::Address, 0..=255));
+    }
+}
+
 /// A Novo encoder whose shaft turns evenly. Its values are lost with it.
 pub(crate) struct Virtual {
-    serial: u16,
-    rpm: f64,
-    /// The address of a value that does not change any more.
-    stuck: Option<u8>,
+    settings: Settings,
     values: Values,
     asked: Vec<u8>,
     answers: Vec<u8>,
@@ -21,25 +30,15 @@ pub(crate) struct Virtual {
 impl Virtual {
     /// As the query of a link says.
     pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut own =
-            Virtual { serial: 1001, rpm: 0.0, stuck: None, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] };
-        for (key, value) in pairs {
-            let setting = Setting { key, value };
-            match key.as_str() {
-                "serial" => own.serial = setting.number(Expected::number(0, u16::MAX))?,
-                "rpm" => own.rpm = setting.rpm()?,
-                "stuck" => own.stuck = Some(setting.number(Expected::range(Quantity::Address, 0, u8::MAX))?),
-                _ => return Err(setting.unknown("a virtual Novo encoder", &["serial", "rpm", "stuck"])),
-            }
-        }
-        Ok(own)
+        let settings = setting::read("a virtual Novo encoder", pairs)?;
+        Ok(Virtual { settings, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] })
     }
     fn word(&self, now: Moment, address: u8) -> u16 {
         let [zero, ..] = self.values;
         match address {
-            SERIAL => self.serial,
+            SERIAL => self.settings.serial,
             POSITION => {
-                let steps = now.since_start().as_secs_f64() * self.rpm / 60.0 * f64::from(TURN);
+                let steps = now.since_start().as_secs_f64() * self.settings.rpm / 60.0 * f64::from(TURN);
                 (steps.floor() as i64 as u16).wrapping_sub(zero)
             }
             _ => self.values.get(usize::from(address.wrapping_sub(FIRST))).copied().unwrap_or(0),
@@ -56,7 +55,7 @@ impl ByteDevice for Virtual {
             Request::Read(address) => address,
             Request::Write(address, word) => {
                 let kept = self.values.get_mut(usize::from(address.wrapping_sub(FIRST)));
-                if let Some(value) = kept.filter(|_| self.stuck != Some(address)) {
+                if let Some(value) = kept.filter(|_| self.settings.stuck != Some(address)) {
                     *value = word;
                 }
                 address

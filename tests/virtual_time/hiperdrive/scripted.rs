@@ -413,7 +413,7 @@ fn a_connection_that_is_too_slow_is_closed_again() {
     // From 35 ms on a target gives up after four intervals, before that after eight.
     for (ms, multiplier) in [(34, 1), (35, 0)] {
         let mut desk = Desk::with([]);
-        desk.station.interval = Duration::from_millis(ms);
+        desk.station.link.interval = Duration::from_millis(ms);
         desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
         assert_eq!(desk.sent()[1][40 + 24], multiplier, "{ms} ms");
     }

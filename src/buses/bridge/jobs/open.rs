@@ -5,19 +5,25 @@ use std::time::Duration;
 
 use super::Open;
 use crate::buses::bridge::sim::{Adapter, Attachable};
-use crate::expected::Expected;
-use crate::link::line::{self, MARGIN_ALLOWED};
-use crate::link::{Clock, LinkUrl, Query, Scheme, UrlError};
+use crate::link::line::MARGIN;
+use crate::link::{Clock, LinkUrl, Scheme, UrlError};
+use crate::parameter::{Maybe, Parameters, Words};
+use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
-use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
+use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, simulated};
 
 /// What a link to the virtual adapter may say as it does for a session; there is no other here.
 const BRIDGE: &str = "bridge";
 /// What the serial port of an adapter is set to, which matters only behind a converter.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
-/// How much later a reply may come than the protocol says.
-const MARGIN: &str = "margin";
+
+parameters! {
+    struct LinkParameters: UrlError {
+        /// How much later a reply may come than the protocol says; `None`: as usual for the link.
+        margin: Option<Duration> = None, "margin" => Maybe(MARGIN);
+    }
+}
 
 /// How late the replies of an adapter may be, and what opens the wire to it, on whichever thread. These devices hang on a
 /// virtual one.
@@ -29,28 +35,19 @@ pub fn open_adapter(
     clock: Arc<dyn Clock>,
     devices: &[&dyn Attachable],
 ) -> Result<(Duration, Open), OpenError> {
-    let simulated = match url.scheme {
-        Scheme::Bridge => {
-            check_parameters(&url.query, url.scheme, &[MARGIN])?;
-            Vec::new()
-        }
-        Scheme::Sim => {
-            url.query.read(BRIDGE, Expected::words(&["on"]), |text| (text == "on").then_some(()))?;
-            url.query.without(&[BRIDGE, MARGIN])
-        }
-        Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip | Scheme::Replay => {
-            return Err(leads_elsewhere(url.scheme, "sim: and bridge:"));
-        }
-    };
-    let adapter = Adapter::from_pairs(&simulated, devices)?;
-    let late = read_margin(&url.query)?.unwrap_or(margin(url.scheme));
+    if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge) {
+        return Err(leads_elsewhere(url.scheme, "sim: and bridge:"));
+    }
+    let mut line = LinkParameters::KEYS.to_vec();
+    if url.scheme == Scheme::Sim {
+        url.query.read(BRIDGE, &Words(&[("on", ())]))?;
+        line.push(BRIDGE);
+    }
+    let adapter = Adapter::from_pairs(&simulated(url, &line, &[])?, devices)?;
+    let late = LinkParameters::read(url.query.pairs())?.margin.unwrap_or(margin(url.scheme));
     let url = url.clone();
     let open = move || open_bytes(&url, FORMAT, &clock, || Ok(inside(adapter, &clock)));
     Ok((late, Box::new(open)))
-}
-
-fn read_margin(query: &Query) -> Result<Option<Duration>, UrlError> {
-    query.read(MARGIN, MARGIN_ALLOWED, line::read_margin)
 }
 
 #[cfg(test)]

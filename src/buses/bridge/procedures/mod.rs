@@ -15,7 +15,9 @@ use crate::bits::MaskedBytes;
 use crate::buses::bridge::protocol::{
     BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
+use crate::expected::Quantity;
 use crate::link::line::{Line, LineError, LineState};
+use crate::parameter::Whole;
 use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;
@@ -24,6 +26,9 @@ pub use tap::{Streaming, Tap, TapError, Wanted};
 
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
+
+/// Clocks that can be asked for; an adapter takes the nearest that it has.
+pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000);
 
 /// What goes on for so long behind the time of a reply, be it noise or a stream, brings none.
 const ENDLESS: Duration = Duration::from_secs(1);

@@ -1,6 +1,6 @@
 //! The encoder's supply, where an adapter switches it: how it was found when the session began, and how it is left at its end.
 
-use crate::expected::Expected;
+use crate::parameter::Words;
 
 /// How the supply is left at the end of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,22 +15,11 @@ pub enum SupplyAfter {
 }
 
 impl SupplyAfter {
-    /// The link parameter that chooses it.
-    pub const PARAMETER: &str = "leave-supply";
     /// The parameter of a link whose session leaves the supply on, with its value.
-    pub const LEFT_ON: (&str, &str) = (Self::PARAMETER, "on");
+    pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
     /// What the parameter takes.
-    pub const ALLOWED: Expected = Expected::words(&["as-found", "on", "off"]);
-
-    /// By its word in a link.
-    pub fn read(word: &str) -> Option<Self> {
-        match word {
-            "as-found" => Some(SupplyAfter::AsFound),
-            "on" => Some(SupplyAfter::On),
-            "off" => Some(SupplyAfter::Off),
-            _ => None,
-        }
-    }
+    pub const WORDS: Words<SupplyAfter> =
+        Words(&[("as-found", SupplyAfter::AsFound), ("on", SupplyAfter::On), ("off", SupplyAfter::Off)]);
 }
 
 /// What is known of an adapter's supply.
@@ -59,6 +48,7 @@ impl Power {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameter::Values;
 
     /// Issue 22.16: off, unless it was on before or something else was chosen.
     #[test]
@@ -79,7 +69,7 @@ mod tests {
             assert_eq!(Power { after, found, given }.goes_off(), off, "{after:?} {found:?} {given}");
         }
         for (word, after) in [("as-found", Some(AsFound)), ("on", Some(On)), ("off", Some(Off)), ("yes", None)] {
-            assert_eq!(SupplyAfter::read(word), after);
+            assert_eq!(SupplyAfter::WORDS.read(word), after);
         }
     }
 }

@@ -10,7 +10,7 @@ use fastrand::Rng;
 use super::attached::{Attached, BissDevice};
 use super::bus::Bus;
 use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, actual_clock};
-use super::config::Config;
+use super::config::{Config, Shaft, Shared};
 use super::stream::{Analog, Clocked, Kind};
 use super::uart::Uart;
 use crate::buses::bridge::protocol::{
@@ -66,17 +66,17 @@ impl Adapter {
     const SUPPLY_MILLIWATT: u32 = 300;
 
     /// The virtual adapter as `config` wants it, with these devices; of several at one connector the last.
-    pub(super) fn new(config: &Config, attached: Vec<Attached>) -> Self {
+    pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<Attached>) -> Self {
         let mut adapter = Adapter {
-            bus: Bus::new(config),
-            faults: config.faults.clone(),
-            rng: Rng::with_seed(config.seed),
+            bus: Bus::new(config, shared, shaft),
+            faults: shared.faults.clone(),
+            rng: Rng::with_seed(shared.seed),
             switched_supply: config.switched_supply,
             version: config.version,
             receiver: Receiver::default(),
             biss: None,
             ssi: None,
-            analog: Settings { seed: config.seed, ..Settings::default() },
+            analog: Settings { seed: shared.seed, ..Settings::default() },
             clocked: None,
             sampled: None,
             uart: None,

@@ -4,7 +4,7 @@
 use fastrand::Rng;
 
 use super::attached::{BissDevice, SsiDevice};
-use super::config::{Config, Line};
+use super::config::{self, Config, Line, Shared};
 use super::shaft::Shaft;
 use crate::buses::bridge::protocol::BissStatus;
 use crate::sim::Motor;
@@ -26,15 +26,15 @@ pub(super) struct Bus {
 
 impl Bus {
     /// Nothing hangs on it yet.
-    pub(super) fn new(config: &Config) -> Self {
+    pub(super) fn new(config: &Config, shared: &Shared, shaft: &config::Shaft) -> Self {
         Bus {
             biss: None,
             ssi: None,
-            shaft: Shaft::turning(config.rpm),
+            shaft: Shaft::turning(shaft.rpm),
             is_supplied: true,
             line: config.line,
             noise: config.noise,
-            rng: Rng::with_seed(config.seed),
+            rng: Rng::with_seed(shared.seed),
         }
     }
 

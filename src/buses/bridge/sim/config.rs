@@ -1,22 +1,40 @@
 //! The settings of a virtual adapter, as the query of a `sim:` link gives them: its own. What hangs on it has others.
 
 use crate::buses::bridge::protocol::VERSION;
-use crate::expected::{Expected, Quantity};
-use crate::sim::setting::Setting;
-use crate::sim::{ConfigError, Faults};
+use crate::expected::Quantity;
+use crate::parameter::{Decimal, Whole, Words};
+use crate::parameters;
+use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED};
 
-/// What a virtual adapter shall be like. The default has nothing wrong with it, and the encoder's supply comes from
-/// elsewhere.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Config {
-    pub(super) seed: u64,
-    pub(super) faults: Faults,
-    pub(super) line: Line,
-    pub(super) noise: f64,
-    pub(super) switched_supply: bool,
-    pub(super) version: u8,
-    /// Speed of the shaft at the start, where no device on it has this setting.
-    pub(super) rpm: f64,
+parameters! {
+    /// What a virtual adapter shall be like. The default has nothing wrong with it, and the encoder's supply comes from
+    /// elsewhere.
+    pub(super) struct Config: ConfigError {
+        /// The wires to the encoder.
+        pub(super) line: Line = Line::Good,
+            "line" => Words(&[("good", Line::Good), ("open", Line::Open), ("low", Line::Low), ("high", Line::High)]);
+        /// The share of frames with a bit inverted.
+        pub(super) noise: f64 = 0.0, "noise" => Decimal(Quantity::DamagedFrames, 0.0..=1.0);
+        /// The adapter switches the encoder's supply.
+        pub(super) switched_supply: bool = false, "supply" => Words(&[("external", false), ("switched", true)]);
+        /// Of the bridge protocol, as the adapter says.
+        pub(super) version: u8 = VERSION, "version" => Whole(Quantity::Version, 0..=255);
+    }
+}
+
+parameters! {
+    /// What a device that hangs on it may take as well: where noise begins, and faults of the line and the device.
+    pub(super) struct Shared: ConfigError {
+        pub(super) seed: u64 = 0, "seed" => SEED;
+        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS;
+    }
+}
+
+parameters! {
+    /// The shaft, where no device on it has this setting.
+    pub(super) struct Shaft: ConfigError {
+        pub(super) rpm: f64 = 0.0, "rpm" => RPM;
+    }
 }
 
 /// The wires between adapter and encoder.
@@ -31,78 +49,24 @@ pub(super) enum Line {
     High,
 }
 
-impl Default for Config {
-    fn default() -> Self {
-        Config {
-            seed: 0,
-            faults: Faults::default(),
-            line: Line::Good,
-            noise: 0.0,
-            switched_supply: false,
-            version: VERSION,
-            rpm: 0.0,
-        }
-    }
-}
-
-impl Config {
-    /// The keys that are the adapter's alone.
-    ///
-    /// | key | value |
-    /// |---|---|
-    /// | `line` | the wires to the encoder: `good`, `open`, `low` or `high` (stuck) |
-    /// | `noise` | share of frames with a bit inverted, 0…1 |
-    /// | `supply` | the encoder's: `external`, or `switched` by the adapter |
-    /// | `version` | of the bridge protocol, as the adapter says |
-    pub(super) const KEYS: [&str; 4] = ["line", "noise", "supply", "version"];
-    /// What a device that hangs on it may take as well: where noise begins, and faults of the line and the device.
-    pub(super) const SHARED: [&str; 2] = ["seed", "fault"];
-
-    /// Revolutions a minute of the shaft: the adapter's where no device on it has this key.
-    pub(super) const RPM: &str = "rpm";
-
-    /// Takes a key with its value; false where it is none of the adapter's.
-    pub(super) fn set(&mut self, setting: Setting) -> Result<bool, ConfigError> {
-        match setting.key {
-            "seed" => self.seed = setting.number(Expected::Whole)?,
-            "fault" => self.faults = setting.value.parse()?,
-            "line" => {
-                let lines = [("good", Line::Good), ("open", Line::Open), ("low", Line::Low), ("high", Line::High)];
-                self.line = setting.one_of(&lines)?;
-            }
-            Self::RPM => self.rpm = setting.rpm()?,
-            "noise" => self.noise = setting.decimal(0.0..=1.0, Expected::range(Quantity::DamagedFrames, 0, 1))?,
-            "supply" => {
-                let supplies = [("external", false), ("switched", true)];
-                self.switched_supply = setting.one_of(&supplies)?;
-            }
-            "version" => self.version = setting.number(Expected::range(Quantity::Version, 0, 255))?,
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameter::Parameters;
     use crate::sim::setting::pairs;
 
     fn read(query: &str) -> Result<Config, ConfigError> {
-        let mut config = Config::default();
-        for (key, value) in &pairs(query) {
-            assert!(config.set(Setting { key, value })?, "{key}");
-        }
-        Ok(config)
+        assert!(pairs(query).iter().all(|(key, _)| Config::KEYS.contains(&key.as_str())), "{query}");
+        Config::read(&pairs(query))
     }
 
     #[test]
     fn every_key_is_read() {
-        let config = read("line=low&noise=0.5&supply=switched&version=2&seed=3&fault=drop:0.5&rpm=-6").unwrap();
+        let config = read("line=low&noise=0.5&supply=switched&version=2").unwrap();
+        assert_eq!(config, Config { line: Line::Low, noise: 0.5, switched_supply: true, version: 2 });
         let faults = "drop:0.5".parse().unwrap();
-        let expected =
-            Config { seed: 3, faults, line: Line::Low, noise: 0.5, switched_supply: true, version: 2, rpm: -6.0 };
-        assert_eq!(config, expected);
+        assert_eq!(Shared::read(&pairs("seed=3&fault=drop:0.5")), Ok(Shared { seed: 3, faults }));
+        assert_eq!(Shaft::read(&pairs("rpm=-6")), Ok(Shaft { rpm: -6.0 }));
     }
 
     #[test]

@@ -3,13 +3,12 @@
 use std::sync::Arc;
 
 use super::Biss;
-use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim::{self as bridge, Adapter};
 use crate::devices::biss::procedures::{Echo, Station, Way};
 use crate::devices::biss::sim::{Config, Port};
-use crate::expected::Expected;
 use crate::kinds::at_adapter;
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
+use crate::parameter::Words;
 use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
@@ -17,10 +16,6 @@ use crate::worker::{OpenError, Session};
 
 /// Whether an adapter is in between, where the kind of link does not tell.
 const BRIDGE: &str = "bridge";
-/// Link parameters that describe the line and nothing of the virtual device; `echo` and `order` describe both.
-const LINE_ONLY: [&str; 11] =
-    [BRIDGE, "baud", "parity", "timeout", "margin", "clock", "voltage", SupplyAfter::PARAMETER, "mt", "st", "crc"];
-
 /// Everything about a link to a BiSS encoder that can be told without opening it.
 ///
 /// # Errors
@@ -54,7 +49,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     if is_virtual {
         check_virtual(&url.query, way)?;
     } else {
-        let mut known = way.parameters().to_vec();
+        let mut known = way.parameters();
         known.extend((url.scheme == Scheme::Replay).then_some(BRIDGE));
         check_parameters(&url.query, url.scheme, &known)?;
     }
@@ -64,29 +59,26 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     }
     // Echo and order are the virtual encoder's: they are learned as with a real one.
     (station.line.echo, station.order) = (Echo::Unknown, None);
-    Ok((station, Simulated::new(way, &url.query.without(&LINE_ONLY))?))
+    let line = [Way::ConfigPin, Way::Adapter].map(Way::parameters).concat();
+    let of_the_encoder = |name: &str| name != BRIDGE && (Config::KEYS.contains(&name) || !line.contains(&name));
+    let settings: Vec<_> = url.query.pairs().iter().filter(|(name, _)| of_the_encoder(name)).cloned().collect();
+    Ok((station, Simulated::new(way, &settings)?))
 }
 
 fn way(url: &LinkUrl) -> Result<Way, OpenError> {
-    let by_word = |text: &str| match text {
-        "on" => Some(Way::Adapter),
-        "off" => Some(Way::ConfigPin),
-        _ => None,
-    };
+    const WAYS: Words<Way> = Words(&[("on", Way::Adapter), ("off", Way::ConfigPin)]);
     match url.scheme {
         Scheme::Bridge => Ok(Way::Adapter),
         Scheme::Serial | Scheme::Tcp => Ok(Way::ConfigPin),
         Scheme::Modbus | Scheme::Enip => Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
-        Scheme::Sim | Scheme::Replay => {
-            Ok(url.query.read(BRIDGE, Expected::words(&["on", "off"]), by_word)?.unwrap_or(Way::ConfigPin))
-        }
+        Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, &WAYS)?.unwrap_or(Way::ConfigPin)),
     }
 }
 
 /// Refuses what neither the line nor the virtual device has, and tells what needs an adapter in between.
 fn check_virtual(query: &Query, way: Way) -> Result<(), UrlError> {
     let own = |way: Way| {
-        let line = way.parameters().iter().copied().filter(|name| !Config::KEYS.contains(name));
+        let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
         let device = if way == Way::Adapter { bridge::keys(at_adapter()) } else { Config::KEYS.to_vec() };
         [BRIDGE].into_iter().chain(line).chain(device).collect::<Vec<_>>()
     };

@@ -31,5 +31,5 @@ pub use master::Master;
 pub use memory::{Place, Unsaved, ensure_standstill, profile_of, read_area, read_area_surely, read_registers, save};
 pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched};
 pub use registers::Registers;
-pub use station::{PARAMETERS, Station, Supply, Way};
+pub use station::{BusParameters, FrameParameters, LineParameters, PinParameters, Station, Supply, Way};
 pub use survey::{Bits, Status, Survey, read_status, survey};

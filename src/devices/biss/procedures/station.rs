@@ -9,29 +9,67 @@ use super::identify::FrameSource;
 use crate::analysis::Time;
 use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::flow::Flow;
-use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
+use crate::buses::bridge::procedures::{AdapterState, CLOCK, SupplyAfter};
 use crate::buses::ubicom::protocol::{FORMAT, REPLY_TIME_OUT};
 use crate::devices::biss::protocol::{Access, Crc, Description, Firmware, Layout, RegisterAddress};
-use crate::expected::{Expected, Limit, Quantity};
-use crate::link::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
+use crate::expected::{Expected, Quantity};
+use crate::link::line::{Echo, LineState, MARGIN};
 use crate::link::{Query, UrlError};
+use crate::parameter::{Checked, Maybe, Milliseconds, Millivolts, Parameters, Refused, Whole, Words};
+use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
-/// Link parameters that describe the line and the encoder.
-pub const PARAMETERS: [&str; 12] = [
-    "baud",
-    "parity",
-    "order",
-    "echo",
-    "timeout",
-    "margin",
-    "clock",
-    "voltage",
-    SupplyAfter::PARAMETER,
-    "mt",
-    "st",
-    "crc",
-];
+parameters! {
+    /// The configuration pin, as a link says.
+    pub struct PinParameters: UrlError {
+        /// Speed: what serial ports can be set to; the port itself may have fewer.
+        pub baud: Baud = FORMAT.baud, "baud" => Checked(Expected::BitRate { low: 300, high: 4_000_000 }, read_baud),
+            "settings_card.baud" like "115200";
+        /// Parity.
+        pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
+        /// Which byte of a register's number comes first; `None`: it is probed.
+        pub order: Option<ByteOrder> = None, "order" => Words(&[
+            ("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst)),
+        ]);
+        /// Whether the line echoes.
+        pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
+        /// So long a reply may take, beside the time of its bytes and the margin.
+        pub timeout: Duration = REPLY_TIME_OUT, "timeout" => Milliseconds(1..=10_000);
+    }
+}
+
+parameters! {
+    /// How late a reply may come, as a link says.
+    pub struct LineParameters: UrlError {
+        /// How much later than usual a reply may come; `None`: as usual for the link.
+        pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
+    }
+}
+
+parameters! {
+    /// The bus behind an adapter, as a link says.
+    pub struct BusParameters: UrlError {
+        /// The clock of BiSS: slow enough for long cables where none is wished.
+        pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
+        /// What the adapter gives the encoder; `None`: nothing.
+        pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE));
+        /// How the supply is left.
+        pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
+    }
+}
+
+parameters! {
+    /// The frame of an encoder that does not tell it, as a link says.
+    pub struct FrameParameters: UrlError {
+        /// Bits of turns.
+        pub multiturn: Option<u8> = None, "mt" => Maybe(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
+        /// Bits of steps.
+        pub singleturn: Option<u8> = None, "st" => Maybe(Whole(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
+        /// The checksum; `Some(None)`: the frames have none.
+        pub crc: Option<Option<Crc>> = None,
+            "crc" => Maybe(Checked(Expected::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
+    }
+}
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,11 +81,11 @@ pub enum Way {
 }
 
 impl Way {
-    /// Those of [`PARAMETERS`] that mean something over it.
-    pub const fn parameters(self) -> &'static [&'static str] {
+    /// The link parameters that mean something over it.
+    pub fn parameters(self) -> Vec<&'static str> {
         match self {
-            Way::ConfigPin => &["baud", "parity", "order", "echo", "timeout", "margin", "mt", "st", "crc"],
-            Way::Adapter => &["margin", "clock", "voltage", SupplyAfter::PARAMETER, "mt", "st", "crc"],
+            Way::ConfigPin => [PinParameters::KEYS, LineParameters::KEYS, FrameParameters::KEYS].concat(),
+            Way::Adapter => [LineParameters::KEYS, BusParameters::KEYS, FrameParameters::KEYS].concat(),
         }
     }
 }
@@ -138,9 +176,6 @@ pub(super) struct Bus {
 }
 
 impl Station {
-    /// The clock of BiSS where none is wished: slow enough for long cables.
-    pub const CLOCK_HZ: u32 = 1_000_000;
-
     /// A line that nobody has used.
     pub fn new(way: Way, margin: Duration) -> Self {
         Station {
@@ -149,7 +184,7 @@ impl Station {
             line: LineState::new(margin),
             order: None,
             timeout: REPLY_TIME_OUT,
-            clock_hz: Self::CLOCK_HZ,
+            clock_hz: BusParameters::default().clock_hz,
             actual_clock_hz: None,
             supply: None,
             adapter: AdapterState::default(),
@@ -177,39 +212,15 @@ impl Station {
     /// # Errors
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, way: Way, margin: Duration) -> Result<Self, UrlError> {
-        let mut station = Station::new(way, margin);
-        if let Some(baud) = query.read("baud", Expected::BitRate { low: 300, high: 4_000_000 }, read_baud)? {
-            station.format.baud = baud;
-        }
-        if let Some(parity) = query.read("parity", Expected::words(&Parity::WORDS), Parity::from_word)? {
-            station.format.parity = parity;
-        }
-        station.order =
-            query.read("order", Expected::words(&["auto", "low-first", "high-first"]), read_order)?.flatten();
-        if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
-            station.line.echo = echo;
-        }
-        if let Some(timeout) =
-            query.read("timeout", Expected::range(Quantity::Milliseconds, 1, 10_000), read_timeout)?
-        {
-            station.timeout = timeout;
-        }
-        if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
-            station.line.margin = margin;
-        }
-        if let Some(clock) = query.read("clock", Expected::range(Quantity::Hertz, 80_000, 10_000_000), read_clock)? {
-            station.clock_hz = clock;
-        }
-        let millivolt = query.read(
-            "voltage",
-            Expected::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500)),
-            read_voltage,
-        )?;
-        station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
-        station.given = read_frame(query)?;
-        if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
-            station.adapter.leave_supply(after);
-        }
+        let pairs = query.pairs();
+        let (pin, bus) = (PinParameters::read(pairs)?, BusParameters::read(pairs)?);
+        let mut station = Station::new(way, LineParameters::read(pairs)?.margin.unwrap_or(margin));
+        station.format = CharacterFormat { baud: pin.baud, parity: pin.parity };
+        (station.order, station.line.echo, station.timeout) = (pin.order, pin.echo, pin.timeout);
+        station.clock_hz = bus.clock_hz;
+        station.supply = bus.millivolt.map(|millivolt| Supply { millivolt, measured: None });
+        station.adapter.leave_supply(bus.after);
+        station.given = FrameParameters::read(pairs)?.layout(query)?;
         Ok(station)
     }
 
@@ -277,25 +288,19 @@ impl fmt::Display for Station {
     }
 }
 
-/// The frame as a link gives it: bits of turns and steps, and the checksum, which is the usual one where none is given.
-fn read_frame(query: &Query) -> Result<Option<Layout>, UrlError> {
-    let bits = |least: u8| move |text: &str| text.parse().ok().filter(|bits| (least..=32).contains(bits));
-    let multiturn: Option<u8> = query.read("mt", Expected::range(Quantity::Bits, 0, 32), bits(0))?;
-    let singleturn: Option<u8> = query.read("st", Expected::range(Quantity::Bits, 1, 32), bits(1))?;
-    let crc = query.read("crc", Expected::Polynomial, read_crc)?;
-    let alone = |name: &str, allowed: Expected| UrlError::Value {
-        name: name.to_owned(),
-        value: query.get(name).unwrap_or_default().to_owned(),
-        allowed,
-    };
-    let Some(singleturn) = singleturn else {
-        let other = ["mt", "crc"].into_iter().find(|name| query.get(name).is_some());
-        return other.map_or(Ok(None), |name| Err(alone(name, Expected::OnlyWith("st"))));
-    };
-    let crc = crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
-    // 32 and 32 bits leave no room for flags and checksum.
-    let layout = Layout::new(multiturn.unwrap_or(0), singleturn, true, true, crc);
-    layout.map(Some).map_err(|_| alone("st", Expected::ShortFrame))
+impl FrameParameters {
+    /// The frame; the checksum is the usual one where none is given.
+    fn layout(self, query: &Query) -> Result<Option<Layout>, Refused> {
+        let alone = |name: &str, allowed| Refused::new(name, query.get(name).unwrap_or_default(), allowed);
+        let Some(singleturn) = self.singleturn else {
+            let other = ["mt", "crc"].into_iter().find(|name| query.get(name).is_some());
+            return other.map_or(Ok(None), |name| Err(alone(name, Expected::OnlyWith("st"))));
+        };
+        let crc = self.crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
+        // 32 and 32 bits leave no room for flags and checksum.
+        let layout = Layout::new(self.multiturn.unwrap_or(0), singleturn, true, true, crc);
+        layout.map(Some).map_err(|_| alone("st", Expected::ShortFrame))
+    }
 }
 
 /// `Some(None)`: the frames have none.
@@ -307,34 +312,8 @@ fn read_crc(text: &str) -> Option<Option<Crc>> {
     Crc::new(polynomial, 0, true).ok().map(Some)
 }
 
-/// `Some(None)` is to be probed.
-fn read_order(text: &str) -> Option<Option<ByteOrder>> {
-    match text {
-        "auto" => Some(None),
-        "low-first" => Some(Some(ByteOrder::LowFirst)),
-        "high-first" => Some(Some(ByteOrder::HighFirst)),
-        _ => None,
-    }
-}
-
-/// What serial ports can be set to; the port itself may have fewer.
 fn read_baud(text: &str) -> Option<Baud> {
     text.parse().ok().filter(|baud| (300..=4_000_000).contains(baud)).and_then(Baud::new)
-}
-
-fn read_timeout(text: &str) -> Option<Duration> {
-    text.parse().ok().filter(|ms| (1..=10_000).contains(ms)).map(Duration::from_millis)
-}
-
-fn read_clock(text: &str) -> Option<u32> {
-    text.parse().ok().filter(|hz| (80_000..=10_000_000).contains(hz))
-}
-
-/// Volts as millivolts.
-fn read_voltage(text: &str) -> Option<u16> {
-    let volts: f64 = text.parse().ok().filter(|volts: &f64| (0.0..=60.0).contains(volts))?;
-    // At most 60 000.
-    Some((volts * 1000.0).round() as u16).filter(|millivolt| Supply::RANGE.contains(millivolt))
 }
 
 #[cfg(test)]

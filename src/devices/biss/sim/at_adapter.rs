@@ -11,7 +11,7 @@ pub struct AtAdapter;
 
 impl Attachable for AtAdapter {
     fn keys(&self) -> &'static [&'static str] {
-        &Config::KEYS
+        Config::KEYS
     }
 
     fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {

@@ -1,100 +1,54 @@
 //! The settings of a virtual encoder, as the query of a `sim:` link gives them: `seed=7&fault=drop:0.01&rpm=-500`. It
 //! opens nothing.
 
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use super::wiegand::Pulses;
 use crate::bits::ByteOrder;
 use crate::devices::biss::protocol::{Filter, Firmware};
 use crate::expected::{Expected, Limit, Quantity};
-use crate::sim::setting::Setting;
-use crate::sim::{ConfigError, Faults};
+use crate::parameter::{Checked, SWITCH, Whole, Words, number};
+use crate::parameters;
+use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, setting};
 
-/// What a virtual encoder shall be like. The default is one as delivered, with the newest firmware known, at rest,
-/// without faults.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Config {
-    pub(super) seed: u64,
-    pub(super) faults: Faults,
-    pub(super) firmware: Firmware,
-    pub(super) serial_number: u32,
-    pub(super) rpm: f64,
-    pub(super) reverses: bool,
-    pub(super) waver: f64,
-    pub(super) position: u64,
-    pub(super) temperature: i16,
-    pub(super) errors: u8,
-    pub(super) filter: Filter,
-    pub(super) cycles: u32,
-    pub(super) pulses: Pulses,
-    pub(super) calibration_time: Duration,
-    pub(super) silent_calibration: bool,
-    pub(super) keeps_status: bool,
-    pub(super) echo: bool,
-    pub(super) order: ByteOrder,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Config {
-            seed: 0,
-            faults: Faults::default(),
-            firmware: Firmware::new(1, 6, 0),
-            serial_number: 0x0012_D687,
-            rpm: 0.0,
-            reverses: false,
-            waver: 0.5,
-            position: 0x1234 << 17 | 0x18000,
-            temperature: 30,
-            errors: 0,
-            filter: Filter::Balanced,
-            cycles: 3,
-            pulses: Pulses { average: 63, lowest: 58 },
-            calibration_time: Duration::from_secs(5),
-            silent_calibration: true,
-            keeps_status: false,
-            echo: false,
-            order: ByteOrder::LowFirst,
-        }
+parameters! {
+    /// What a virtual encoder shall be like. The default is one as delivered, with the newest firmware known, at rest,
+    /// without faults.
+    pub struct Config: ConfigError {
+        pub(super) seed: u64 = 0, "seed" => SEED;
+        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
+        pub(super) firmware: Firmware = Firmware::new(1, 6, 0), "firmware" => Checked(Expected::Release, firmware);
+        pub(super) serial_number: u32 = 0x0012_D687, "serial" => Checked(Expected::Number32, number::<u32>);
+        pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
+        pub(super) reverses: bool = false, "motor" => Words(&[("steady", false), ("reverse", true)]);
+        pub(super) waver: f64 = 0.5, "waver" => Checked(Expected::Revolutions { most: 1000 }, |text| within(text, 0.0..=1000.0));
+        pub(super) position: u64 = 0x1234 << 17 | 0x18000, "position" => Whole(Quantity::Position, 0..=(1 << 33) - 1);
+        pub(super) temperature: i16 = 30, "temperature" => Whole(Quantity::WholeCelsius, -50..=205);
+        pub(super) errors: u8 = 0, "errors" => Checked(Expected::ErrorRegister, number::<u8>);
+        pub(super) filter: Filter = Filter::Balanced,
+            "filter" => Words(&[("balanced", Filter::Balanced), ("dynamic", Filter::Dynamic)]);
+        pub(super) cycles: u32 = 3, "cycles" => Checked(Expected::WriteCycles, number::<u32>);
+        pub(super) pulses: Pulses = Pulses { average: 63, lowest: 58 },
+            "pulses" => Checked(Expected::Pulses, pulses);
+        pub(super) calibration_time: Duration = Duration::from_secs(5),
+            "calibration" => Checked(Expected::Seconds { low: Limit::thousandths(100), high: Limit::whole(60) }, |text| within(text, 0.1..=60.0).map(Duration::from_secs_f64));
+        pub(super) silent_calibration: bool = true, "calibration-silent" => SWITCH;
+        pub(super) keeps_status: bool = false, "calibration-status" => Words(&[("fresh", false), ("kept", true)]);
+        pub(super) echo: bool = false, "echo" => SWITCH;
+        pub(super) order: ByteOrder = ByteOrder::LowFirst,
+            "order" => Words(&[("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)]);
     }
 }
 
 impl Config {
-    /// The keys that [`from_pairs`](Self::from_pairs) takes.
-    pub const KEYS: [&str; 18] = [
-        "seed",
-        "fault",
-        "firmware",
-        "serial",
-        "rpm",
-        "motor",
-        "waver",
-        "position",
-        "temperature",
-        "errors",
-        "filter",
-        "cycles",
-        "pulses",
-        "calibration",
-        "calibration-silent",
-        "calibration-status",
-        "echo",
-        "order",
-    ];
-
-    const POSITIONS: u64 = 1 << 33;
-
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut config = Config::default();
-        for (key, value) in pairs {
-            config.set(key, value)?;
-        }
-        Ok(config)
+        setting::read("a virtual encoder", pairs)
     }
 
     /// The faults of its line and its flash.
@@ -111,54 +65,10 @@ impl Config {
     pub const fn rpm(&self) -> f64 {
         self.rpm
     }
+}
 
-    fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
-        let setting = Setting { key, value };
-        let refuse = |allowed: Expected| setting.refused(allowed);
-        match key {
-            "seed" => self.seed = setting.number(Expected::Whole)?,
-            "fault" => self.faults = value.parse()?,
-            "firmware" => self.firmware = firmware(value).ok_or_else(|| refuse(Expected::Release))?,
-            "serial" => self.serial_number = setting.number(Expected::Number32)?,
-            "rpm" => self.rpm = setting.rpm()?,
-            "motor" => {
-                self.reverses = setting.one_of(&[("steady", false), ("reverse", true)])?;
-            }
-            "waver" => self.waver = setting.decimal(0.0..=1000.0, Expected::Revolutions { most: 1000 })?,
-            "position" => {
-                self.position =
-                    setting.within(..Self::POSITIONS, Expected::range(Quantity::Position, 0, Self::POSITIONS - 1))?
-            }
-            "temperature" => {
-                self.temperature = setting.signed(-50..=205, Expected::range(Quantity::WholeCelsius, -50, 205))?;
-            }
-            "errors" => self.errors = setting.number(Expected::ErrorRegister)?,
-            "filter" => {
-                let filters = [("balanced", Filter::Balanced), ("dynamic", Filter::Dynamic)];
-                self.filter = setting.one_of(&filters)?;
-            }
-            "cycles" => self.cycles = setting.number(Expected::WriteCycles)?,
-            "pulses" => {
-                self.pulses = pulses(value).ok_or_else(|| refuse(Expected::Pulses))?;
-            }
-            "calibration" => {
-                self.calibration_time = Duration::from_secs_f64(
-                    setting.decimal(0.1..=60.0, Expected::Seconds { low: Limit::thousandths(100), high: 60.into() })?,
-                );
-            }
-            "calibration-silent" => self.silent_calibration = setting.switch()?,
-            "calibration-status" => {
-                self.keeps_status = setting.one_of(&[("fresh", false), ("kept", true)])?;
-            }
-            "echo" => self.echo = setting.switch()?,
-            "order" => {
-                let orders = [("low-first", ByteOrder::LowFirst), ("high-first", ByteOrder::HighFirst)];
-                self.order = setting.one_of(&orders)?;
-            }
-            _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
-        }
-        Ok(())
-    }
+fn within(text: &str, range: RangeInclusive<f64>) -> Option<f64> {
+    text.parse().ok().filter(|number| range.contains(number))
 }
 
 fn firmware(text: &str) -> Option<Firmware> {

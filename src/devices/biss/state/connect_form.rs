@@ -9,10 +9,11 @@ use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol::FORMAT;
 use crate::devices::biss::jobs::check;
-use crate::devices::biss::procedures::{Echo, PARAMETERS, Way};
+use crate::devices::biss::procedures::{Echo, Way};
 use crate::devices::biss::sim;
 use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
+use crate::parameter::Values;
 use crate::units::Parity;
 
 /// How the encoder is reached.
@@ -177,7 +178,7 @@ impl BissForm {
                 return self.behind_adapter;
             }
             "parity" => {
-                let Some(parity) = Parity::from_word(value) else { return false };
+                let Some(parity) = Parity::WORDS.read(value) else { return false };
                 self.parity = parity;
                 return true;
             }
@@ -268,10 +269,11 @@ impl BissForm {
     /// What only another way has is not taken along; what nothing has is, so that it is refused by its name.
     fn belongs(&self, name: &str) -> bool {
         let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
+        let own = |way: Way| way.parameters().contains(&name);
         let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(at_adapter()).contains(&name));
         let of_the_virtual = self.way == BissWay::Virtual && (encoder || (adapter && self.behind_adapter));
-        let elsewhere = PARAMETERS.contains(&name) || encoder || adapter || name == BRIDGE.0;
-        way.parameters().contains(&name) || of_the_virtual || !elsewhere
+        let elsewhere = own(Way::ConfigPin) || own(Way::Adapter) || encoder || adapter || name == BRIDGE.0;
+        own(way) || of_the_virtual || !elsewhere
     }
 }
 

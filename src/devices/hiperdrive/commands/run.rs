@@ -52,7 +52,7 @@ impl Runs for Hiperdrive {
 
     fn reply_pace(session: &Session<Self>) -> Option<Pace> {
         let station = session.station();
-        Some(Pace { replies: station.replies(), timeout: station.timeout, longest: Station::LONGEST_TIMEOUT })
+        Some(Pace { replies: station.replies(), timeout: station.link.timeout, longest: Station::LONGEST_TIMEOUT })
     }
 
     /// What moves is told to stop, and that is waited for; before the program ends, that the drives are off and let go.

@@ -5,17 +5,14 @@ use std::sync::{Arc, Mutex};
 
 use super::{Hiperdrive, Way};
 use crate::bits::MaskedBytes;
-use crate::devices::hiperdrive::procedures::{PARAMETERS, Station};
+use crate::devices::hiperdrive::procedures::{LinkParameters, Station};
 use crate::devices::hiperdrive::sim::{Config, Target};
 use crate::link::{
     Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, SimPort, TcpLink, TraceEntry, UdpPort, Wire,
 };
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, read_recording};
+use crate::worker::open::{inside, leads_elsewhere, margin, read_recording, simulated};
 use crate::worker::{OpenError, Session};
-
-/// Link parameters that are the host's and nothing of the virtual device. The order of bytes is both's.
-const LINE_ONLY: [&str; 3] = ["rpi", "udp", "timeout"];
 
 /// Everything about a link to an adapter or a hub that can be told without opening it.
 ///
@@ -60,16 +57,10 @@ fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Way {
 
 /// The device as the link says, and the virtual one, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    let config = match url.scheme {
-        Scheme::Sim => Config::from_pairs(&url.query.without(&LINE_ONLY))?,
-        Scheme::Enip | Scheme::Replay => {
-            check_parameters(&url.query, url.scheme, &PARAMETERS)?;
-            Config::default()
-        }
-        Scheme::Serial | Scheme::Tcp | Scheme::Bridge | Scheme::Modbus => {
-            return Err(leads_elsewhere(url.scheme, "sim:, enip:, replay:"));
-        }
-    };
+    if !matches!(url.scheme, Scheme::Sim | Scheme::Enip | Scheme::Replay) {
+        return Err(leads_elsewhere(url.scheme, "sim:, enip:, replay:"));
+    }
+    let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
     let tcp = match url.wire() {
         Wire::Host(host) => host.rsplit_once(':').and_then(|(_, port)| port.parse().ok()),
         _ => None,

@@ -218,7 +218,7 @@ impl<'a> Master<'a> {
     /// So long one waits for the end of what setting this value of a parameter begins.
     pub(super) fn patience(&self, number: ParameterNumber, value: i64) -> Duration {
         let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
-        Repeats::Never { takes }.within(self.station.timeout)
+        Repeats::Never { takes }.within(self.station.link.timeout)
     }
 
     /// Asks something of an object.
@@ -282,7 +282,7 @@ impl<'a> Master<'a> {
         mut once: impl FnMut(&mut Self) -> Result<Result<T, Trouble>, Error>,
     ) -> Result<T, Error> {
         let (mut tries, late) = (0, self.station.late);
-        let (usual, within) = (self.station.timeout, repeats.within(self.station.timeout));
+        let (usual, within) = (self.station.link.timeout, repeats.within(self.station.link.timeout));
         loop {
             tries += 1;
             let trouble = match once(self)? {
@@ -335,7 +335,7 @@ impl<'a> Master<'a> {
         let bytes = frame.emit();
         self.station.line.sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
-        let deadline = sent_at + repeats.within(self.station.timeout) + self.station.line.margin;
+        let deadline = sent_at + repeats.within(self.station.link.timeout) + self.station.line.margin;
         let mut heard = Vec::new();
         loop {
             loop {

@@ -31,4 +31,4 @@ pub use master::{Master, Opened};
 pub use network::{Network, network, settings};
 pub use rules::{GROUPS, Rules, read_rule, read_rules};
 pub use save::{read_state, save};
-pub use station::{PARAMETERS, Station};
+pub use station::{LinkParameters, Station};

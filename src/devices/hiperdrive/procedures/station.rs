@@ -8,25 +8,38 @@ use std::time::Duration;
 
 use crate::buses::ethernet_ip::protocol::{EXPLICIT_PORT, IMPLICIT_PORT, Receiver};
 use crate::devices::hiperdrive::protocol::{ByteOrder, Topology};
-use crate::expected::{Expected, Quantity};
+use crate::expected::Quantity;
 use crate::link::line::LineState;
 use crate::link::{Query, Replies, UrlError};
+use crate::parameter::{Maybe, Milliseconds, Parameters, Values, Whole};
+use crate::parameters;
 use crate::units::Moment;
 
-/// Link parameters that describe the connection and nothing of a virtual device.
-pub const PARAMETERS: [&str; 4] = ["rpi", "order", "udp", "timeout"];
+parameters! {
+    /// The connection to an adapter or a hub, as a link says.
+    #[derive(Copy)]
+    pub struct LinkParameters: UrlError {
+        /// So long from one cyclic packet to the next.
+        pub interval: Duration = Duration::from_millis(10), "rpi" => Milliseconds(5..=100), "connect.interval";
+        /// Which byte of process data comes first.
+        pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
+        /// Where cyclic data go, unless the device says otherwise.
+        pub udp: Option<u16> = None, "udp" => Maybe(Whole(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
+        /// So long a reply may take, beside the margin of the line.
+        pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=LONGEST_TIMEOUT), "connect.reply_time";
+    }
+}
+
+/// The longest time-out in milliseconds.
+const LONGEST_TIMEOUT: u64 = 2000;
 
 /// What a session knows about an adapter or a hub.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// So long from one cyclic packet to the next.
-    pub interval: Duration,
-    /// Which byte of process data comes first.
-    pub order: ByteOrder,
+    /// What the link says.
+    pub link: LinkParameters,
     /// Where cyclic data go, unless the device says otherwise.
     pub udp: u16,
-    /// So long a reply may take, beside the margin of the line.
-    pub timeout: Duration,
     /// It is a recording that answers: its replies have the numbers of the requests of that time.
     pub recorded: bool,
     pub(super) line: LineState,
@@ -57,12 +70,8 @@ pub(super) struct Known {
 }
 
 impl Station {
-    /// From one cyclic packet to the next.
-    pub const INTERVAL: Duration = Duration::from_millis(10);
-    /// Of a reply.
-    pub const TIMEOUT: Duration = Duration::from_secs(1);
-    /// It may be given so long at most.
-    pub const LONGEST_TIMEOUT: Duration = Duration::from_secs(2);
+    /// A reply may be given so long at most.
+    pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
     /// Requests without a reply whose late ones are told apart: more than are sent before one gives up.
     const OPEN: usize = 8;
 
@@ -71,10 +80,8 @@ impl Station {
         // No two studios in a network may open their connections under the same name.
         let random = RandomState::new().build_hasher().finish();
         Station {
-            interval: Self::INTERVAL,
-            order: ByteOrder::Little,
+            link: LinkParameters::default(),
             udp: IMPLICIT_PORT,
-            timeout: Self::TIMEOUT,
             recorded: false,
             line: LineState::new(margin),
             session: None,
@@ -94,35 +101,10 @@ impl Station {
     /// # Errors
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
-        let mut station = Station::new(margin);
+        let link = LinkParameters::read(query.pairs())?;
         // Who serves messages at a port of their own serves cyclic data there as well.
-        if let Some(port) = tcp.filter(|port| *port != EXPLICIT_PORT) {
-            station.udp = port;
-        }
-        let time = |name, range: std::ops::RangeInclusive<u64>| {
-            let allowed = Expected::range(Quantity::Milliseconds, *range.start(), *range.end());
-            let read = |text: &str| text.parse().ok().filter(|ms| range.contains(ms)).map(Duration::from_millis);
-            query.read(name, allowed, read)
-        };
-        if let Some(interval) = time("rpi", 5..=100)? {
-            station.interval = interval;
-        }
-        if let Some(timeout) = time("timeout", 10..=2000)? {
-            station.timeout = timeout;
-        }
-        let order = |text: &str| match text {
-            "little" => Some(ByteOrder::Little),
-            "big" => Some(ByteOrder::Big),
-            _ => None,
-        };
-        if let Some(order) = query.read("order", Expected::words(&["little", "big"]), order)? {
-            station.order = order;
-        }
-        let port = |text: &str| text.parse().ok().filter(|port| *port != 0);
-        if let Some(port) = query.read("udp", Expected::range(Quantity::Port, 1, u16::MAX), port)? {
-            station.udp = port;
-        }
-        Ok(station)
+        let beside = tcp.filter(|port| *port != EXPLICIT_PORT).unwrap_or(IMPLICIT_PORT);
+        Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }
 
     /// What it is; `None` before it was asked.
@@ -161,8 +143,8 @@ impl Station {
 
 impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let order = if self.order == ByteOrder::Little { "little" } else { "big" };
-        write!(f, "every {} ms, {order} endian, UDP port {}", self.interval.as_millis(), self.udp)
+        let (interval, order) = (self.link.interval.as_millis(), ByteOrder::WORDS.print(&self.link.order));
+        write!(f, "every {interval} ms, {order} endian, UDP port {}", self.udp)
     }
 }
 
@@ -185,7 +167,7 @@ mod tests {
     fn a_connection_is_read_from_its_parameters() {
         let station = station("rpi=5&order=big&udp=3333&timeout=250", Some(50123)).unwrap();
         assert_eq!(station.to_string(), "every 5 ms, big endian, UDP port 3333");
-        assert_eq!(station.timeout, Duration::from_millis(250));
+        assert_eq!(station.link.timeout, Duration::from_millis(250));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::control_word::{ControlWord, Refused};
 use super::pkw::Pkw;
 use super::status_word::StatusWord;
+use crate::parameter::Words;
 
 /// Which byte of a number comes first. The manual does not say it (reference 8.11): the low one, unless a device is seen to
 /// do otherwise.
@@ -13,6 +14,11 @@ pub enum ByteOrder {
     Little,
     /// The high byte first.
     Big,
+}
+
+impl ByteOrder {
+    /// As links spell it.
+    pub const WORDS: Words<ByteOrder> = Words(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
 /// What stands behind an IP address.

@@ -7,200 +7,76 @@ use super::axis::{Defect, Load};
 use super::station::RESETS;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
 use crate::expected::{Expected, Quantity};
-use crate::sim::setting::Setting;
-use crate::sim::{ConfigError, Faults};
+use crate::parameter::{ANY, Checked, Decimal, Maybe, Milliseconds, Refused, SWITCH, Whole, Words, number};
+use crate::parameters;
+use crate::sim::{ConfigError, FAULTS, Faults, SEED, setting};
 
-/// What a virtual adapter or hub and its drives shall be like. The default is an adapter with one drive HDA30A from the
-/// factory, at rest, without faults.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Config {
-    pub(super) topology: Topology,
-    /// Place by place; `None`: everywhere is a drive.
-    plugged: Option<Vec<bool>>,
-    pub(super) variant: Variant,
-    pub(super) requested: Option<bool>,
-    pub(super) position: i32,
-    pub(super) speed: Option<u16>,
-    pub(super) resets: Duration,
-    load: u8,
-    blocked: bool,
-    defect: Option<Defect>,
-    temperature: f64,
-    pub(super) s3: u8,
-    pub(super) switch: u8,
-    pub(super) supply_tenths: u16,
-    pub(super) serial_number: u16,
-    pub(super) name: String,
-    pub(super) order: ByteOrder,
-    pub(super) counted_texts: bool,
-    pub(super) seed: u64,
-    pub(super) faults: Faults,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Config {
-            topology: Topology::Adapter,
-            plugged: None,
-            variant: Variant::new(7),
-            requested: None,
-            position: 0,
-            speed: None,
-            resets: RESETS,
-            load: Load::default().percent,
-            blocked: false,
-            defect: None,
-            temperature: Load::default().ambient,
-            s3: 0,
-            switch: 0,
-            supply_tenths: 240,
-            serial_number: 4711,
-            name: "HIPERDRIVE".to_owned(),
-            order: ByteOrder::Little,
-            counted_texts: false,
-            seed: 0,
-            faults: Faults::default(),
-        }
+parameters! {
+    /// What a virtual adapter or hub and its drives shall be like. The default is an adapter with one drive HDA30A from the
+    /// factory, at rest, without faults. What concerns drives concerns all of them.
+    pub struct Config: ConfigError {
+        /// Without it an adapter with one drive.
+        pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(Expected::Hub, |text| HUBS.read(text));
+        /// Which places have a drive; without it all, behind a list's end none.
+        drives: Option<String> = None, "drives" => Maybe(ANY), "connect.plugged" like "1,0,1";
+        /// The same, place by place; `None`: everywhere is a drive.
+        plugged: Option<Vec<bool>> = None;
+        /// Parameter 120, or its name.
+        pub(super) variant: Variant = Variant::new(7), "variant" => Checked(Expected::Variant, variant);
+        /// Parameter 152; without it as from the factory.
+        pub(super) requested: Option<bool> = None, "requested" => Maybe(Words(&[("0", false), ("1", true)]));
+        /// Where the drives stand, in steps of which a turn has 65536.
+        pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
+        /// Parameter 166: greatest speed in tenths of rpm.
+        pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, 5..=350));
+        /// What the spindle takes: above 100 no drive can move it.
+        load: u8 = Load::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
+        /// The spindle is held where it stands.
+        blocked: bool = false, "blocked" => SWITCH;
+        /// The drives stop neither at a target nor at a limit, turn the other way, or always set status bit 15.
+        defect: Option<Defect> = None, "defect" => Maybe(Words(&[
+            ("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed), ("says-outside", Defect::SaysOutside),
+        ]));
+        /// Around the drives: from 80 on they fail.
+        temperature: f64 = Load::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
+        /// Switch S3; away from 0 nothing moves from the bus.
+        pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
+        pub(super) switch: u8 = 0, "switch" => Checked(Expected::SwitchDigits, switch);
+        pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
+        /// So long a reset of all drives takes (47 = −4): it is answered when it is done.
+        pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
+        /// Parameter 17.
+        pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
+        /// Parameter 15.
+        pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => Checked(Expected::Ascii { most: 32 }, name);
+        /// Of the numbers in process data (`U`).
+        pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
+        /// Texts of parameters have their length in front (`U`).
+        pub(super) counted_texts: bool = false, "text" => Words(&[("plain", false), ("counted", true)]);
+        pub(super) seed: u64 = 0, "seed" => SEED;
+        /// `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with
+        /// a bit inverted, or replaced by random bytes; `silent-after` counts frames and packets.
+        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
 impl Config {
-    /// The keys that [`from_pairs`](Self::from_pairs) takes. What concerns drives concerns all of them.
-    ///
-    /// | key | value |
-    /// |---|---|
-    /// | `hub` | `4` or `8` places; without it an adapter with one drive |
-    /// | `drives` | which places have a drive: `1,0,1`; without it all, behind a list's end none |
-    /// | `variant` | parameter 120, 1…13, or the name as `HDA70` |
-    /// | `requested` | parameter 152: 0 or 1; without it as from the factory |
-    /// | `position` | where the drives stand, in steps of which a turn has 65536 |
-    /// | `speed` | parameter 166: greatest speed in tenths of rpm, 5…350 |
-    /// | `load` | percent of the nominal torque that the spindle takes, 0…200: above 100 no drive can move it |
-    /// | `blocked` | `on`: the spindle is held where it stands |
-    /// | `defect` | `runs-on`: the drives stop neither at a target nor at a limit; `reversed`: they turn the other way; `says-outside`: status bit 15 is always set |
-    /// | `temperature` | degrees Celsius around the drives: from 80 on they fail |
-    /// | `s3` | switch S3, 0…9; away from 0 nothing moves from the bus |
-    /// | `switch` | address switch, 0…99 |
-    /// | `supply` | control supply in volts |
-    /// | `reset` | milliseconds that a reset of all drives takes (47 = −4), 0…8000: it is answered when it is done |
-    /// | `serial`, `name` | parameters 17 and 15 |
-    /// | `order` | `little` or `big`: of the numbers in process data (`U`) |
-    /// | `text` | `plain`, or `counted` by a byte in front: texts of parameters (`U`) |
-    /// | `seed`, `fault` | noise; `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with a bit inverted, or replaced by random bytes; `silent-after` counts frames and packets |
-    pub const KEYS: [&str; 20] = [
-        "hub",
-        "drives",
-        "variant",
-        "requested",
-        "position",
-        "speed",
-        "load",
-        "blocked",
-        "defect",
-        "temperature",
-        "s3",
-        "switch",
-        "supply",
-        "reset",
-        "serial",
-        "name",
-        "order",
-        "text",
-        "seed",
-        "fault",
-    ];
-
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut config = Config::default();
-        let mut drives = None;
-        for (key, value) in pairs {
-            let setting = Setting { key, value };
-            if key == "drives" {
-                drives = Some(setting);
-            } else if !config.set_drives(setting)? && !config.set_device(setting)? {
-                return Err(setting.unknown("a virtual HIPERDRIVE", &Self::KEYS));
-            }
-        }
-        config.plugged = drives.map(|setting| places(setting, config.topology)).transpose()?;
+        let mut config: Config = setting::read("a virtual HIPERDRIVE", pairs)?;
+        config.plugged = config.drives.take().map(|drives| places(&drives, config.topology)).transpose()?;
         Ok(config)
     }
 
-    fn set_drives(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
-        match setting.key {
-            "variant" => self.variant = variant(setting)?,
-            "requested" => self.requested = Some(setting.one_of(&[("0", false), ("1", true)])?),
-            "position" => {
-                let allowed = || Expected::range(Quantity::Steps, i32::MIN, i32::MAX);
-                self.position = setting.value.parse().map_err(|_| setting.refused(allowed()))?;
-            }
-            "speed" => self.speed = Some(setting.within(5..=350, Expected::range(Quantity::TenthsOfRpm, 5, 350))?),
-            "load" => self.load = setting.within(0..=200, Expected::range(Quantity::Torque, 0, 200))?,
-            "blocked" => self.blocked = setting.switch()?,
-            "defect" => {
-                let defects = [
-                    ("runs-on", Defect::RunsOn),
-                    ("reversed", Defect::Reversed),
-                    ("says-outside", Defect::SaysOutside),
-                ];
-                self.defect = Some(setting.one_of(&defects)?);
-            }
-            "temperature" => {
-                self.temperature = setting.decimal(-40.0..=120.0, Expected::range(Quantity::Celsius, -40, 120))?
-            }
-            _ => return Ok(false),
-        }
-        Ok(true)
+    /// The control supply, in tenths of a volt.
+    pub(super) fn supply_tenths(&self) -> u16 {
+        // At most 1000.
+        (self.volts * 10.0).round() as u16
     }
-
-    fn set_device(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
-        match setting.key {
-            "hub" => {
-                let hubs = [("4", Topology::Hub4), ("8", Topology::Hub8)];
-                let found = hubs.into_iter().find(|(word, _)| *word == setting.value);
-                self.topology = found.ok_or_else(|| setting.refused(Expected::Hub))?.1;
-            }
-            "s3" => self.s3 = setting.within(0..=9, Expected::range(Quantity::SwitchPosition, 0, 9))?,
-            "switch" => {
-                let refused = || setting.refused(Expected::SwitchDigits);
-                let switch = AddressSwitch::parse(setting.number(Expected::SwitchDigits)?).ok_or_else(refused)?;
-                self.switch = switch.number();
-            }
-            "supply" => {
-                // At most 1000 tenths.
-                self.supply_tenths =
-                    (setting.decimal(0.0..=100.0, Expected::range(Quantity::Volts, 0, 100))? * 10.0).round() as u16;
-            }
-            "reset" => {
-                let ms: u16 = setting.within(0..=8000, Expected::range(Quantity::Milliseconds, 0, 8000))?;
-                self.resets = Duration::from_millis(ms.into());
-            }
-            "serial" => self.serial_number = setting.number(Expected::number(0, u16::MAX))?,
-            "name" => {
-                let fits =
-                    setting.value.len() <= Self::MAX_NAME && setting.value.bytes().all(|c| (b' '..=b'~').contains(&c));
-                let name = Some(setting.value).filter(|_| fits);
-                self.name = name.ok_or_else(|| setting.refused(Expected::Ascii { most: 32 }))?.to_owned();
-            }
-            "order" => {
-                let orders = [("little", ByteOrder::Little), ("big", ByteOrder::Big)];
-                self.order = setting.one_of(&orders)?;
-            }
-            "text" => {
-                self.counted_texts = setting.one_of(&[("plain", false), ("counted", true)])?;
-            }
-            "seed" => self.seed = setting.number(Expected::Whole)?,
-            "fault" => self.faults = setting.value.parse()?,
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
-
-    const MAX_NAME: usize = 32;
 
     /// What is plugged into a place.
     pub(super) fn drive(&self, number: DriveNumber) -> Option<(Variant, Load)> {
@@ -220,23 +96,34 @@ impl Config {
     }
 }
 
-fn variant(setting: Setting<'_>) -> Result<Variant, ConfigError> {
-    let row =
-        VARIANTS.iter().find(|row| row.name == setting.value || row.variant.number().to_string() == setting.value);
-    row.map(|row| row.variant).ok_or_else(|| setting.refused(Expected::Variant))
+/// What is no adapter.
+const HUBS: Words<Topology> = Words(&[("4", Topology::Hub4), ("8", Topology::Hub8)]);
+
+fn variant(text: &str) -> Option<Variant> {
+    let row = VARIANTS.iter().find(|row| row.name == text || row.variant.number().to_string() == text);
+    row.map(|row| row.variant)
+}
+
+fn switch(text: &str) -> Option<u8> {
+    number(text).and_then(AddressSwitch::parse).map(AddressSwitch::number)
+}
+
+fn name(text: &str) -> Option<String> {
+    let fits = text.len() <= 32 && text.bytes().all(|c| (b' '..=b'~').contains(&c));
+    fits.then(|| text.to_owned())
 }
 
 /// Which places have a drive.
-fn places(setting: Setting<'_>, topology: Topology) -> Result<Vec<bool>, ConfigError> {
+fn places(text: &str, topology: Topology) -> Result<Vec<bool>, Refused> {
     let count = topology.drives();
-    let refused = || setting.refused(Expected::Places { count });
-    let place = |text: &str| match text.trim() {
-        "1" => Ok(true),
-        "0" => Ok(false),
-        _ => Err(refused()),
+    let place = |own: &str| match own.trim() {
+        "1" => Some(true),
+        "0" => Some(false),
+        _ => None,
     };
-    let places: Vec<bool> = setting.value.split(',').map(place).collect::<Result<_, _>>()?;
-    if places.len() <= usize::from(count) { Ok(places) } else { Err(refused()) }
+    let places: Option<Vec<bool>> = text.split(',').map(place).collect();
+    let places = places.filter(|places| places.len() <= usize::from(count));
+    places.ok_or_else(|| Refused::new("drives", text, Expected::Places { count }))
 }
 
 #[cfg(test)]
@@ -260,6 +147,7 @@ mod tests {
         assert_eq!(query.split('&').count(), Config::KEYS.len());
         let expected = Config {
             topology: Topology::Hub4,
+            drives: None,
             plugged: Some(vec![true, false, true]),
             variant: Variant::new(13),
             requested: Some(true),
@@ -272,7 +160,7 @@ mod tests {
             temperature: -12.5,
             s3: 2,
             switch: 17,
-            supply_tenths: 235,
+            volts: 23.5,
             serial_number: 16,
             name: "Feeder".to_owned(),
             order: ByteOrder::Big,

@@ -6,7 +6,7 @@ use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::devices::hiperdrive::jobs::check;
-use crate::devices::hiperdrive::procedures::PARAMETERS;
+use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 
@@ -170,7 +170,7 @@ impl HiperdriveForm {
         parameters.entry("udp", &self.udp);
         parameters.entry("timeout", &self.timeout);
         // What only a virtual device has is not taken along.
-        let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !Config::KEYS.contains(&name);
+        let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !Config::KEYS.contains(&name);
         parameters.rest(&self.rest, belongs);
         parameters
     }

@@ -3,15 +3,12 @@
 use std::sync::Arc;
 
 use super::{Hiperface, encoder_types};
-use crate::devices::hiperface::procedures::{Echo, PARAMETERS, Station};
+use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
 use crate::devices::hiperface::sim::{Bus, Config};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
+use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes, simulated};
 use crate::worker::{OpenError, Session};
-
-/// Link parameters that describe the line and nothing of the virtual encoder.
-const LINE_ONLY: [&str; 6] = ["baud", "parity", "timeout", "margin", "periods", "turns"];
 
 /// Everything about a link to a HIPERFACE encoder that can be told without opening it.
 ///
@@ -49,12 +46,12 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
         return Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, replay:"));
     }
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
-    if url.scheme != Scheme::Sim {
-        check_parameters(&url.query, url.scheme, &PARAMETERS)?;
-        return Ok((station, Config::default()));
+    let settings = simulated(url, LinkParameters::KEYS, Config::KEYS)?;
+    if url.scheme == Scheme::Sim {
+        // The virtual encoder's converter may echo; whether it does is learned as with a real one.
+        station.line.echo = Echo::Unknown;
+        let line = LinkParameters::KEYS.iter().filter(|key| !Config::KEYS.contains(key));
+        check_parameters(&url.query, url.scheme, &line.chain(Config::KEYS).copied().collect::<Vec<_>>())?;
     }
-    // The virtual encoder's converter may echo; whether it does is learned as with a real one.
-    station.line.echo = Echo::Unknown;
-    check_parameters(&url.query, url.scheme, &[&LINE_ONLY[..], &Config::KEYS].concat())?;
-    Ok((station, Config::from_pairs(&url.query.without(&LINE_ONLY))?))
+    Ok((station, Config::from_pairs(&settings)?))
 }

@@ -7,12 +7,34 @@ use crate::devices::hiperface::protocol::{
     AccessCode, BAUDS, BROADCAST, CodeNumber, DeviceAddress, Geometry, MAX_TRANSFER, StatusCode, Timing,
 };
 use crate::expected::Expected;
-use crate::link::line::{Echo, LineState, MARGIN_ALLOWED, read_margin};
+use crate::link::line::{Echo, LineState, MARGIN};
 use crate::link::{Query, UrlError};
+use crate::parameter::{Checked, Maybe, Parameters, Refused, Values, number};
+use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// Link parameters that describe the line and the encoder.
-pub const PARAMETERS: [&str; 8] = ["baud", "parity", "address", "echo", "timeout", "margin", "periods", "turns"];
+parameters! {
+    /// The line and the encoder, as a link says. What is left out is the factory setting.
+    pub struct LinkParameters: UrlError {
+        /// Speed.
+        pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => Bauds;
+        /// Parity.
+        pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
+        /// Whom requests go to: 40h…5Fh or broadcast.
+        pub address: u8 = DeviceAddress::FACTORY.byte(),
+            "address" => Checked(Expected::AddressOrOnlyOne, read_address);
+        /// Whether the adapter echoes.
+        pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
+        /// The encoder's time-out is 44 bits, else 11.
+        pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
+        /// How much later than the protocol's worst case a reply may come; `None`: as usual for the link.
+        pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
+        /// Of a type that is not in the table.
+        pub periods: Option<u32> = None, "periods" => Maybe(Checked(Expected::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
+        /// The same.
+        pub turns: Option<u32> = None, "turns" => Maybe(Checked(Expected::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
+    }
+}
 
 /// The four access codes as far as the user told them; 55h where not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,27 +130,12 @@ impl Station {
     /// # Errors
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
-        let mut station = Station::new(margin);
-        let bauds = Expected::OneOf(BAUDS.map(|baud| baud.to_string()).to_vec());
-        if let Some(baud) = query.read("baud", bauds, read_baud)? {
-            station.format.baud = baud;
-        }
-        if let Some(parity) = query.read("parity", Expected::words(&Parity::WORDS), Parity::from_word)? {
-            station.format.parity = parity;
-        }
-        if let Some(address) = query.read("address", Expected::AddressOrOnlyOne, read_address)? {
-            station.address = address;
-        }
-        if let Some(echo) = query.read("echo", Echo::ALLOWED, Echo::read)? {
-            station.line.echo = echo;
-        }
-        if let Some(long) = query.read("timeout", Expected::TimeoutBits, read_timeout)? {
-            station.long_timeout = long;
-        }
-        if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
-            station.line.margin = margin;
-        }
-        station.geometry = read_geometry(query)?;
+        let link = LinkParameters::read(query.pairs())?;
+        let mut station = Station::new(link.margin.unwrap_or(margin));
+        station.format = CharacterFormat { baud: link.baud, parity: link.parity };
+        (station.address, station.long_timeout) = (link.address, link.long_timeout);
+        station.line.echo = link.echo;
+        station.geometry = geometry(&link)?;
         Ok(station)
     }
 
@@ -171,9 +178,19 @@ impl fmt::Display for Station {
     }
 }
 
-fn read_baud(text: &str) -> Option<Baud> {
-    let baud = text.parse().ok().and_then(Baud::new)?;
-    BAUDS.contains(&baud).then_some(baud)
+/// The speeds that an encoder has.
+struct Bauds;
+
+impl Values for Bauds {
+    type Value = Baud;
+
+    fn read(&self, text: &str) -> Option<Baud> {
+        text.parse().ok().and_then(Baud::new).filter(|baud| BAUDS.contains(baud))
+    }
+
+    fn allowed(&self) -> Expected {
+        Expected::OneOf(BAUDS.map(|baud| baud.to_string()).to_vec())
+    }
 }
 
 fn read_address(text: &str) -> Option<u8> {
@@ -195,21 +212,23 @@ fn read_timeout(text: &str) -> Option<bool> {
     }
 }
 
+/// 32 steps a period in a word of 32 bits.
+const MOST_PERIODS: u32 = 1 << 27;
+
+fn read_periods(text: &str) -> Option<u32> {
+    number(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
+}
+
 /// `periods=` and `turns=`; one turn where only the periods are given.
-fn read_geometry(query: &Query) -> Result<Option<Geometry>, UrlError> {
-    const MOST: u32 = 1 << 27; // 32 steps a period in a word of 32 bits
-    let within = |most: u32| move |text: &str| text.parse().ok().filter(|n| (1..=most).contains(n));
-    let periods = query.read("periods", Expected::Periods { most: MOST }, within(MOST))?;
-    let most_turns = MOST / periods.unwrap_or(1);
-    let turns = query.read("turns", Expected::MostTurns { most: most_turns }, within(most_turns))?;
-    match (periods, turns) {
-        (Some(periods), turns) => Ok(Some(Geometry::Rotary { periods, turns: turns.unwrap_or(1) })),
-        (None, None) => Ok(None),
-        (None, Some(turns)) => Err(UrlError::Value {
-            name: "turns".to_owned(),
-            value: turns.to_string(),
-            allowed: Expected::OnlyWith("periods="),
-        }),
+fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, Refused> {
+    let turns = link.turns.unwrap_or(1);
+    match link.periods {
+        None if link.turns.is_some() => Err(Refused::new("turns", turns, Expected::OnlyWith("periods="))),
+        None => Ok(None),
+        Some(periods) if turns > MOST_PERIODS / periods => {
+            Err(Refused::new("turns", turns, Expected::MostTurns { most: MOST_PERIODS / periods }))
+        }
+        Some(periods) => Ok(Some(Geometry::Rotary { periods, turns })),
     }
 }
 

@@ -2,25 +2,28 @@
 
 use super::{Bus, Config};
 use crate::buses::bridge::sim::{Attachable, Attached, SerialDevice};
+use crate::parameter::{Parameters, Words};
+use crate::parameters;
 use crate::sim::ConfigError;
-use crate::sim::setting::Setting;
 use crate::units::Moment;
 
-/// An encoder as delivered at the adapter's serial line; its key is `uart`: `none` or `hiperface`.
+parameters! {
+    struct Settings: ConfigError {
+        is_there: bool = false, "uart" => Words(&[("none", false), ("hiperface", true)]);
+    }
+}
+
+/// An encoder as delivered at the adapter's serial line, where its settings ask for one.
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 
 impl Attachable for AtAdapter {
     fn keys(&self) -> &'static [&'static str] {
-        &["uart"]
+        Settings::KEYS
     }
 
     fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
-        let mut is_there = false;
-        for (key, value) in pairs {
-            let choices = [("none", false), ("hiperface", true)];
-            is_there = Setting { key, value }.one_of(&choices)?;
-        }
+        let is_there = Settings::read(pairs)?.is_there;
         Ok(is_there.then(|| Attached::Serial(Box::new(Bus::new(&Config::default())))))
     }
 }

@@ -5,81 +5,39 @@ use super::encoder::Pace;
 use super::models::{MODELS, Model};
 use crate::devices::hiperface::protocol::{AccessCode, DeviceAddress, EncoderTypes, Geometry, LineSettings};
 use crate::expected::{Expected, Quantity};
-use crate::sim::setting::Setting;
-use crate::sim::{ConfigError, Faults};
+use crate::parameter::{Checked, Maybe, Refused, SWITCH, Values, Whole, Words, number};
+use crate::parameters;
+use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, setting};
 
-/// What a virtual line with encoders shall be like. The default is one SKM36 as delivered, at rest, without faults.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Config {
-    pub(super) seed: u64,
-    pub(super) faults: Faults,
-    pub(super) model: Model,
-    pub(super) encoder_type: Option<u8>,
-    pub(super) serial_number: Option<String>,
-    pub(super) address: DeviceAddress,
-    pub(super) settings: LineSettings,
-    pub(super) rpm: f64,
-    pub(super) position: Option<u32>,
-    pub(super) temperature: i16,
-    pub(super) echo: bool,
-    pub(super) encoders: u8,
-    pub(super) pace: Pace,
-    pub(super) codes: [AccessCode; 4],
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        let [skm36, ..] = MODELS;
-        Config {
-            seed: 0,
-            faults: Faults::default(),
-            model: skm36,
-            encoder_type: None,
-            serial_number: None,
-            address: DeviceAddress::FACTORY,
-            settings: LineSettings::FACTORY,
-            rpm: 0.0,
-            position: None,
-            temperature: 42,
-            echo: false,
-            encoders: 1,
-            pace: Pace::Typical,
-            codes: [AccessCode::FACTORY; 4],
-        }
+parameters! {
+    /// What a virtual line with encoders shall be like. The default is one SKM36 as delivered, at rest, without faults.
+    pub struct Config: ConfigError {
+        pub(super) seed: u64 = 0, "seed" => SEED;
+        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
+        pub(super) model: Model = usual_model(), "model" => Models;
+        pub(super) encoder_type: Option<u8> = None, "type" => Maybe(Checked(Expected::TypeByte, number::<u8>));
+        pub(super) serial_number: Option<String> = None, "serial" => Maybe(Checked(Expected::SerialNumber, serial));
+        pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => Checked(Expected::BusAddress { last: 0x5F }, address);
+        pub(super) settings: LineSettings = LineSettings::FACTORY,
+            "settings" => Checked(Expected::SettingsByte, settings);
+        pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
+        pub(super) position: Option<u32> = None, "position" => Maybe(Checked(Expected::Steps, number::<u32>));
+        pub(super) temperature: i16 = 42, "temperature" => Whole(Quantity::WholeCelsius, -100..=300);
+        pub(super) echo: bool = false, "echo" => SWITCH;
+        pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Number, 1..=8);
+        pub(super) pace: Pace = Pace::Typical, "pace" => Words(&[("typical", Pace::Typical), ("worst", Pace::Worst)]);
+        pub(super) codes: [AccessCode; 4] = [AccessCode::FACTORY; 4], "codes" => Codes;
     }
 }
 
 impl Config {
-    /// The keys that [`from_pairs`](Self::from_pairs) takes.
-    pub const KEYS: [&str; 14] = [
-        "seed",
-        "fault",
-        "model",
-        "type",
-        "serial",
-        "address",
-        "settings",
-        "rpm",
-        "position",
-        "temperature",
-        "echo",
-        "encoders",
-        "pace",
-        "codes",
-    ];
-
-    const MAX_ENCODERS: u8 = 8;
-
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
     /// `0x…`; several encoders have addresses and serial numbers counting up from the first's.
     ///
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut config = Config::default();
-        for (key, value) in pairs {
-            config.set(key, value)?;
-        }
+        let config: Config = setting::read("a virtual encoder", pairs)?;
         config.check_together()?;
         Ok(config)
     }
@@ -114,54 +72,6 @@ impl Config {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }
 
-    fn set(&mut self, key: &str, value: &str) -> Result<(), ConfigError> {
-        let setting = Setting { key, value };
-        let refuse = |allowed: Expected| setting.refused(allowed);
-        match key {
-            "seed" => self.seed = setting.number(Expected::Whole)?,
-            "fault" => self.faults = value.parse()?,
-            "model" => {
-                let names = || Expected::OneOf(MODELS.map(|model| model.name.to_owned()).to_vec());
-                self.model = *Model::find(value).ok_or_else(|| refuse(names()))?;
-            }
-            "type" => self.encoder_type = Some(setting.number(Expected::TypeByte)?),
-            "serial" => {
-                let fits = (1..=9).contains(&value.len()) && value.bytes().all(|c| matches!(c, b' '..=b'~'));
-                self.serial_number =
-                    Some(fits.then(|| value.to_owned()).ok_or_else(|| refuse(Expected::SerialNumber))?);
-            }
-            "address" => {
-                let allowed = || Expected::BusAddress { last: 0x5F };
-                self.address = DeviceAddress::new(setting.number(allowed())?).ok_or_else(|| refuse(allowed()))?;
-            }
-            "settings" => {
-                let settings = LineSettings::from_byte(setting.number(Expected::SettingsByte)?);
-                let valid = Some(settings).filter(|settings| settings.is_valid());
-                self.settings = valid.ok_or_else(|| refuse(Expected::SettingsByte))?;
-            }
-            "rpm" => self.rpm = setting.rpm()?,
-            "position" => self.position = Some(setting.number(Expected::Steps)?),
-            "temperature" => {
-                self.temperature = setting.signed(-100..=300, Expected::range(Quantity::WholeCelsius, -100, 300))?;
-            }
-            "echo" => self.echo = setting.switch()?,
-            "encoders" => {
-                self.encoders = setting.within(1..=Self::MAX_ENCODERS, Expected::number(1, Self::MAX_ENCODERS))?
-            }
-            "pace" => {
-                let paces = [("typical", Pace::Typical), ("worst", Pace::Worst)];
-                self.pace = setting.one_of(&paces)?;
-            }
-            "codes" => {
-                // The text itself is not repeated in the error: it holds access codes.
-                let hidden = Setting { key, value: "**" };
-                self.codes = codes(value).ok_or_else(|| hidden.refused(Expected::AccessCodes))?;
-            }
-            _ => return Err(setting.unknown("a virtual encoder", &Self::KEYS)),
-        }
-        Ok(())
-    }
-
     /// What can only be judged when all keys are read.
     fn check_together(&self) -> Result<(), ConfigError> {
         let range = self.geometry(&EncoderTypes::built_in()).range();
@@ -169,27 +79,75 @@ impl Config {
             && u64::from(position) >= range
         {
             let allowed = Expected::range(Quantity::Position, 0, range - 1);
-            return Err(Setting { key: "position", value: &position.to_string() }.refused(allowed));
+            return Err(Refused::new("position", position, allowed).into());
         }
         let last_first = 0x5F - (self.encoders - 1);
         if self.address.byte() > last_first {
+            let allowed = Expected::FirstAddress { last: last_first };
             let address = format!("{:#04X}", self.address.byte());
-            return Err(
-                Setting { key: "address", value: &address }.refused(Expected::FirstAddress { last: last_first })
-            );
+            return Err(Refused::new("address", address, allowed).into());
         }
         Ok(())
     }
 }
 
-fn codes(text: &str) -> Option<[AccessCode; 4]> {
-    let mut codes = [AccessCode::FACTORY; 4];
-    for item in text.split(',') {
-        let (number, code) = item.split_once(':')?;
-        let entry = codes.get_mut(number.parse::<usize>().ok()?)?;
-        *entry = AccessCode::new(u8::from_str_radix(code, 16).ok()?);
+const fn usual_model() -> Model {
+    let [usual, ..] = MODELS;
+    usual
+}
+
+/// The models of virtual encoders, by name.
+struct Models;
+
+impl Values for Models {
+    type Value = Model;
+
+    fn read(&self, text: &str) -> Option<Model> {
+        Model::find(text).copied()
     }
-    Some(codes)
+
+    fn allowed(&self) -> Expected {
+        Expected::OneOf(MODELS.map(|model| model.name.to_owned()).to_vec())
+    }
+}
+
+/// Access codes by number: `0:55,2:66`.
+struct Codes;
+
+impl Values for Codes {
+    type Value = [AccessCode; 4];
+
+    fn read(&self, text: &str) -> Option<[AccessCode; 4]> {
+        let mut codes = [AccessCode::FACTORY; 4];
+        for item in text.split(',') {
+            let (number, code) = item.split_once(':')?;
+            let entry = codes.get_mut(number.parse::<usize>().ok()?)?;
+            *entry = AccessCode::new(u8::from_str_radix(code, 16).ok()?);
+        }
+        Some(codes)
+    }
+
+    fn allowed(&self) -> Expected {
+        Expected::AccessCodes
+    }
+
+    // The text itself is not repeated in the error: it holds access codes.
+    fn take(&self, key: &str, value: &str) -> Result<Self::Value, Refused> {
+        self.read(value).ok_or_else(|| Refused::new(key, "**", self.allowed()))
+    }
+}
+
+fn serial(text: &str) -> Option<String> {
+    let fits = (1..=9).contains(&text.len()) && text.bytes().all(|c| matches!(c, b' '..=b'~'));
+    fits.then(|| text.to_owned())
+}
+
+fn address(text: &str) -> Option<DeviceAddress> {
+    number(text).and_then(DeviceAddress::new)
+}
+
+fn settings(text: &str) -> Option<LineSettings> {
+    number(text).map(LineSettings::from_byte).filter(|settings| settings.is_valid())
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{entered, filled, host_and_port, parted, refused};
 use crate::devices::hiperface::jobs::check;
-use crate::devices::hiperface::procedures::{Echo, PARAMETERS, Station};
+use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
@@ -263,7 +263,7 @@ fn address_words(address: u8) -> String {
 }
 
 fn virtual_only(name: &str) -> bool {
-    Config::KEYS.contains(&name) && !PARAMETERS.contains(&name)
+    Config::KEYS.contains(&name) && !LinkParameters::KEYS.contains(&name)
 }
 
 #[cfg(test)]

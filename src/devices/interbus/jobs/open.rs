@@ -5,16 +5,12 @@ use std::sync::Arc;
 use super::Interbus;
 use crate::bits::MaskedBytes;
 use crate::buses::ubicom::protocol::FORMAT;
-use crate::devices::interbus::procedures::{PARAMETERS, Station};
+use crate::devices::interbus::procedures::{LinkParameters, Station};
 use crate::devices::interbus::sim::{Config, Gateway};
 use crate::link::{Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, TraceEntry, Wire};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes, read_recording};
+use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, read_recording, simulated};
 use crate::worker::{OpenError, Session};
-
-/// Link parameters that describe the host's patience and nothing of the virtual gateway. Where the encoder is behind it
-/// describes both.
-const LINE_ONLY: [&str; 3] = ["handshake", "cycle", "timeout"];
 
 /// Everything about a link to an INTERBUS encoder that can be told without opening it.
 ///
@@ -49,16 +45,10 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
 
 /// The gateway as the link says, and the virtual one, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
-    let config = match url.scheme {
-        Scheme::Sim => Config::from_pairs(&url.query.without(&LINE_ONLY))?,
-        Scheme::Modbus | Scheme::Replay => {
-            check_parameters(&url.query, url.scheme, &PARAMETERS)?;
-            Config::default()
-        }
-        Scheme::Serial | Scheme::Tcp | Scheme::Bridge | Scheme::Enip => {
-            return Err(leads_elsewhere(url.scheme, "sim:, modbus:, replay:"));
-        }
-    };
+    if !matches!(url.scheme, Scheme::Sim | Scheme::Modbus | Scheme::Replay) {
+        return Err(leads_elsewhere(url.scheme, "sim:, modbus:, replay:"));
+    }
+    let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
     station.recorded = url.scheme == Scheme::Replay;
     Ok((station, config))

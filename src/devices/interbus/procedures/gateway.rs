@@ -8,6 +8,7 @@ use std::time::Duration;
 use rmodbus::client::ModbusRequest;
 use rmodbus::{ModbusProto, guess_response_frame_len};
 
+use super::LinkParameters;
 use super::data::ProcessData;
 use super::error::{Asked, Damage, Exception};
 use super::station::Station;
@@ -38,21 +39,11 @@ const REFUSED: u8 = 0x80;
 /// A gateway and the encoder at its registers, for one job.
 pub struct Gateway<'a> {
     line: Line<'a>,
-    place: Place,
+    link: LinkParameters,
+    recorded: bool,
     state: State<'a>,
     /// The OUT word that this job has written last.
     written: Option<u32>,
-}
-
-/// Where the words are, and how long a gateway is waited for.
-struct Place {
-    unit: u8,
-    input: u16,
-    output: u16,
-    order: WordOrder,
-    cycle: Duration,
-    timeout: Duration,
-    recorded: bool,
 }
 
 /// What stays from one job to the next.
@@ -76,13 +67,12 @@ type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
 impl<'a> Gateway<'a> {
     /// The gateway of a station, and what is known of the encoder behind it.
     pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut Known) {
-        let Station { unit, input, output, order, cycle, timeout, recorded, .. } = *station;
-        let place = Place { unit, input, output, order, cycle, timeout, recorded };
-        let Station { line, next, waiting, silent, known, .. } = station;
+        let Station { link, recorded, line, next, waiting, silent, known } = station;
+        let (link, recorded) = (*link, *recorded);
         line.begin_job();
         *silent = false;
-        let gateway =
-            Gateway { line: Line::new(ctx), place, state: State { line, next, waiting, silent }, written: None };
+        let state = State { line, next, waiting, silent };
+        let gateway = Gateway { line: Line::new(ctx), link, recorded, state, written: None };
         (gateway, known)
     }
 
@@ -137,14 +127,14 @@ impl<'a> Gateway<'a> {
         let sent_at = self.line.now();
         self.state.line.sent(sent_at);
         self.line.send(&bytes, MaskedBytes::clear(&bytes), sent_at)?;
-        let deadline = sent_at + self.place.timeout + self.state.line.margin;
+        let deadline = sent_at + self.link.timeout + self.state.line.margin;
         loop {
             loop {
                 match self.next_frame() {
                     Some(Ok(frame)) => {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&frame));
-                        if self.place.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
+                        if self.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
                             let judged = judge(&request, asked, frame);
                             if !matches!(judged, Err(Trouble::Damage(_))) {
                                 self.state.line.answered();
@@ -172,7 +162,7 @@ impl<'a> Gateway<'a> {
     }
 
     fn request(&self, asked: Asked, number: u16) -> Option<(ModbusRequest, Vec<u8>)> {
-        request(asked, self.place.unit, number, self.place.order)
+        request(asked, self.link.unit, number, self.link.order)
     }
 
     /// The next whole frame of what has come; an error where it is none, and all that has come is let go.
@@ -195,7 +185,7 @@ impl<'a> Gateway<'a> {
 
     fn read(&mut self, asked: Asked) -> Result<u32, Error> {
         match *self.ask(asked)?.as_slice() {
-            [first, second] => Ok(self.place.order.word([first, second])),
+            [first, second] => Ok(self.link.order.word([first, second])),
             _ => Err(Error::Damaged { asked, tries: 1, cause: Damage::Registers }),
         }
     }
@@ -290,19 +280,19 @@ impl ProcessData for Gateway<'_> {
         if self.written != Some(out) {
             // It may have been written when its reply is lost.
             self.written = None;
-            self.ask(Asked::Write { register: self.place.output, word: out })?;
+            self.ask(Asked::Write { register: self.link.output, word: out })?;
             self.written = Some(out);
         }
-        self.line.wait(self.place.cycle)?;
+        self.line.wait(self.link.cycle)?;
         self.input()
     }
 
     fn input(&mut self) -> Result<u32, Error> {
-        self.read(Asked::Input { register: self.place.input })
+        self.read(Asked::Input { register: self.link.input })
     }
 
     fn output(&mut self) -> Result<Option<u32>, Error> {
-        match self.read(Asked::Output { register: self.place.output }) {
+        match self.read(Asked::Output { register: self.link.output }) {
             Ok(word) => Ok(Some(word)),
             Err(Error::Exception { .. }) => Ok(None),
             Err(error) => Err(error),

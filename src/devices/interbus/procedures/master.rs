@@ -59,14 +59,14 @@ pub struct Master<'a> {
 impl<'a> Master<'a> {
     /// A master over a station's gateway, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
-        let (patience, recorded) = (station.handshake, station.recorded);
+        let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
         Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
     }
 
     /// A master over other process data, for one job.
     pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
-        let patience = station.handshake;
+        let patience = station.link.handshake;
         Master::with(Box::new(data), &mut station.known, patience)
     }
 

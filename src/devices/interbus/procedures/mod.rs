@@ -28,6 +28,6 @@ pub use journal::{Excursion, Journal};
 pub use master::Master;
 pub use reading::{Place, Reading};
 pub use save::{Kept, read_item, read_state, save};
-pub use station::{PARAMETERS, Station};
+pub use station::{LinkParameters, Station};
 
 use station::Known;

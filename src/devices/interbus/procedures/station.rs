@@ -3,31 +3,38 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::devices::interbus::protocol::{Command, Gear, StartupMode, WindowShift, WordOrder};
-use crate::expected::{Expected, Quantity};
+use crate::devices::interbus::protocol::{Command, Gear, INPUT, OUTPUT, StartupMode, UNIT, WindowShift, WordOrder};
 use crate::link::line::LineState;
 use crate::link::{Query, UrlError};
+use crate::parameter::{Milliseconds, Parameters};
+use crate::parameters;
 
-/// Link parameters that describe the gateway and the encoder's place behind it.
-pub const PARAMETERS: [&str; 7] = ["unit", "input", "output", "order", "handshake", "cycle", "timeout"];
+parameters! {
+    /// The gateway and the encoder's place behind it, as a link says.
+    #[derive(Copy)]
+    pub struct LinkParameters: UrlError {
+        /// The unit that the gateway is asked for.
+        pub unit: u8 = 1, "unit" => UNIT, "connect.unit";
+        /// The first of the two input registers with the IN word.
+        pub input: u16 = 0, "input" => INPUT, "connect.input";
+        /// The first of the two holding registers with the OUT word.
+        pub output: u16 = 0, "output" => OUTPUT, "connect.output";
+        /// Which half of a word comes first.
+        pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
+        /// So long an echo, a value or a position may take (reference 4, `U`).
+        pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
+        /// So long from one look at the IN word to the next: a gateway's own cycle is about that long.
+        pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
+        /// So long a gateway may take for a reply, beside the margin of the line.
+        pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=2000);
+    }
+}
 
 /// What a session knows about its gateway and the encoder behind it.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// The unit that the gateway is asked for.
-    pub unit: u8,
-    /// The first of the two input registers with the IN word.
-    pub input: u16,
-    /// The first of the two holding registers with the OUT word.
-    pub output: u16,
-    /// Which half of a word comes first.
-    pub order: WordOrder,
-    /// So long an echo, a value or a position may take (`U`: 2 s).
-    pub handshake: Duration,
-    /// So long from one look at the IN word to the next.
-    pub cycle: Duration,
-    /// So long a gateway may take for a reply, beside the margin of the line.
-    pub timeout: Duration,
+    /// What the link says.
+    pub link: LinkParameters,
     /// It is a recording that answers: its replies have the numbers of the requests of that time.
     pub recorded: bool,
     pub(super) line: LineState,
@@ -58,23 +65,10 @@ pub(super) struct Known {
 }
 
 impl Station {
-    /// Of the handshake (reference 4).
-    pub const HANDSHAKE: Duration = Duration::from_secs(2);
-    /// Of process data: a gateway's own cycle is about that long.
-    pub const CYCLE: Duration = Duration::from_millis(5);
-    /// Of a gateway.
-    pub const TIMEOUT: Duration = Duration::from_secs(1);
-
     /// A gateway that nobody has asked, with an encoder at its first registers.
     pub fn new(margin: Duration) -> Self {
         Station {
-            unit: 1,
-            input: 0,
-            output: 0,
-            order: WordOrder::HighFirst,
-            handshake: Self::HANDSHAKE,
-            cycle: Self::CYCLE,
-            timeout: Self::TIMEOUT,
+            link: LinkParameters::default(),
             recorded: false,
             line: LineState::new(margin),
             next: 1,
@@ -89,59 +83,14 @@ impl Station {
     /// # Errors
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
-        let mut station = Station::new(margin);
-        if let Some(unit) = query.read("unit", Expected::range(Quantity::Unit, 0, u8::MAX), number)? {
-            station.unit = unit;
-        }
-        if let Some(register) =
-            query.read("input", Expected::range(Quantity::InputRegister, 0, u16::MAX - 1), register)?
-        {
-            station.input = register;
-        }
-        if let Some(register) =
-            query.read("output", Expected::range(Quantity::HoldingRegister, 0, u16::MAX - 1), register)?
-        {
-            station.output = register;
-        }
-        if let Some(order) = query.read("order", Expected::words(&WordOrder::WORDS), WordOrder::read)? {
-            station.order = order;
-        }
-        let time = |name, range: std::ops::RangeInclusive<u64>| {
-            let allowed = Expected::range(Quantity::Milliseconds, *range.start(), *range.end());
-            let read = |text: &str| text.parse().ok().filter(|ms| range.contains(ms)).map(Duration::from_millis);
-            query.read(name, allowed, read)
-        };
-        if let Some(handshake) = time("handshake", 50..=8000)? {
-            station.handshake = handshake;
-        }
-        if let Some(cycle) = time("cycle", 1..=1000)? {
-            station.cycle = cycle;
-        }
-        if let Some(timeout) = time("timeout", 10..=2000)? {
-            station.timeout = timeout;
-        }
-        Ok(station)
+        Ok(Station { link: LinkParameters::read(query.pairs())?, ..Station::new(margin) })
     }
 }
 
 impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unit {}, IN at {}, OUT at {}", self.unit, self.input, self.output)
+        write!(f, "unit {}, IN at {}, OUT at {}", self.link.unit, self.link.input, self.link.output)
     }
-}
-
-/// Decimal, or hexadecimal behind 0x.
-fn number<T: TryFrom<u32>>(text: &str) -> Option<T> {
-    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u32::from_str_radix(digits, 16).ok()?,
-        None => text.parse().ok()?,
-    };
-    T::try_from(number).ok()
-}
-
-/// The first of two: there is one behind it.
-fn register(text: &str) -> Option<u16> {
-    number(text).filter(|register| *register < u16::MAX)
 }
 
 #[cfg(test)]
@@ -156,7 +105,7 @@ mod tests {
     fn what_is_left_out_is_usual() {
         let station = station("").unwrap();
         assert_eq!(station.to_string(), "unit 1, IN at 0, OUT at 0");
-        assert_eq!((station.order, station.handshake), (WordOrder::HighFirst, Duration::from_secs(2)));
+        assert_eq!((station.link.order, station.link.handshake), (WordOrder::HighFirst, Duration::from_secs(2)));
     }
 
     #[test]
@@ -164,8 +113,8 @@ mod tests {
         let station =
             station("unit=17&input=0x1000&output=2048&order=low-first&handshake=500&cycle=20&timeout=250").unwrap();
         assert_eq!(station.to_string(), "unit 17, IN at 4096, OUT at 2048");
-        assert_eq!((station.order, station.handshake), (WordOrder::LowFirst, Duration::from_millis(500)));
-        assert_eq!((station.cycle, station.timeout), (Duration::from_millis(20), Duration::from_millis(250)));
+        assert_eq!((station.link.order, station.link.handshake), (WordOrder::LowFirst, Duration::from_millis(500)));
+        assert_eq!((station.link.cycle, station.link.timeout), (Duration::from_millis(20), Duration::from_millis(250)));
     }
 
     #[test]

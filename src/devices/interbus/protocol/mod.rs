@@ -43,4 +43,4 @@ pub use parameter::{OutOfRange, PARAMETERS, Parameter, ParameterRow};
 pub use read_out::{Flags, READ_OUTS, ReadOut, ReadOutRow, ReadOutValue, StartupMode};
 pub use reply::{ErrorWord, Reply};
 pub use value::{Code, Value};
-pub use word_order::WordOrder;
+pub use word_order::{INPUT, OUTPUT, UNIT, WordOrder};

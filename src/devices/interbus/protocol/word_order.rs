@@ -1,5 +1,17 @@
 //! A word of the process data in the two 16-bit registers of a gateway (reference 1, `U`).
 
+use crate::expected::Quantity;
+use crate::parameter::{Whole, Words};
+
+/// The unit that a gateway is asked for.
+pub const UNIT: Whole<u8> = Whole(Quantity::Unit, 0..=255);
+/// The first of the two input registers of an IN word.
+pub const INPUT: Whole<u16> = Whole(Quantity::InputRegister, 0..=LAST);
+/// The first of the two holding registers of an OUT word.
+pub const OUTPUT: Whole<u16> = Whole(Quantity::HoldingRegister, 0..=LAST);
+/// The last register that has one behind it.
+const LAST: u16 = u16::MAX - 1;
+
 /// Which half of a word is in the first of its two registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordOrder {
@@ -11,8 +23,9 @@ pub enum WordOrder {
 }
 
 impl WordOrder {
-    /// The words that [`read`](Self::read) takes.
-    pub const WORDS: [&str; 2] = ["high-first", "low-first"];
+    /// As links spell it.
+    pub const WORDS: Words<WordOrder> =
+        Words(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 
     /// The registers of a word.
     pub const fn registers(self, word: u32) -> [u16; 2] {
@@ -30,15 +43,6 @@ impl WordOrder {
             WordOrder::LowFirst => (second, first),
         };
         (high as u32) << 16 | low as u32
-    }
-
-    /// As links spell it: `high-first` or `low-first`.
-    pub fn read(text: &str) -> Option<Self> {
-        match text {
-            "high-first" => Some(WordOrder::HighFirst),
-            "low-first" => Some(WordOrder::LowFirst),
-            _ => None,
-        }
     }
 }
 

@@ -5,270 +5,116 @@ use std::time::Duration;
 
 use super::memory::{Memory, PLACES};
 use crate::devices::interbus::protocol::{
-    Class, Gear, Parameter, ProgramNumber, STEPS_PER_TURN, StartupMode, Value, WordOrder,
+    Class, Gear, INPUT, OUTPUT, Parameter, ProgramNumber, STEPS_PER_TURN, StartupMode, TURNS, UNIT, Value, WordOrder,
 };
 use crate::expected::{Expected, Quantity};
-use crate::sim::setting::Setting;
-use crate::sim::{ConfigError, Faults};
+use crate::parameter::{ANY, Checked, Decimal, Maybe, Milliseconds, Refused, SWITCH, Values, Whole, Words, number};
+use crate::parameters;
+use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, setting};
 
-/// What a virtual gateway and the encoders behind it shall be like. The default is one K3 encoder as delivered, at rest,
-/// without faults; a gateway with unit 1, registers from 0 and the high word first.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Config {
-    pub(super) seed: u64,
-    pub(super) faults: Faults,
-    pub(super) exceptions: f64,
-    pub(super) unit: u8,
-    pub(super) input: u16,
-    pub(super) output: u16,
-    pub(super) order: WordOrder,
-    pub(super) encoders: u8,
-    pub(super) class: Class,
-    pub(super) serial_number: u32,
-    pub(super) rpm: f64,
-    pub(super) position: u32,
-    pub(super) memory: Memory,
-    pub(super) mode: StartupMode,
-    pub(super) stores: u32,
-    pub(super) temperature: i32,
-    pub(super) narrow_temperature: bool,
-    pub(super) operating_time: u32,
-    pub(super) steps_minus_one: bool,
-    pub(super) complement_bit: bool,
-    pub(super) busy: Duration,
-    pub(super) stale: u32,
-    pub(super) acknowledges_selection: bool,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Config {
-            seed: 0,
-            faults: Faults::default(),
-            exceptions: 0.0,
-            unit: 1,
-            input: 0,
-            output: 0,
-            order: WordOrder::HighFirst,
-            encoders: 1,
-            class: Class::K3,
-            serial_number: 7_101_234,
-            rpm: 0.0,
-            position: 0x12_3456,
-            memory: Memory::delivered(),
-            mode: StartupMode::K3,
-            stores: 3,
-            temperature: 253,
-            narrow_temperature: false,
-            operating_time: 1000,
-            steps_minus_one: false,
-            complement_bit: false,
-            busy: Duration::from_millis(5),
-            stale: 1,
-            acknowledges_selection: true,
-        }
+parameters! {
+    /// What a virtual gateway and the encoders behind it shall be like. The default is one K3 encoder as delivered, at rest,
+    /// without faults; a gateway with unit 1, registers from 0 and the high word first.
+    pub struct Config: ConfigError {
+        // The gear, with what has to fit into it: checked together, and put into the memory.
+        steps: Option<String> = None, "steps" => Maybe(ANY);
+        revolutions: Option<String> = None, "revolutions" => Maybe(ANY);
+        pub(super) memory: Memory = Memory::delivered();
+        counterclockwise: bool = false, "direction" => Words(&[("cw", false), ("ccw", true)]);
+        /// Steps within the range; not fired and not armed.
+        preset: Option<String> = None, "preset" => Maybe(ANY);
+        zero_shift: u32 = 0, "zero-shift" => VALUE;
+        pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
+        /// Where the shaft stands at the start, in steps of the disc.
+        pub(super) position: u32 = 0x12_3456, "position" => Whole(Quantity::PlaceOfDisc, 0..=PLACES - 1);
+        pub(super) serial_number: u32 = 7_101_234, "serial" => VALUE;
+        /// Tens of minutes.
+        pub(super) operating_time: u32 = 1000, "operating-time" => VALUE;
+        pub(super) celsius: f64 = 25.3, "temperature" => Decimal(Quantity::Celsius, -273.0..=1000.0);
+        /// A negative temperature has 16 bits and not 25 (reference 3, `U`).
+        pub(super) narrow_temperature: bool = false, "temperature-bits" => Words(&[("25", false), ("16", true)]);
+        /// Read-out 3 gives 0 or 1 and not a code (`U`).
+        pub(super) complement_bit: bool = false, "complement" => Words(&[("code", false), ("bit", true)]);
+        /// The cam program that runs, else normal running.
+        pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(Expected::Program, mode);
+        /// There are programs with cams.
+        demonstration: bool = false, "cams" => Words(&[("demo", true), ("none", false)]);
+        pub(super) stores: u32 = 3, "stores" => Checked(Expected::Stores, number::<u32>);
+        /// Steps are given less one, as in older encoders.
+        pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
+        /// So long the word says that it is busy.
+        pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
+        /// So many cycles the IN word is still the old one after a new OUT word.
+        pub(super) stale: u32 = 1, "stale" => Whole(Quantity::Cycles, 0..=1000);
+        /// A selected program is acknowledged before its output (`U`).
+        pub(super) acknowledges_selection: bool = true, "selection" => Words(&[("echo", true), ("output", false)]);
+        pub(super) class: Class = Class::K3, "class" => Words(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
+        /// Each has two registers from `input` and `output` on.
+        pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Encoders, 1..=8);
+        pub(super) unit: u8 = 1, "unit" => UNIT;
+        pub(super) input: u16 = 0, "input" => INPUT;
+        pub(super) output: u16 = 0, "output" => OUTPUT;
+        pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
+        /// The share of requests that is answered with exception 0Bh and not carried out.
+        pub(super) exceptions: f64 = 0.0, "exception" => Decimal(Quantity::RefusedRequests, 0.0..=1.0);
+        pub(super) seed: u64 = 0, "seed" => SEED;
+        /// `drop`, `flip`, `garbage`: share of replies lost, with a bit inverted, replaced by random bytes.
+        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
+/// A number that a word has room for.
+const VALUE: Whole<u32> = Whole(Quantity::Number, 0..=Value::MAX.get());
+
 impl Config {
-    /// The keys that [`from_pairs`](Self::from_pairs) takes.
-    ///
-    /// | key | value |
-    /// |---|---|
-    /// | `steps`, `revolutions` | the gear, checked together |
-    /// | `direction`, `preset`, `zero-shift` | `cw` or `ccw`; steps; the preset is within the range, not fired and not armed |
-    /// | `rpm`, `position` | speed of the shaft, and its place at the start in steps of the disc, 0…33554431 |
-    /// | `serial`, `operating-time`, `temperature` | number; tens of minutes; degrees Celsius |
-    /// | `temperature-bits` | 25 or 16: of a negative temperature (reference 3, `U`) |
-    /// | `complement` | what read-out 3 gives: `code` (3 or 4) or `bit` (0 or 1) (`U`) |
-    /// | `program`, `cams` | the cam program that runs, 0 for none; `demo` for programs with cams, `none` |
-    /// | `stores` | stores that the EEPROM has had |
-    /// | `steps-minus-one` | `on`: steps are given less one, as in older encoders |
-    /// | `busy`, `stale` | milliseconds of busy words; cycles in which the IN word is still the old one after a new OUT word |
-    /// | `selection` | `echo` or `output`: what a selected program says first (`U`) |
-    /// | `class` | `K1`, `K2` or `K3` |
-    /// | `encoders`, `unit`, `input`, `output`, `order` | the gateway: 1…8 encoders, two registers each from `input` and `output` on, `high-first` or `low-first` |
-    /// | `exception` | share of requests, 0…1, answered with exception 0Bh and not carried out |
-    /// | `seed`, `fault` | noise; `drop`, `flip`, `garbage`: share of replies lost, with a bit inverted, replaced by random bytes |
-    pub const KEYS: [&str; 28] = [
-        "steps",
-        "revolutions",
-        "direction",
-        "preset",
-        "zero-shift",
-        "rpm",
-        "position",
-        "serial",
-        "operating-time",
-        "temperature",
-        "temperature-bits",
-        "complement",
-        "program",
-        "cams",
-        "stores",
-        "steps-minus-one",
-        "busy",
-        "stale",
-        "selection",
-        "class",
-        "encoders",
-        "unit",
-        "input",
-        "output",
-        "order",
-        "exception",
-        "seed",
-        "fault",
-    ];
-
-    const MAX_ENCODERS: u8 = 8;
-    const MAX_BUSY_MS: u32 = 60_000;
-    const MAX_STALE: u32 = 1000;
-
     /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut config = Config::default();
-        let mut gear = Geared::default();
-        for (key, value) in pairs {
-            let setting = Setting { key, value };
-            if !gear.take(setting)? && !config.set_encoder(setting)? && !config.set_gateway(setting)? {
-                return Err(setting.unknown("a virtual INTERBUS encoder", &Self::KEYS));
-            }
-        }
-        gear.put_into(&mut config.memory)?;
+        let mut config: Config = setting::read("a virtual INTERBUS encoder", pairs)?;
+        config.fill_memory()?;
         Ok(config)
     }
 
-    fn set_encoder(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
-        match setting.key {
-            "direction" => {
-                self.memory.counterclockwise = setting.one_of(&[("cw", false), ("ccw", true)])?;
-            }
-            "rpm" => self.rpm = setting.rpm()?,
-            "position" => {
-                self.position = setting.within(..PLACES, Expected::range(Quantity::PlaceOfDisc, 0, PLACES - 1))?
-            }
-            "serial" => self.serial_number = value(setting)?,
-            "operating-time" => self.operating_time = value(setting)?,
-            "temperature" => {
-                let celsius = setting.decimal(-273.0..=1000.0, Expected::range(Quantity::Celsius, -273, 1000))?;
-                self.temperature = (celsius * 10.0).round() as i32;
-            }
-            "temperature-bits" => {
-                self.narrow_temperature = setting.one_of(&[("25", false), ("16", true)])?;
-            }
-            "complement" => {
-                self.complement_bit = setting.one_of(&[("code", false), ("bit", true)])?;
-            }
-            "program" => {
-                let refused = || setting.refused(Expected::Program);
-                self.mode = match setting.number::<u8>(Expected::Program)? {
-                    0 => StartupMode::K3,
-                    number => StartupMode::Cams(ProgramNumber::new(number).ok_or_else(refused)?),
-                };
-            }
-            "stores" => self.stores = setting.number(Expected::Stores)?,
-            "steps-minus-one" => self.steps_minus_one = setting.switch()?,
-            "busy" => {
-                let allowed = Expected::range(Quantity::Milliseconds, 0, Self::MAX_BUSY_MS);
-                self.busy = Duration::from_millis(setting.within(..=Self::MAX_BUSY_MS, allowed)?.into());
-            }
-            "stale" => {
-                self.stale =
-                    setting.within(..=Self::MAX_STALE, Expected::range(Quantity::Cycles, 0, Self::MAX_STALE))?
-            }
-            "selection" => {
-                self.acknowledges_selection = setting.one_of(&[("echo", true), ("output", false)])?;
-            }
-            "class" => {
-                let classes = [("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)];
-                self.class = setting.one_of(&classes)?;
-            }
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
-
-    fn set_gateway(&mut self, setting: Setting<'_>) -> Result<bool, ConfigError> {
-        match setting.key {
-            "encoders" => {
-                self.encoders = setting
-                    .within(1..=Self::MAX_ENCODERS, Expected::range(Quantity::Encoders, 1, Self::MAX_ENCODERS))?;
-            }
-            "unit" => self.unit = setting.number(Expected::range(Quantity::Unit, 0, u8::MAX))?,
-            "input" => self.input = setting.number(Expected::range(Quantity::Register, 0, u16::MAX))?,
-            "output" => self.output = setting.number(Expected::range(Quantity::Register, 0, u16::MAX))?,
-            "order" => {
-                let order = WordOrder::read(setting.value);
-                self.order = order.ok_or_else(|| setting.refused(Expected::words(&WordOrder::WORDS)))?;
-            }
-            "exception" => {
-                self.exceptions = setting.decimal(0.0..=1.0, Expected::range(Quantity::RefusedRequests, 0, 1))?
-            }
-            "seed" => self.seed = setting.number(Expected::Whole)?,
-            "fault" => self.faults = setting.value.parse()?,
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
-}
-
-/// What depends on each other and is checked when all is known.
-#[derive(Default)]
-struct Geared<'a> {
-    steps: Option<Setting<'a>>,
-    revolutions: Option<Setting<'a>>,
-    preset: Option<Setting<'a>>,
-    zero_shift: Option<Setting<'a>>,
-    demonstration: bool,
-}
-
-impl<'a> Geared<'a> {
-    fn take(&mut self, setting: Setting<'a>) -> Result<bool, ConfigError> {
-        match setting.key {
-            "steps" => self.steps = Some(setting),
-            "revolutions" => self.revolutions = Some(setting),
-            "preset" => self.preset = Some(setting),
-            "zero-shift" => self.zero_shift = Some(setting),
-            "cams" => self.demonstration = setting.one_of(&[("demo", true), ("none", false)])?,
-            _ => return Ok(false),
-        }
-        Ok(true)
+    /// In tenths of a degree.
+    pub(super) fn temperature(&self) -> i32 {
+        (self.celsius * 10.0).round() as i32
     }
 
     /// Where only one half of the gear is given, the other is as much as fits.
-    fn put_into(self, memory: &mut Memory) -> Result<(), ConfigError> {
-        let Geared { steps, revolutions, preset, zero_shift, demonstration } = self;
-        if let Some(setting) = revolutions {
-            let allowed = || Expected::range(Quantity::Turns, 1, 4096);
-            let turns = setting.number(allowed())?;
+    fn fill_memory(&mut self) -> Result<(), ConfigError> {
+        let memory = &mut self.memory;
+        if let Some(turns) = self.revolutions.take() {
+            let range = Whole(Quantity::Turns, 1..=TURNS);
+            let turns = range.take("revolutions", &turns)?;
             let steps = memory.gear.steps().min(STEPS_PER_TURN.saturating_mul(turns));
-            memory.gear = Gear::new(steps, turns).map_err(|_| setting.refused(allowed()))?;
+            let gear = Gear::new(steps, turns);
+            memory.gear = gear.map_err(|_| Refused::new("revolutions", turns, range.allowed()))?;
         }
-        if let Some(setting) = steps {
+        if let Some(steps) = self.steps.take() {
             let range = Parameter::Steps.range(memory.gear);
-            let allowed = || Expected::StepsOfTurns { low: *range.start(), high: *range.end() };
-            let gear = Gear::new(setting.number(allowed())?, memory.gear.turns());
-            memory.gear = gear.map_err(|_| setting.refused(allowed()))?;
+            let allowed = Expected::StepsOfTurns { low: *range.start(), high: *range.end() };
+            let gear = number(&steps).and_then(|steps| Gear::new(steps, memory.gear.turns()).ok());
+            memory.gear = gear.ok_or_else(|| Refused::new("steps", steps, allowed))?;
         }
-        let steps = memory.gear.steps();
-        let allowed = Expected::range(Quantity::Steps, 0, steps - 1);
-        memory.preset = preset.map_or(Ok(0), |setting| setting.within(..steps, allowed.clone()))?;
-        memory.zero_shift = zero_shift.map_or(Ok(0), value)?;
-        if demonstration {
+        if let Some(preset) = self.preset.take() {
+            memory.preset = Whole(Quantity::Steps, 0..=memory.gear.steps() - 1).take("preset", &preset)?;
+        }
+        (memory.counterclockwise, memory.zero_shift) = (self.counterclockwise, self.zero_shift);
+        if self.demonstration {
             *memory = memory.clone().with_demonstration();
         }
         Ok(())
     }
 }
 
-/// A number that a word has room for.
-fn value(setting: Setting<'_>) -> Result<u32, ConfigError> {
-    setting.within(..=Value::MAX.get(), Expected::number(0, Value::MAX.get()))
+fn mode(text: &str) -> Option<StartupMode> {
+    match number(text)? {
+        0 => Some(StartupMode::K3),
+        program => ProgramNumber::new(program).map(StartupMode::Cams),
+    }
 }
 
 #[cfg(test)]
@@ -297,6 +143,8 @@ mod tests {
             ..Memory::delivered()
         };
         let expected = Config {
+            counterclockwise: true,
+            zero_shift: 500,
             seed: 9,
             faults: "drop:0.25".parse().unwrap(),
             exceptions: 0.5,
@@ -312,7 +160,7 @@ mod tests {
             memory,
             mode: StartupMode::Cams(ProgramNumber::new(8).unwrap()),
             stores: 449,
-            temperature: -13,
+            celsius: -1.25,
             narrow_temperature: true,
             operating_time: 8,
             steps_minus_one: true,
@@ -320,6 +168,7 @@ mod tests {
             busy: Duration::from_millis(20),
             stale: 3,
             acknowledges_selection: false,
+            ..Config::default()
         };
         assert_eq!(read(query), Ok(expected));
         assert_eq!(Config::from_pairs(&[]), Ok(Config::default()));

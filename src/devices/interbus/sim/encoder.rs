@@ -130,7 +130,7 @@ impl Encoder {
                 serial_number: Value::of_word(config.serial_number + u32::from(number)).get(),
                 steps_minus_one: config.steps_minus_one,
                 complement_bit: config.complement_bit,
-                temperature: config.temperature,
+                temperature: config.temperature(),
                 narrow_temperature: config.narrow_temperature,
                 operating_time: config.operating_time,
             },

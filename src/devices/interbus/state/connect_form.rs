@@ -5,7 +5,7 @@ use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::devices::interbus::jobs::check;
-use crate::devices::interbus::procedures::PARAMETERS;
+use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 
@@ -142,7 +142,7 @@ impl InterbusForm {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }
         // What only a virtual encoder has is not taken along.
-        let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !Config::KEYS.contains(&name);
+        let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !Config::KEYS.contains(&name);
         parameters.rest(&self.rest, belongs);
         parameters
     }

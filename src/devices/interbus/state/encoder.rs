@@ -156,7 +156,7 @@ impl Encoder {
     /// Which of the two words of a register pair comes first.
     pub(super) fn order(&self) -> WordOrder {
         let Source::Link(url) = &self.session.source else { return WordOrder::default() };
-        url.query.get("order").and_then(WordOrder::read).unwrap_or_default()
+        url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
     }
 
     /// A person has said that the machine stands; nothing moves behind a virtual encoder.

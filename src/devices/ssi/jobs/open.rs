@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::Ssi;
 use crate::buses::bridge::jobs::FORMAT;
 use crate::buses::bridge::sim::Adapter;
-use crate::devices::ssi::procedures::{PARAMETERS, Station};
+use crate::devices::ssi::procedures::{LinkParameters, Station};
 use crate::kinds::at_adapter;
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
+use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, simulated};
 use crate::worker::{OpenError, Session};
 
 /// Everything about a link to an SSI encoder that can be told without opening it.
@@ -39,17 +39,10 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
 
 /// The line, and the virtual adapter, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
-    let query = match url.scheme {
-        Scheme::Sim => url.query.without(&PARAMETERS),
-        Scheme::Bridge | Scheme::Replay => {
-            check_parameters(&url.query, url.scheme, &PARAMETERS)?;
-            Vec::new()
-        }
-        Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => {
-            return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));
-        }
-    };
-    let adapter = Adapter::from_pairs(&query, at_adapter())?;
+    if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge | Scheme::Replay) {
+        return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));
+    }
+    let adapter = Adapter::from_pairs(&simulated(url, LinkParameters::KEYS, &[])?, at_adapter())?;
     Ok((Station::from_query(&url.query, margin(url.scheme))?, adapter))
 }
 

@@ -5,15 +5,30 @@ use std::time::Duration;
 
 use crate::analysis::Time;
 use crate::buses::bridge::procedures::flow::Flow;
-use crate::buses::bridge::procedures::{AdapterState, SupplyAfter};
+use crate::buses::bridge::procedures::{AdapterState, CLOCK, SupplyAfter};
 use crate::buses::bridge::protocol::Hello;
-use crate::expected::{Expected, Limit, Quantity};
-use crate::link::line::{LineState, MARGIN_ALLOWED, read_margin};
+use crate::expected::Quantity;
+use crate::link::line::{LineState, MARGIN};
 use crate::link::{Query, UrlError};
+use crate::parameter::{Maybe, Millivolts, Parameters, Whole};
+use crate::parameters;
 use crate::units::SupplyVoltage;
 
-/// Link parameters that describe the line and the encoder's supply.
-pub const PARAMETERS: [&str; 5] = ["margin", "clock", "pause", "voltage", SupplyAfter::PARAMETER];
+parameters! {
+    /// The line and the encoder's supply, as a link says.
+    pub struct LinkParameters: UrlError {
+        /// How much later than the protocol's worst case a reply may come; `None`: as usual for the link.
+        pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
+        /// Clock in hertz.
+        pub clock_hz: u32 = 400_000, "clock" => CLOCK;
+        /// Least pause between two words.
+        pub pause_us: u16 = 200, "pause" => Whole(Quantity::Microseconds, 1..=u16::MAX);
+        /// What the adapter gives the encoder; `None`: nothing.
+        pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE)), "connect.voltage" like "";
+        /// How the supply is left.
+        pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
+    }
+}
 
 /// How words are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +45,8 @@ impl Default for Asking {
     /// A word of 25 clocks, slow enough for 50 m of cable (SICK SSI description 2.7), with a pause behind which every family
     /// is ready.
     fn default() -> Self {
-        Asking { clocks: 25, clock_hz: 400_000, pause_us: 200 }
+        let LinkParameters { clock_hz, pause_us, .. } = LinkParameters::default();
+        Asking { clocks: 25, clock_hz, pause_us }
     }
 }
 
@@ -109,22 +125,11 @@ impl Station {
     /// # Errors
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
-        let mut station = Station::new(margin);
-        if let Some(margin) = query.read("margin", MARGIN_ALLOWED, read_margin)? {
-            station.line.margin = margin;
-        }
-        if let Some(clock) = query.read("clock", Expected::range(Quantity::Hertz, 80_000, 10_000_000), read_clock)? {
-            station.asking.clock_hz = clock;
-        }
-        if let Some(pause) = query.read("pause", Expected::range(Quantity::Microseconds, 1, u16::MAX), read_pause)? {
-            station.asking.pause_us = pause;
-        }
-        let millivolt =
-            query.read("voltage", Expected::range(Quantity::Volts, Limit::thousandths(4500), 30), read_voltage)?;
-        station.supply = millivolt.map(|millivolt| Supply { millivolt, measured: None });
-        if let Some(after) = query.read(SupplyAfter::PARAMETER, SupplyAfter::ALLOWED, SupplyAfter::read)? {
-            station.adapter.leave_supply(after);
-        }
+        let link = LinkParameters::read(query.pairs())?;
+        let mut station = Station::new(link.margin.unwrap_or(margin));
+        (station.asking.clock_hz, station.asking.pause_us) = (link.clock_hz, link.pause_us);
+        station.supply = link.millivolt.map(|millivolt| Supply { millivolt, measured: None });
+        station.adapter.leave_supply(link.after);
         Ok(station)
     }
 
@@ -161,21 +166,6 @@ impl fmt::Display for Station {
         let clock_hz = self.set.map_or(self.asking.clock_hz, |(_, clock_hz)| clock_hz);
         write!(f, "SSI of {} clocks at {clock_hz} Hz", self.asking.clocks)
     }
-}
-
-fn read_clock(text: &str) -> Option<u32> {
-    text.parse().ok().filter(|hz| (80_000..=10_000_000).contains(hz))
-}
-
-fn read_pause(text: &str) -> Option<u16> {
-    text.parse().ok().filter(|us| *us > 0)
-}
-
-/// Volts as millivolts.
-fn read_voltage(text: &str) -> Option<u16> {
-    let volts: f64 = text.parse().ok().filter(|volts: &f64| (0.0..=60.0).contains(volts))?;
-    // At most 60 000.
-    Some((volts * 1000.0).round() as u16).filter(|millivolt| Supply::RANGE.contains(millivolt))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::app::connect::target::{adapter_in_network, checked, entered, parted, 
 use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
-use crate::devices::ssi::procedures::PARAMETERS;
+use crate::devices::ssi::procedures::LinkParameters;
 use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
 
@@ -141,7 +141,7 @@ impl SsiForm {
         }
         parameters.entry("margin", &self.margin);
         // What only a virtual encoder has is not taken along.
-        let belongs = |name: &str| is_virtual || PARAMETERS.contains(&name) || !is_of_the_virtual(name);
+        let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !is_of_the_virtual(name);
         parameters.rest(&self.rest, belongs);
         parameters
     }

@@ -4,8 +4,9 @@ use std::time::Duration;
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::{Adapter, Attachable, Attached, BissDevice, SsiDevice};
-use crate::sim::setting::{Setting, pairs};
-use crate::sim::{ByteDevice, ConfigError, Faults, Motor};
+use crate::parameter::Values as _;
+use crate::sim::setting::pairs;
+use crate::sim::{ByteDevice, ConfigError, Faults, Motor, RPM};
 use crate::units::Moment;
 
 /// Who asks the adapter.
@@ -129,7 +130,7 @@ impl Attachable for DialSettings {
     fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
         let mut rpm = 0.0;
         for (key, value) in pairs.iter().filter(|(key, _)| key == "rpm") {
-            rpm = Setting { key, value }.rpm()?;
+            rpm = RPM.take(key, value)?;
         }
         let revolutions = f64::from(0x1234) + 0.75;
         let (motor, registers) = (Motor::at(rpm), [0x61; 0x80]);

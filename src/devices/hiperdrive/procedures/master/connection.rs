@@ -62,7 +62,7 @@ impl Master<'_> {
     /// # Errors
     /// [`Error::OtherMaster`], [`Error::Refused`]; the way.
     pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<Opened, Error> {
-        let order = self.station.order;
+        let order = self.station.link.order;
         let with = |pkw| Layout { topology, pkw, order };
         let tries = [
             (with(true), NetworkType::PointToPoint),
@@ -123,8 +123,8 @@ impl Master<'_> {
         };
         let to_target = parameters(NetworkType::PointToPoint, RealTimeFormat::Header).ok_or(Error::NoCyclic)?;
         let to_originator = parameters(kind, RealTimeFormat::Modeless).ok_or(Error::NoCyclic)?;
-        let interval = self.station.interval.as_micros() as u32;
-        let timeout = if self.station.interval < LONG { TIMEOUT } else { LONG_TIMEOUT };
+        let interval = self.station.link.interval.as_micros() as u32;
+        let timeout = if self.station.link.interval < LONG { TIMEOUT } else { LONG_TIMEOUT };
         let [configuration, to, from] = ASSEMBLIES;
         let open = ForwardOpen {
             timeout: RequestTimeout::TWO_SECONDS,
@@ -154,10 +154,10 @@ impl Master<'_> {
         let micros = |us: u32| Duration::from_micros(us.into());
         let to_target_interval = micros(opened.to_target_interval_us);
         let slowest = to_target_interval.max(micros(opened.to_originator_interval_us));
-        if slowest > LONGEST.min(self.station.interval * SLOWER) {
+        if slowest > LONGEST.min(self.station.link.interval * SLOWER) {
             self.close_blindly(&close);
             let milliseconds = |time: Duration| time.as_millis() as u64;
-            let (asked_ms, got_ms) = (milliseconds(self.station.interval), milliseconds(slowest));
+            let (asked_ms, got_ms) = (milliseconds(self.station.link.interval), milliseconds(slowest));
             return Err(Error::TooSlow { asked_ms, got_ms });
         }
         Ok(Opened {

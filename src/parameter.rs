@@ -1,0 +1,153 @@
+//! Parameters of a link and settings of a virtual device: a key with its value each. A struct made by [`parameters!`] declares
+//! each of them in one line; that is parsed, checked, printed and offered in a form from there. What values there are is a
+//! type of [`Values`].
+
+mod values;
+
+use crate::expected::Expected;
+
+pub use values::{ANY, Checked, Decimal, Maybe, Milliseconds, Millivolts, SWITCH, Values, Whole, Words, number};
+
+/// A value that a parameter does not take.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// The parameter's key.
+    pub key: String,
+    /// The value as it was written.
+    pub value: String,
+    /// What would do.
+    pub allowed: Expected,
+}
+
+impl Refused {
+    /// `allowed` says what would do instead of `value`.
+    pub fn new(key: &str, value: impl ToString, allowed: Expected) -> Self {
+        Refused { key: key.to_owned(), value: value.to_string(), allowed }
+    }
+}
+
+/// A parameter that a person can type into a form.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// The parameter's key.
+    pub key: &'static str,
+    /// The text that names it.
+    pub label: &'static str,
+    /// The sign of its unit; empty where it has none.
+    pub unit: &'static str,
+    /// What counts while the entry is empty, or an example.
+    pub hint: String,
+    /// It is a number that may have a decimal point.
+    pub is_decimal: bool,
+}
+
+/// Parameters that stand together, made by [`parameters!`]. The default is what counts where they say nothing.
+pub trait Parameters: Default {
+    /// Why one of them is refused.
+    type Error;
+
+    /// Their keys, in the order in which they are declared.
+    const KEYS: &'static [&'static str];
+
+    /// Takes a value; false where there is no such key.
+    ///
+    /// # Errors
+    /// A value that its key does not take.
+    fn set(&mut self, key: &str, value: &str) -> Result<bool, Self::Error>;
+
+    /// Those that a person can type, in the order in which they are declared.
+    fn entries() -> Vec<Entry>;
+
+    /// Reads those that there are; the others are left alone. Of a key given twice the last counts.
+    ///
+    /// # Errors
+    /// The first value that its key does not take.
+    fn read(pairs: &[(String, String)]) -> Result<Self, Self::Error> {
+        let mut own = Self::default();
+        for (key, value) in pairs {
+            own.set(key, value)?;
+        }
+        Ok(own)
+    }
+}
+
+/// Declares a struct of parameters:
+///
+/// ```ignore
+/// parameters! {
+///     /// The gateway.
+///     pub struct Place: UrlError {
+///         /// The unit that the gateway is asked for.
+///         pub unit: u8 = 1, "unit" => Whole(Quantity::Unit, 0..=255), "connect.unit";
+///         pub known: bool = false;
+///     }
+/// }
+/// ```
+///
+/// A line has field, type, default, key and [`Values`]; then, for a form, the text that names the entry, with an example
+/// after `like` where the default says little. A line without a key is a field and no parameter.
+#[macro_export]
+macro_rules! parameters {
+    (@hint $values:expr, $default:expr) => {
+        ($values).print(&$default)
+    };
+    (@hint $values:expr, $default:expr, $example:literal) => {
+        $example.to_owned()
+    };
+    (
+        $(#[$meta:meta])*
+        $vis:vis struct $name:ident: $error:ty {
+            $(
+                $(#[$doc:meta])*
+                $own:vis $field:ident: $type:ty = $default:expr
+                $(, $key:literal => $values:expr $(, $label:literal $(like $example:literal)?)?)?;
+            )*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq)]
+        $vis struct $name {
+            $($(#[$doc])* $own $field: $type,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                $name { $($field: $default,)* }
+            }
+        }
+
+        #[allow(dead_code, reason = "not all are asked for their keys")]
+        impl $name {
+            /// The keys, in the order in which they are declared.
+            $vis const KEYS: &'static [&'static str] = &[$($($key,)?)*];
+        }
+
+        impl $crate::parameter::Parameters for $name {
+            type Error = $error;
+
+            const KEYS: &'static [&'static str] = $name::KEYS;
+
+            fn set(&mut self, key: &str, value: &str) -> Result<bool, $error> {
+                #[allow(unused_imports, reason = "some have values of their own alone")]
+                use $crate::parameter::Values as _;
+                match key {
+                    $($($key => self.$field = ($values).take(key, value)?,)?)*
+                    _ => return Ok(false),
+                }
+                Ok(true)
+            }
+
+            fn entries() -> Vec<$crate::parameter::Entry> {
+                #[allow(unused_imports, reason = "some have no entries")]
+                use $crate::parameter::Values as _;
+                vec![$($($($crate::parameter::Entry {
+                    key: $key,
+                    label: $label,
+                    unit: ($values).unit(),
+                    hint: $crate::parameters!(@hint $values, $default $(, $example)?),
+                    is_decimal: ($values).is_decimal(),
+                },)?)?)*]
+            }
+        }
+    };
+}

@@ -1,0 +1,275 @@
+//! What values a parameter takes: how they are read and printed, and what is expected where one is not taken.
+
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use super::Refused;
+use crate::expected::{Expected, Limit, Quantity};
+
+/// The values that a parameter takes.
+pub trait Values {
+    /// What one of them means.
+    type Value;
+
+    /// The meaning of a value as it is written.
+    fn read(&self, text: &str) -> Option<Self::Value>;
+
+    /// What they are.
+    fn allowed(&self) -> Expected;
+
+    /// A value as it is written, where it is short enough for an example.
+    fn print(&self, _value: &Self::Value) -> String {
+        String::new()
+    }
+
+    /// The sign of their unit; empty where they have none.
+    fn unit(&self) -> &'static str {
+        ""
+    }
+
+    /// They may have a decimal point.
+    fn is_decimal(&self) -> bool {
+        false
+    }
+
+    /// The meaning of the value of a key.
+    ///
+    /// # Errors
+    /// With what is allowed.
+    fn take(&self, key: &str, value: &str) -> Result<Self::Value, Refused> {
+        self.read(value).ok_or_else(|| Refused::new(key, value, self.allowed()))
+    }
+}
+
+/// Whole numbers: what they count, and their range.
+#[derive(Clone, Debug)]
+pub struct Whole<T>(pub Quantity, pub RangeInclusive<T>);
+
+/// Numbers that may have a decimal point: what they count, and their range, exact to a thousandth.
+#[derive(Clone, Debug)]
+pub struct Decimal(pub Quantity, pub RangeInclusive<f64>);
+
+/// Milliseconds of a range.
+#[derive(Clone, Debug)]
+pub struct Milliseconds(pub RangeInclusive<u64>);
+
+/// Volts, read as millivolts of a range.
+#[derive(Clone, Debug)]
+pub struct Millivolts(pub RangeInclusive<u16>);
+
+/// Words, each with its meaning.
+#[derive(Clone, Copy, Debug)]
+pub struct Words<T: 'static>(pub &'static [(&'static str, T)]);
+
+/// Values of a form of their own, and how one is read.
+#[derive(Clone, Debug)]
+pub struct Checked<T>(pub Expected, pub fn(&str) -> Option<T>);
+
+/// Values of a parameter that has none where it is left out.
+#[derive(Clone, Debug)]
+pub struct Maybe<V>(pub V);
+
+/// On or off.
+pub const SWITCH: Words<bool> = Words(&[("on", true), ("off", false)]);
+
+/// Any text: what it means depends on other parameters. None is refused here.
+pub const ANY: Checked<String> = Checked(Expected::words(&[]), |text| Some(text.to_owned()));
+
+/// A whole number that fits into its type: decimal, or hexadecimal behind `0x`.
+pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
+    let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u64::from_str_radix(digits, 16).ok()?.into(),
+        None => text.parse().ok()?,
+    };
+    T::try_from(number).ok()
+}
+
+/// The sign of a unit, where values stand in a form with it.
+const fn sign(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Milliseconds => "ms",
+        Quantity::Microseconds => "µs",
+        Quantity::Hertz => "Hz",
+        Quantity::Volts => "V",
+        _ => "",
+    }
+}
+
+impl<T: TryFrom<i128> + Into<i128> + Copy + PartialOrd> Values for Whole<T> {
+    type Value = T;
+
+    fn read(&self, text: &str) -> Option<T> {
+        number(text).filter(|number| self.1.contains(number))
+    }
+
+    fn allowed(&self) -> Expected {
+        Expected::range(self.0, *self.1.start(), *self.1.end())
+    }
+
+    fn print(&self, value: &T) -> String {
+        (*value).into().to_string()
+    }
+
+    fn unit(&self) -> &'static str {
+        sign(self.0)
+    }
+}
+
+impl Values for Decimal {
+    type Value = f64;
+
+    fn read(&self, text: &str) -> Option<f64> {
+        text.parse().ok().filter(|number| self.1.contains(number))
+    }
+
+    fn allowed(&self) -> Expected {
+        let limit = |number: &f64| Limit::thousandths((number * 1000.0).round() as i128);
+        Expected::range(self.0, limit(self.1.start()), limit(self.1.end()))
+    }
+
+    fn print(&self, value: &f64) -> String {
+        value.to_string()
+    }
+
+    fn unit(&self) -> &'static str {
+        sign(self.0)
+    }
+
+    fn is_decimal(&self) -> bool {
+        true
+    }
+}
+
+impl Values for Milliseconds {
+    type Value = Duration;
+
+    fn read(&self, text: &str) -> Option<Duration> {
+        number(text).filter(|ms| self.0.contains(ms)).map(Duration::from_millis)
+    }
+
+    fn allowed(&self) -> Expected {
+        Expected::range(Quantity::Milliseconds, *self.0.start(), *self.0.end())
+    }
+
+    fn print(&self, value: &Duration) -> String {
+        value.as_millis().to_string()
+    }
+
+    fn unit(&self) -> &'static str {
+        sign(Quantity::Milliseconds)
+    }
+}
+
+impl Values for Millivolts {
+    type Value = u16;
+
+    fn read(&self, text: &str) -> Option<u16> {
+        let millivolts = (text.parse::<f64>().ok()? * 1000.0).round();
+        // Within the range of its type, `as` is exact.
+        let fits = (0.0..=f64::from(u16::MAX)).contains(&millivolts);
+        fits.then_some(millivolts as u16).filter(|own| self.0.contains(own))
+    }
+
+    fn allowed(&self) -> Expected {
+        let limit = |millivolts: u16| Limit::thousandths(millivolts.into());
+        Expected::range(Quantity::Volts, limit(*self.0.start()), limit(*self.0.end()))
+    }
+
+    fn print(&self, value: &u16) -> String {
+        (f64::from(*value) / 1000.0).to_string()
+    }
+
+    fn unit(&self) -> &'static str {
+        sign(Quantity::Volts)
+    }
+
+    fn is_decimal(&self) -> bool {
+        true
+    }
+}
+
+impl<T: Clone + PartialEq> Values for Words<T> {
+    type Value = T;
+
+    fn read(&self, text: &str) -> Option<T> {
+        self.0.iter().find(|(word, _)| *word == text).map(|(_, meaning)| meaning.clone())
+    }
+
+    fn allowed(&self) -> Expected {
+        Expected::Words(self.0.iter().map(|(word, _)| *word).collect())
+    }
+
+    fn print(&self, value: &T) -> String {
+        self.0.iter().find(|(_, meaning)| meaning == value).map_or_else(String::new, |(word, _)| (*word).to_owned())
+    }
+}
+
+impl<T> Values for Checked<T> {
+    type Value = T;
+
+    fn read(&self, text: &str) -> Option<T> {
+        (self.1)(text)
+    }
+
+    fn allowed(&self) -> Expected {
+        self.0.clone()
+    }
+}
+
+impl<V: Values> Values for Maybe<V> {
+    type Value = Option<V::Value>;
+
+    fn read(&self, text: &str) -> Option<Self::Value> {
+        self.0.read(text).map(Some)
+    }
+
+    fn allowed(&self) -> Expected {
+        self.0.allowed()
+    }
+
+    fn print(&self, value: &Self::Value) -> String {
+        value.as_ref().map_or_else(String::new, |value| self.0.print(value))
+    }
+
+    fn unit(&self) -> &'static str {
+        self.0.unit()
+    }
+
+    fn is_decimal(&self) -> bool {
+        self.0.is_decimal()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_read_printed_and_refused() {
+        let told = |allowed: Expected| allowed.to_string();
+        let unit = Whole::<u8>(Quantity::Unit, 1..=247);
+        assert_eq!(
+            [unit.read("0x10"), unit.read("247"), unit.read("248"), unit.read("")],
+            [Some(16), Some(247), None, None]
+        );
+        assert_eq!((unit.print(&16), told(unit.allowed())), ("16".to_owned(), "a unit from 1 to 247".to_owned()));
+        let time = Milliseconds(50..=8000);
+        assert_eq!((time.read("50"), time.read("49")), (Some(Duration::from_millis(50)), None));
+        assert_eq!((time.print(&Duration::from_secs(2)), time.unit()), ("2000".to_owned(), "ms"));
+        let supply = Millivolts(4_750..=12_500);
+        assert_eq!(
+            [supply.read("4.75"), supply.read("12.501"), supply.read("NaN"), supply.read("-5")],
+            [Some(4_750), None, None, None]
+        );
+        assert_eq!(told(supply.allowed()), "volts from 4.75 to 12.5");
+        let warm = Decimal(Quantity::Celsius, -12.5..=40.0);
+        assert_eq!([warm.read("-12.5"), warm.read("-12.6"), warm.read("inf")], [Some(-12.5), None, None]);
+        assert_eq!(told(warm.allowed()), "degrees Celsius from -12.5 to 40");
+        assert_eq!((Maybe(SWITCH).read("on"), Maybe(SWITCH).read("yes")), (Some(Some(true)), None));
+        let refused = SWITCH.take("echo", "yes").unwrap_err();
+        assert_eq!(
+            (refused.key.as_str(), refused.value.as_str(), told(refused.allowed)),
+            ("echo", "yes", "on or off".to_owned())
+        );
+    }
+}
