@@ -19,6 +19,7 @@ pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod unique_names;
+mod write;
 mod written;
 
 pub use body::{Body, Formats, Profile, ProfileBody, ProfileFormat};
@@ -32,4 +33,6 @@ pub use restore::{Restore, RestoreOptions};
 pub use rewrite::{Changed, divergence};
 pub use ron_text::{Entries, Unknown, Writer};
 pub use source::{Carried, Change, Step};
-pub use written::Written;
+pub(crate) use write::InterruptedWrite;
+pub use write::{Confirmed, Interrupted, OperationError, Write};
+pub use written::{WriteRecord, Written};

@@ -12,3 +12,29 @@ pub struct Written {
     /// Persistent writes spent, or that may have been; repeated ones included.
     pub write_cycles: u64,
 }
+
+/// What a kind of device keeps of a write.
+pub trait WriteRecord: Default {
+    /// Operations carried out, of the plan's.
+    fn ops(&self) -> usize;
+    /// Persistent writes spent, or that may have been.
+    fn write_cycles(&self) -> u64;
+}
+
+impl WriteRecord for Written {
+    fn ops(&self) -> usize {
+        self.ops
+    }
+
+    fn write_cycles(&self) -> u64 {
+        self.write_cycles
+    }
+}
+
+impl Written {
+    /// Counts an operation that was carried out, and so many things that it has changed.
+    pub fn carried_out(&mut self, changed: u64) {
+        self.ops += 1;
+        self.written += changed;
+    }
+}

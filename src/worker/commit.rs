@@ -1,42 +1,23 @@
-//! Carrying a plan out, for every kind of device in the same order: consent and base → before-image on disk → logbook:
-//! intent → the operations, each read back → logbook: result. A device brings what differs and cannot leave a step out:
-//! its operations take an [`Intended`], which only [`commit`] makes, after the steps before.
+//! The one way to write, for every kind of device in the same order: consent and base → before-image on disk → logbook:
+//! intent → the operations, each read back → logbook: result. A device brings what differs as a [`Write`] and cannot leave
+//! a step out: its operations take a [`Confirmed`], which only [`write_plan`] has made.
 
-use std::path::{Path, PathBuf};
+mod terms;
+#[cfg(test)]
+mod tests;
+
+use std::hash::Hash;
+use std::path::PathBuf;
 
 use jiff::Timestamp;
 
-use super::interruption::{Interruption, JobError};
-use crate::profile::{Body, Consent, Document, Operation, Plan};
+pub use terms::{Terms, Write as OldWrite, commit};
+
+use super::{JobError, Progress};
+use crate::profile::{
+    Body, Confirmed, Consent, Document, InterruptedWrite, Operation, OperationError, Plan, Write, WriteRecord,
+};
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
-
-/// What a kind of device brings to a write.
-pub trait Write {
-    /// Consent and base hold.
-    type Confirmed;
-    /// What was written; nothing, to begin with.
-    type Written: Default;
-    /// Why nothing can be written.
-    type Refusal;
-    /// How far a write came that ended early, and why.
-    type Interrupted: Interruption;
-
-    /// Checks the consent, and reads again what the plan rests upon.
-    fn confirm(&mut self) -> Result<Self::Confirmed, Self::Refusal>;
-
-    /// A restorable text of what the plan touches, as it was.
-    fn before_image(&self) -> String;
-
-    /// Exactly the operations that were confirmed, each read back.
-    fn carry_out(
-        &mut self,
-        confirmed: &Self::Confirmed,
-        intended: &Intended,
-    ) -> Result<Self::Written, Box<Self::Interrupted>>;
-
-    /// Write cycles that it has cost.
-    fn write_cycles(written: &Self::Written) -> u64;
-}
 
 /// A plan that a person consented to, with what was read for it.
 #[derive(Clone, Debug)]
@@ -47,36 +28,6 @@ pub struct Agreed<P> {
     pub consent: Consent,
     /// Write although the device counts as worn, or its write cycles are not known.
     pub force_wear: bool,
-}
-
-/// What is written, and into what.
-pub struct Terms {
-    /// The device.
-    pub(super) device: DeviceKey,
-    /// What the operations change, as the logbook tells it.
-    pub(super) items: Vec<String>,
-    /// Write cycles that they cost.
-    pub(super) cost: u64,
-    /// Write cycles that this computer has seen the device take.
-    pub(super) seen: Option<u64>,
-    /// Write cycles from which the device counts as worn.
-    pub(super) limit: u64,
-    /// Write although it does.
-    pub(super) force_wear: bool,
-}
-
-impl Terms {
-    /// A plan, what is told of its operations, and how much of the device's life is known to be gone.
-    pub fn of<Base, Op: Operation>(
-        device: DeviceKey,
-        plan: &Plan<Base, Op>,
-        note: impl Fn(&Op) -> String,
-        (seen, limit): (Option<u64>, u64),
-        force_wear: bool,
-    ) -> Self {
-        let items = plan.ops.iter().map(note).collect();
-        Terms { device, items, cost: plan.write_cycles(), seen, limit, force_wear }
-    }
 }
 
 /// The before-image is kept, and the logbook has been told.
@@ -99,6 +50,9 @@ pub struct Committed<W> {
 /// Why a write was not begun, whatever the device says. Nothing was written.
 #[derive(Debug, thiserror::Error)]
 pub enum NotBegun {
+    /// The consent is for another plan.
+    #[error("the consent is for another plan")]
+    OtherPlan,
     /// How many write cycles the device has had cannot be read, or these cannot be counted.
     #[error("the write cycles so far are not known, {cost} more would not be counted")]
     WearUnknown {
@@ -120,30 +74,73 @@ pub enum NotBegun {
     NotKept(FileError),
 }
 
-/// A write that is not done, or not to its end; where consent or base do not hold, it is the device's error.
-pub(super) type Failed<W, P, K> = JobError<<W as Write>::Refusal, P, <W as Write>::Interrupted, K>;
+/// A plan that a job has made, with what was read for it: what a write has to know beside the wire.
+pub trait Planned {
+    /// What the plan rests upon.
+    type Base: Hash;
+    /// An operation of it.
+    type Op: Operation + Clone + Hash;
+    /// Kinds of change that differ in what completes one that was cut off.
+    type Kind;
 
-/// The one way to write a change of such a kind. A plan without operations is done.
-pub fn commit<W: Write, P, K>(
+    /// Returns what would be written.
+    fn plan(&self) -> &Plan<Self::Base, Self::Op>;
+
+    /// Returns the kind of change that it is for.
+    fn kind(&self) -> Self::Kind;
+
+    /// Returns how backups and the logbook know the device.
+    fn device(&self, is_virtual: bool) -> DeviceKey;
+
+    /// Returns the write cycles that this computer has seen the device take; `None` where the logbook does not tell.
+    fn cycles_seen(&self) -> Option<u64>;
+
+    /// Returns the write cycles beyond which the device counts as worn.
+    fn wear_limit(&self) -> u64;
+
+    /// Returns what an operation changes, as the logbook tells it.
+    fn note(&self, op: &Self::Op) -> String;
+
+    /// Returns a restorable text of what the plan touches, as it was.
+    fn before_image(&self) -> String;
+}
+
+/// A write that is not done, or not to its end; where the base does not hold, it is the device's error.
+type Unfinished<P, W, E> =
+    JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWrite<W>, <P as Planned>::Kind>;
+
+/// Writes a plan that a person consented to: the one way to write, for every kind of device. Each operation is told before
+/// it begins. A plan without operations is done.
+///
+/// # Errors
+/// See [`JobError`].
+pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     store: &Store,
-    terms: &Terms,
-    kind: K,
+    is_virtual: bool,
+    agreed: &Agreed<P>,
     write: &mut W,
-) -> Result<Committed<W::Written>, Failed<W, P, K>> {
-    if terms.items.is_empty() {
-        return Ok(Committed { written: W::Written::default(), backup: None, logbook_warning: None });
+    tell: &mut dyn FnMut(Progress<&P::Op>),
+) -> Result<Committed<W::Written>, Unfinished<P, W, E>> {
+    let Agreed { prepared, consent, force_wear } = agreed;
+    let plan = prepared.plan();
+    if plan.is_empty() {
+        return Ok(Committed::default());
     }
-    check_wear(terms.seen, terms.cost, terms.limit, terms.force_wear)?;
-    let confirmed = write.confirm().map_err(JobError::Device)?;
-    let intended = Intended::note(store, terms, &write.before_image()).map_err(NotBegun::NotKept)?;
-    if let (Err(why), false) = (&intended.entry, terms.force_wear || terms.cost == 0) {
+    let (cost, planned) = (plan.write_cycles(), plan.ops.len());
+    check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), *force_wear)?;
+    let confirmed = Confirmed::confirm(plan, *consent, write).ok_or(NotBegun::OtherPlan)?.map_err(JobError::Device)?;
+    let items = plan.ops.iter().map(|op| prepared.note(op)).collect::<Vec<_>>().join(", ");
+    let intended = Intended::note(store, &prepared.device(is_virtual), &items, cost, &prepared.before_image());
+    let intended = intended.map_err(NotBegun::NotKept)?;
+    if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {
         tracing::warn!("{why}");
-        return Err(NotBegun::WearUnknown { cost: terms.cost }.into());
+        return Err(NotBegun::WearUnknown { cost }.into());
     }
-    let ended = write.carry_out(&confirmed, &intended);
+    let tell = &mut |at: usize, what: &P::Op| tell(Progress { done: at as u64, total: planned as u64, what });
+    let ended = confirmed.carry_out(write, tell);
     let (outcome, spent) = match &ended {
-        Ok(written) => (Outcome::Done, W::write_cycles(written)),
-        Err(interrupted) => (interrupted.why().map_or(Outcome::Cancelled, Outcome::Failed), interrupted.write_cycles()),
+        Ok(written) => (Outcome::Done, written.write_cycles()),
+        Err(own) => (own.reason().map_or(Outcome::Cancelled, Outcome::Failed), own.done.write_cycles()),
     };
     let (backup, logbook_warning) = intended.conclude(outcome, spent);
     match ended {
@@ -152,7 +149,7 @@ pub fn commit<W: Write, P, K>(
             if let Some(why) = logbook_warning {
                 tracing::warn!("{why}");
             }
-            Err(JobError::Interrupted { interrupted, backup, planned: terms.items.len(), kind })
+            Err(JobError::Interrupted { interrupted, backup, planned, kind: prepared.kind() })
         }
     }
 }
@@ -206,10 +203,13 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
 
 impl Intended {
     /// Keeps the before-image and tells the logbook.
-    fn note(store: &Store, terms: &Terms, before_image: &str) -> Result<Self, FileError> {
-        let DeviceKey { kind, serial_number, .. } = &terms.device;
-        let backup = store.backups().keep(kind, serial_number, Timestamp::now(), before_image)?;
-        let entry = intend(&store.logbook_path(), terms, &backup);
+    fn note(store: &Store, device: &DeviceKey, items: &str, cost: u64, before: &str) -> Result<Self, FileError> {
+        let backup = store.backups().keep(&device.kind, &device.serial_number, Timestamp::now(), before)?;
+        let intend = |mut logbook: Logbook| {
+            let id = logbook.intend(Timestamp::now(), device, items, cost, Some(&backup))?;
+            Ok((logbook, id))
+        };
+        let entry = Logbook::open(&store.logbook_path()).and_then(intend);
         Ok(Intended { backup, entry })
     }
 
@@ -220,174 +220,5 @@ impl Intended {
             Err(error) => Some(error),
         };
         (self.backup, warning)
-    }
-}
-
-fn intend(path: &Path, terms: &Terms, backup: &Path) -> Result<(Logbook, EntryId), LogbookError> {
-    let mut logbook = Logbook::open(path)?;
-    let what = terms.items.join(", ");
-    let id = logbook.intend(Timestamp::now(), &terms.device, &what, terms.cost, Some(backup))?;
-    Ok((logbook, id))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Notes what is asked of it, and looks on disk what has been done before.
-    struct Spy {
-        store: Store,
-        steps: Vec<&'static str>,
-        refuses: bool,
-        ends_early: bool,
-    }
-
-    /// The user wished it, so many write cycles after it had begun.
-    struct Cancelled {
-        cycles: u64,
-    }
-
-    impl Interruption for Cancelled {
-        type Error = ();
-
-        fn error(&self) -> Option<&()> {
-            None
-        }
-
-        fn why(&self) -> Option<String> {
-            None
-        }
-
-        fn done(&self) -> usize {
-            0
-        }
-
-        fn write_cycles(&self) -> u64 {
-            self.cycles
-        }
-    }
-
-    impl Spy {
-        fn open_intents(&self) -> usize {
-            let logbook = Logbook::open(&self.store.logbook_path()).unwrap();
-            let entries = logbook.history(&terms(0).device, 9).unwrap();
-            entries.iter().filter(|entry| entry.conclusion.is_none()).count()
-        }
-    }
-
-    impl Write for Spy {
-        type Confirmed = ();
-        type Written = u64;
-        type Refusal = ();
-        type Interrupted = Cancelled;
-
-        fn confirm(&mut self) -> Result<(), ()> {
-            self.steps.push("confirm");
-            assert!(self.store.backups().list("spy", "1").unwrap().is_empty());
-            if self.refuses { Err(()) } else { Ok(()) }
-        }
-
-        fn before_image(&self) -> String {
-            "before".to_owned()
-        }
-
-        fn carry_out(&mut self, (): &(), _intended: &Intended) -> Result<u64, Box<Cancelled>> {
-            self.steps.push("carry out");
-            assert_eq!(self.store.backups().list("spy", "1").unwrap().len(), 1);
-            assert_eq!(self.open_intents(), 1);
-            if self.ends_early { Err(Box::new(Cancelled { cycles: 1 })) } else { Ok(2) }
-        }
-
-        fn write_cycles(written: &u64) -> u64 {
-            *written
-        }
-    }
-
-    fn terms(seen: u64) -> Terms {
-        let device = DeviceKey {
-            kind: "spy".to_owned(),
-            device_type: "1".to_owned(),
-            serial_number: "1".to_owned(),
-            is_virtual: true,
-        };
-        Terms {
-            device,
-            items: vec!["a".to_owned(), "b".to_owned()],
-            cost: 2,
-            seen: Some(seen),
-            limit: 10,
-            force_wear: false,
-        }
-    }
-
-    #[test]
-    fn every_write_takes_all_steps_in_their_order() {
-        let cases = [
-            ("done", 0, false, false, vec!["confirm", "carry out"], 2),
-            ("cut off", 0, false, true, vec!["confirm", "carry out"], 1),
-            ("refused", 0, true, false, vec!["confirm"], 0),
-            ("worn", 9, false, false, vec![], 0),
-        ];
-        for (label, seen, refuses, ends_early, steps, spent) in cases {
-            let root = tempfile::tempdir().unwrap();
-            let store = Store::at(root.path());
-            let mut spy = Spy { store: store.clone(), steps: Vec::new(), refuses, ends_early };
-            let ended: Result<_, Failed<Spy, (), char>> = commit(&store, &terms(seen), 'k', &mut spy);
-            assert_eq!(spy.steps, steps, "{label}");
-            assert_eq!(cycles_seen(&store, &terms(0).device), Some(spent), "{label}");
-            match ended {
-                Ok(done) => assert!(label == "done" && done.written == 2 && done.logbook_warning.is_none()),
-                Err(JobError::Interrupted { interrupted, backup, planned: 2, kind: 'k' }) => {
-                    assert!(label == "cut off" && interrupted.cycles == 1 && backup.exists());
-                }
-                Err(JobError::Device(())) => assert_eq!(label, "refused"),
-                Err(JobError::NotBegun(NotBegun::Worn { seen: 9, cost: 2, limit: 10 })) => assert_eq!(label, "worn"),
-                Err(_) => panic!("{label}"),
-            }
-        }
-    }
-
-    /// Issue 22.4: a count that is not known is no 0. It opens by force alone, and is told then.
-    #[test]
-    fn a_logbook_that_cannot_be_used_stops_a_write() {
-        let root = tempfile::tempdir().unwrap();
-        let store = Store::at(root.path());
-        std::fs::create_dir_all(store.logbook_path()).unwrap();
-        struct Plain(u32);
-        impl Write for Plain {
-            type Confirmed = ();
-            type Written = ();
-            type Refusal = ();
-            type Interrupted = Cancelled;
-            fn confirm(&mut self) -> Result<(), ()> {
-                Ok(())
-            }
-            fn before_image(&self) -> String {
-                String::new()
-            }
-            fn carry_out(&mut self, (): &(), _: &Intended) -> Result<(), Box<Cancelled>> {
-                self.0 += 1;
-                Ok(())
-            }
-            fn write_cycles((): &()) -> u64 {
-                2
-            }
-        }
-        let seen = cycles_seen(&store, &terms(0).device);
-        assert_eq!(seen, None);
-        // Not read; or read before and not to be written now.
-        for seen in [seen, Some(0)] {
-            let mut plain = Plain(0);
-            let terms = |force_wear, cost| Terms { seen, force_wear, cost, ..terms(0) };
-            let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(false, 2), (), &mut plain);
-            let refused = matches!(ended, Err(JobError::NotBegun(NotBegun::WearUnknown { cost: 2 })));
-            assert!(refused && plain.0 == 0, "{seen:?}");
-            let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(true, 2), (), &mut plain);
-            let Ok(done) = ended else { panic!("{seen:?}") };
-            assert!(done.logbook_warning.is_some() && plain.0 == 1, "{seen:?}");
-            // What costs nothing wears nothing.
-            let ended: Result<_, Failed<Plain, (), ()>> = commit(&store, &terms(false, 0), (), &mut plain);
-            assert!(ended.is_ok() && plain.0 == 2, "{seen:?}");
-        }
     }
 }

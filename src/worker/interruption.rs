@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::NotBegun;
+use crate::profile::{Interrupted, OperationError, WriteRecord};
 
 /// How far a write came that ended early, as its kind of device tells it.
 pub trait Interruption {
@@ -20,6 +21,26 @@ pub trait Interruption {
 
     /// Write cycles spent, or that may have been.
     fn write_cycles(&self) -> u64;
+}
+
+impl<Op, E: OperationError, Done: WriteRecord, Left> Interruption for Interrupted<Op, E, Done, Left> {
+    type Error = E::Device;
+
+    fn error(&self) -> Option<&E::Device> {
+        self.cause.device()
+    }
+
+    fn why(&self) -> Option<String> {
+        self.reason()
+    }
+
+    fn done(&self) -> usize {
+        self.done.ops()
+    }
+
+    fn write_cycles(&self) -> u64 {
+        self.done.write_cycles()
+    }
 }
 
 /// Why a job ended early, of a device with errors `E`, errors of planning `P`, writes that are cut off as `I` tells, and

@@ -149,6 +149,11 @@ impl<W> Progress<W> {
     pub fn at<Op>(ops: &[Op], number: usize, what: W) -> Self {
         Progress { done: number as u64, total: ops.len() as u64, what }
     }
+
+    /// The same progress, with what is being done in other terms.
+    pub fn map<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
+        Progress { done: self.done, total: self.total, what: terms(self.what) }
+    }
 }
 
 /// What a job tells on its way.

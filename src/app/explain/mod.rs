@@ -138,6 +138,7 @@ pub fn newer_profile(path: &Path, document: &Document) -> Text {
 /// Why a write was not begun.
 pub fn not_begun(why: &NotBegun) -> Text {
     match why {
+        NotBegun::OtherPlan => Text::new("write.other_plan"),
         NotBegun::NotKept(error) => Text::new("write.not_kept").with_text("why", file(error)),
         NotBegun::WearUnknown { cost } => Text::new("write.uncounted").with("cost", cost),
         NotBegun::Worn { seen, cost, limit } => {

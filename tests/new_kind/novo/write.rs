@@ -1,7 +1,7 @@
 //! What a Novo encoder brings to a write.
 
 use encoder_studio::profile::{Body, Written};
-use encoder_studio::worker::commit::{Agreed, Intended, Write, backup_of};
+use encoder_studio::worker::commit::{Agreed, Intended, OldWrite as Write, backup_of};
 use encoder_studio::worker::{Desk, Interruption, Progress, Tell};
 
 use super::jobs::{Error, Novo, Prepared, Told};

@@ -6,7 +6,7 @@ use crate::devices::biss::procedures::write::{Confirmed, Interrupted, Left, Writ
 use crate::devices::biss::procedures::{Error, Master};
 use crate::devices::biss::profile::{BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, Unknown};
-use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
+use crate::worker::commit::{Intended, OldWrite as Write, Terms, backup_of, commit as carry_through};
 use crate::worker::{Desk, Interruption, Progress};
 
 pub(super) fn commit(

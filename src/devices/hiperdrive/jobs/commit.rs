@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::procedures::write::{Confirmed, Interrupted, Writ
 use crate::devices::hiperdrive::procedures::{Error, Master};
 use crate::devices::hiperdrive::profile::{HiperdriveProfile, Op};
 use crate::profile::Body;
-use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
+use crate::worker::commit::{Intended, OldWrite as Write, Terms, backup_of, commit as carry_through};
 use crate::worker::{Desk, Interruption, Progress, Tell};
 
 pub(super) fn commit(

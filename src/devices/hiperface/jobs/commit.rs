@@ -1,14 +1,14 @@
-//! What a HIPERFACE encoder brings to a write.
+//! Carries a plan out.
 
-use super::{Commit, Committed, Doing, Hiperface, JobError, Prepared, WEAR_LIMIT};
-use crate::devices::hiperface::procedures::write::{Confirmed, Interrupted, Written, carry_out, confirm};
-use crate::devices::hiperface::procedures::{Error, Identity, Master, profile_of};
-use crate::devices::hiperface::profile::{Op, Recorded, Scalar, created_by};
+use super::{ChangeKind, Commit, Committed, Doing, Hiperface, JobError, Prepared, WEAR_LIMIT};
+use crate::devices::hiperface::procedures::write::EncoderWrite;
+use crate::devices::hiperface::procedures::{Identity, profile_of};
+use crate::devices::hiperface::profile::{Base, HiperfacePlan, Op, Recorded, Scalar, created_by};
 use crate::devices::hiperface::protocol::KIND;
 use crate::profile::Body;
 use crate::store::DeviceKey;
-use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
-use crate::worker::{Desk, Interruption, Progress};
+use crate::worker::commit::{Planned, backup_of, write_plan};
+use crate::worker::{Desk, Progress};
 
 pub(super) fn commit(
     encoder: &mut Hiperface,
@@ -16,13 +16,9 @@ pub(super) fn commit(
     commit: &Commit,
     tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<Committed, JobError> {
-    let prepared = &commit.prepared;
-    let plan = &prepared.plan;
-    let store = desk.store.clone();
-    let device = device_key(&prepared.identity, desk.is_virtual);
-    let terms = Terms::of(device, plan, Op::item, (prepared.cycles_seen, WEAR_LIMIT), commit.force_wear);
-    let mut write = EncoderWrite { master: encoder.master(desk), commit, tell };
-    carry_through(&store, &terms, prepared.kind, &mut write)
+    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let mut write = EncoderWrite::new(encoder.master(desk), &commit.prepared.identity);
+    write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| Doing::Operation(op.clone()))))
 }
 
 /// How backups and the logbook know an encoder.
@@ -35,70 +31,47 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     }
 }
 
-struct EncoderWrite<'w, 'm> {
-    master: Master<'m>,
-    commit: &'w Commit,
-    tell: &'w mut dyn FnMut(Progress<Doing>),
-}
+impl Planned for Prepared {
+    type Base = Base;
+    type Op = Op;
+    type Kind = ChangeKind;
 
-impl<'w> Write for EncoderWrite<'w, '_> {
-    type Confirmed = Confirmed<'w>;
-    type Written = Written;
-    type Refusal = Error;
-    type Interrupted = Interrupted;
+    fn plan(&self) -> &HiperfacePlan {
+        &self.plan
+    }
 
-    fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
-        let Commit { prepared, consent, .. } = self.commit;
-        confirm(&mut self.master, &prepared.plan, *consent, &prepared.identity)
+    fn kind(&self) -> ChangeKind {
+        self.kind
+    }
+
+    fn device(&self, is_virtual: bool) -> DeviceKey {
+        device_key(&self.identity, is_virtual)
+    }
+
+    fn cycles_seen(&self) -> Option<u64> {
+        self.cycles_seen
+    }
+
+    fn wear_limit(&self) -> u64 {
+        WEAR_LIMIT
+    }
+
+    fn note(&self, op: &Op) -> String {
+        op.item()
     }
 
     fn before_image(&self) -> String {
-        before_image(&self.commit.prepared)
-    }
-
-    fn carry_out(&mut self, confirmed: &Confirmed<'w>, _intended: &Intended) -> Result<Written, Box<Interrupted>> {
-        let ops = &self.commit.prepared.plan.ops;
-        let progress = &mut |at: usize, op: &Op| (self.tell)(Progress::at(ops, at, Doing::Operation(op.clone())));
-        carry_out(&mut self.master, confirmed, progress)
-    }
-
-    fn write_cycles(written: &Written) -> u64 {
-        written.write_cycles
-    }
-}
-
-impl Interruption for Interrupted {
-    type Error = Error;
-
-    fn error(&self) -> Option<&Error> {
-        Some(&self.cause)
-    }
-
-    fn why(&self) -> Option<String> {
-        (self.cause != Error::Cancelled).then(|| self.cause.to_string())
-    }
-
-    fn done(&self) -> usize {
-        self.done.ops
-    }
-
-    fn write_cycles(&self) -> u64 {
-        self.done.write_cycles
-    }
-}
-
-/// A profile of what the plan touches, as it was.
-fn before_image(prepared: &Prepared) -> String {
-    let base = &prepared.plan.base;
-    let mut recorded = Recorded::default();
-    for scalar in &base.scalars {
-        match scalar {
-            Scalar::Position(position) => recorded.position = Some(*position),
-            Scalar::Counter(counter) => recorded.counter = Some(*counter),
-            Scalar::Address(_) | Scalar::Settings(_) => {}
+        let base = &self.plan.base;
+        let mut recorded = Recorded::default();
+        for scalar in &base.scalars {
+            match scalar {
+                Scalar::Position(position) => recorded.position = Some(*position),
+                Scalar::Counter(counter) => recorded.counter = Some(*counter),
+                Scalar::Address(_) | Scalar::Settings(_) => {}
+            }
         }
+        let mut profile = profile_of(&self.identity, base.fields.clone(), recorded);
+        profile.created = created_by(&self.plan);
+        backup_of(Body::new(profile)).emit()
     }
-    let mut profile = profile_of(&prepared.identity, base.fields.clone(), recorded);
-    profile.created = created_by(&prepared.plan);
-    backup_of(Body::new(profile)).emit()
 }

@@ -1,7 +1,5 @@
-//! The one way to write to an encoder: a plan, a consent to it, what was read is read again, then exactly the operations
-//! that were shown, each read back.
-//!
-//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+//! How a plan is written into an encoder: what was read is read again, then each operation is carried out, and at the end
+//! all of them are read back.
 
 pub use crate::profile::Written;
 
@@ -17,57 +15,120 @@ use crate::devices::hiperface::profile::{Base, FieldImage, HiperfacePlan, Item, 
 use crate::devices::hiperface::protocol::{
     BROADCAST, CodeNumber, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request, StatusCode,
 };
-use crate::profile::Consent;
+use crate::profile::{OperationError, Write};
 
-/// A plan that a person consented to and whose base still holds.
-pub struct Confirmed<'p> {
-    plan: &'p HiperfacePlan,
-    /// Number of different positions.
-    range: u64,
-}
+type Confirmed<'p> = crate::profile::Confirmed<'p, Base, Op>;
 
 /// A write that ended early.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("after {} of the operations: {cause}", done.ops)]
-pub struct Interrupted {
-    /// What was written until then.
-    pub done: Written,
-    /// Why it ended.
-    pub cause: Error,
+pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, Left>;
+
+/// In which state an encoder was left.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Left {
     /// Fields that should be write protected and are not, because the encoder could no longer be reached.
-    pub left_unlocked: Vec<u8>,
+    pub unlocked: Vec<u8>,
 }
 
-/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the encoder for which it
-/// was made, because two new ones have the same memory.
-///
-/// # Errors
-/// [`Error::Changed`] when anything is no longer as it was; the consent is for another plan; the line.
-pub fn confirm<'p>(
-    master: &mut Master<'_>,
-    plan: &'p HiperfacePlan,
-    consent: Consent,
-    identity: &Identity,
-) -> Result<Confirmed<'p>, Error> {
-    let geometry = identity.geometry;
-    if !consent.covers(plan.id()) {
-        return Err(Error::Unexpected("the consent is for another plan".to_owned()));
+/// An encoder into which a plan is written.
+pub struct EncoderWrite<'w, 'm> {
+    master: Master<'m>,
+    identity: &'w Identity,
+    left: Left,
+}
+
+impl<'w, 'm> EncoderWrite<'w, 'm> {
+    /// The encoder for which the plan was made has this identity.
+    pub fn new(master: Master<'m>, identity: &'w Identity) -> Self {
+        EncoderWrite { master, identity, left: Left::default() }
     }
-    if read_type_label(master)?.encoder_type != identity.label.encoder_type || read_serial(master)? != identity.serial {
-        return Err(Error::Changed { item: "the encoder itself".to_owned() });
-    }
-    if read_memory(master)?.fields != plan.base.field_count {
-        return Err(Error::Changed { item: "number of data fields".to_owned() });
-    }
-    for field in &plan.base.fields {
-        if read_field(master, field.number)? != *field {
-            return Err(Error::Changed { item: format!("field:{}", field.number) });
+}
+
+impl Write for EncoderWrite<'_, '_> {
+    type Base = Base;
+    type Op = Op;
+    type Error = Error;
+    type Written = Written;
+    type Left = Left;
+
+    /// Two new encoders have the same memory: it has to be the one for which the plan was made.
+    fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
+        let (master, identity) = (&mut self.master, self.identity);
+        let label = read_type_label(master)?;
+        if label.encoder_type != identity.label.encoder_type || read_serial(master)? != identity.serial {
+            return Err(Error::Changed { item: "the encoder itself".to_owned() });
         }
+        if read_memory(master)?.fields != plan.base.field_count {
+            return Err(Error::Changed { item: "number of data fields".to_owned() });
+        }
+        for field in &plan.base.fields {
+            if read_field(master, field.number)? != *field {
+                return Err(Error::Changed { item: format!("field:{}", field.number) });
+            }
+        }
+        plan.base.scalars.iter().try_for_each(|scalar| confirm_scalar(master, *scalar, identity.geometry))
     }
-    for scalar in &plan.base.scalars {
-        confirm_scalar(master, *scalar, geometry)?;
+
+    /// A wish to end is heard between two operations.
+    fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
+        let sent = perform(&mut self.master, op, confirmed, range_of(self.identity.geometry));
+        // What was not sent, or refused, was not carried out; anything else may have been.
+        done.write_cycles += match &sent {
+            Ok(sent) => u64::from(*sent),
+            Err(cause) => u64::from(may_be_carried_out(cause)),
+        };
+        sent?;
+        done.carried_out(op.weight());
+        Ok(())
     }
-    Ok(Confirmed { plan, range: range_of(geometry) })
+
+    fn finish(&mut self, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
+        let range = range_of(self.identity.geometry);
+        done.verified = self.master.shielded(|master| verify(master, confirmed.plan(), range))?;
+        Ok(())
+    }
+
+    /// Locks again what was unlocked on the way, as far as the encoder can be reached.
+    fn lead_back(
+        &mut self,
+        confirmed: &Confirmed<'_>,
+        ended: Result<(), Error>,
+        done: &mut Written,
+    ) -> Result<(), Error> {
+        let Err(cause) = &ended else { return Ok(()) };
+        let ops = &confirmed.plan().ops;
+        let (before, after) = ops.split_at(done.ops.min(ops.len()));
+        let begun = before.iter().chain(after.first().filter(|_| may_be_carried_out(cause)));
+        let unlocked: Vec<u8> = begun.filter(|op| op.unlocks()).filter_map(Op::field).collect();
+        let range = range_of(self.identity.geometry);
+        for field in unlocked {
+            let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
+            let lock_again = |master: &mut Master<'_>| lock_again(master, lock, confirmed, range, done);
+            if cause.is_lost() || self.master.shielded(lock_again).is_err() {
+                self.left.unlocked.push(field);
+            }
+        }
+        ended
+    }
+
+    fn left(&mut self, _: &Error) -> Left {
+        std::mem::take(&mut self.left)
+    }
+}
+
+impl OperationError for Error {
+    type Device = Self;
+
+    fn device(&self) -> Option<&Self> {
+        Some(self)
+    }
+
+    fn is_cancelled(&self) -> bool {
+        *self == Error::Cancelled
+    }
+}
+
+fn may_be_carried_out(cause: &Error) -> bool {
+    !matches!(cause, Error::Cancelled | Error::Rejected { .. })
 }
 
 fn confirm_scalar(master: &mut Master<'_>, scalar: Scalar, geometry: Option<Geometry>) -> Result<(), Error> {
@@ -86,66 +147,13 @@ fn confirm_scalar(master: &mut Master<'_>, scalar: Scalar, geometry: Option<Geom
     if same { Ok(()) } else { Err(Error::Changed { item }) }
 }
 
-/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
-/// operations; a field that was unlocked on the way is locked again all the same.
-///
-/// # Errors
-/// [`Interrupted`], with what was written until then.
-pub fn carry_out(
+fn lock_again(
     master: &mut Master<'_>,
+    lock: &Op,
     confirmed: &Confirmed<'_>,
-    progress: &mut dyn FnMut(usize, &Op),
-) -> Result<Written, Box<Interrupted>> {
-    let plan = confirmed.plan;
-    let mut done = Written::default();
-    for (at, op) in plan.ops.iter().enumerate() {
-        progress(at, op);
-        match perform(master, op, confirmed) {
-            Ok(sent) => {
-                done.ops += 1;
-                done.written += op.weight();
-                done.write_cycles += u64::from(sent);
-            }
-            Err(cause) => return Err(Box::new(interrupt(master, confirmed, at, done, cause))),
-        }
-    }
-    match master.shielded(|master| verify(master, confirmed)) {
-        Ok(verified) => Ok(Written { verified, ..done }),
-        Err(cause) => Err(Box::new(Interrupted { done, cause, left_unlocked: Vec::new() })),
-    }
-}
-
-/// Locks again what was unlocked on the way, as far as the encoder can be reached.
-fn interrupt(
-    master: &mut Master<'_>,
-    confirmed: &Confirmed<'_>,
-    at: usize,
-    mut done: Written,
-    cause: Error,
-) -> Interrupted {
-    if !matches!(cause, Error::Cancelled | Error::Rejected { .. }) {
-        // The operation that failed may have been carried out.
-        done.write_cycles += 1;
-    }
-    let ops = &confirmed.plan.ops;
-    let (before, after) = ops.split_at(at.min(ops.len()));
-    // What was not sent, or refused, was not carried out; anything else may have been.
-    let in_flight = after.first().filter(|_| !matches!(cause, Error::Cancelled | Error::Rejected { .. }));
-    let begun = before.iter().chain(in_flight);
-    let unlocked: Vec<u8> = begun.filter(|op| op.unlocks()).filter_map(Op::field).collect();
-    let mut left_unlocked = Vec::new();
-    for field in unlocked {
-        let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
-        let locked =
-            !cause.is_lost() && master.shielded(|master| lock_again(master, lock, confirmed, &mut done)).is_ok();
-        if !locked {
-            left_unlocked.push(field);
-        }
-    }
-    Interrupted { done, cause, left_unlocked }
-}
-
-fn lock_again(master: &mut Master<'_>, lock: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
+    range: u64,
+    done: &mut Written,
+) -> Result<(), Error> {
     let Op::Define { field, to, .. } = lock else { return Ok(()) };
     let now = match read_field_status(master, *field) {
         Ok(now) if now.is_writable() => now,
@@ -156,13 +164,13 @@ fn lock_again(master: &mut Master<'_>, lock: &Op, confirmed: &Confirmed<'_>, don
     };
     // Whatever else the plan would have changed stays as it is: only the protection comes back.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
-    let sent = perform(master, &lock, confirmed)?;
+    let sent = perform(master, &lock, confirmed, range)?;
     done.write_cycles += u64::from(sent);
     Ok(())
 }
 
-/// One operation. Gives how often it was sent.
-fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>) -> Result<u32, Error> {
+/// One operation, of an encoder with so many different positions. Gives how often it was sent.
+fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u64) -> Result<u32, Error> {
     let code0 = master.station().codes.get(CodeNumber::ZERO);
     match op {
         Op::Define { field, from, to } => {
@@ -179,7 +187,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>) -> Resul
         }
         Op::ChangeCode { number, old, new } => {
             let request = Request::ChangeCode { number: *number, old: *old, new: *new };
-            let sent = master.tell(&request, |master| opens(master, &confirmed.plan.base, *number, *new))?;
+            let sent = master.tell(&request, |master| opens(master, &confirmed.plan().base, *number, *new))?;
             master.station().codes.set(*number, *new);
             Ok(sent)
         }
@@ -189,12 +197,12 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>) -> Resul
             } else {
                 Request::SetPosition { position: *to, code0 }
             };
-            let telling = distance(*from, *to, confirmed.range) > 1;
+            let telling = distance(*from, *to, range) > 1;
             master.tell(&request, |master| {
                 if !telling {
                     return Err(Error::Unexpected("the position was there before: it does not tell".to_owned()));
                 }
-                Ok(distance(super::read_position(master, None)?.raw, *to, confirmed.range) <= 1)
+                Ok(distance(super::read_position(master, None)?.raw, *to, range) <= 1)
             })
         }
         Op::SetAddress { to, .. } => set_address(master, *to),
@@ -268,8 +276,7 @@ fn opens(
 }
 
 /// Reads back what the plan has changed: the last word on every field and every byte.
-fn verify(master: &mut Master<'_>, confirmed: &Confirmed<'_>) -> Result<u64, Error> {
-    let plan = confirmed.plan;
+fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u64, Error> {
     let mut verified = 0;
     for (at, op) in plan.ops.iter().enumerate() {
         let later = plan.ops.get(at + 1..).unwrap_or_default();
@@ -295,7 +302,7 @@ fn verify(master: &mut Master<'_>, confirmed: &Confirmed<'_>) -> Result<u64, Err
             }
             Op::SetPosition { to, .. } => {
                 let raw = super::read_position(master, None)?.raw;
-                if distance(raw, *to, confirmed.range) > 1 {
+                if distance(raw, *to, range) > 1 {
                     return Err(mismatch(op, to.to_string(), raw.to_string()));
                 }
                 verified += 1;

@@ -61,8 +61,8 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, ki
             text.with_text("cause", encoder(cause))
         }
     }];
-    if !interrupted.left_unlocked.is_empty() {
-        let fields: Vec<String> = interrupted.left_unlocked.iter().map(ToString::to_string).collect();
+    if !interrupted.left.unlocked.is_empty() {
+        let fields: Vec<String> = interrupted.left.unlocked.iter().map(ToString::to_string).collect();
         texts.push(TEXTS.text("write.left_unlocked").with("fields", fields.join(", ")));
     }
     // An operation that may have been carried out counts as a write cycle.
@@ -233,11 +233,13 @@ fn code_unknown(field: u8, number: impl ToString) -> Text {
 mod tests {
     use super::*;
     use crate::app::Language;
+    use crate::devices::hiperface::procedures::write::Left;
     use crate::link::{LinkError, LinkErrorKind};
 
     fn cut_off(cause: Error, write_cycles: u64) -> Interrupted {
         let ops = usize::try_from(write_cycles).unwrap();
-        Interrupted { done: Written { ops, write_cycles, ..Written::default() }, cause, left_unlocked: Vec::new() }
+        let done = Written { ops, write_cycles, ..Written::default() };
+        Interrupted { done, unfinished: None, cause, left: Left::default() }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::devices::interbus::procedures::write::{Confirmed, Interrupted, Writte
 use crate::devices::interbus::procedures::{Error, Master};
 use crate::devices::interbus::profile::{Image, InterbusProfile, Op, Recorded};
 use crate::profile::Body;
-use crate::worker::commit::{Intended, Terms, Write, backup_of, commit as carry_through};
+use crate::worker::commit::{Intended, OldWrite as Write, Terms, backup_of, commit as carry_through};
 use crate::worker::{Desk, Interruption, Progress, Tell};
 
 pub(super) fn commit(

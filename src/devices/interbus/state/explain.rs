@@ -107,7 +107,7 @@ pub fn encoder(error: &Error) -> Text {
             .text("interbus.not_led_back")
             .with_text("cause", encoder(cause))
             .with_text("standing", self::standing(standing)),
-        Error::OtherPlan => Text::new("interbus.other_plan"),
+        Error::OtherPlan => Text::new("write.other_plan"),
     }
 }
 

@@ -135,7 +135,7 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
         NotBegun::Worn { seen, cost, .. } => {
             TEXTS.text("ib_stores.refused").with("used", seen).with("cost", cost).with("limit", WEAR_LIMIT)
         }
-        NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_begun(why),
+        NotBegun::OtherPlan | NotBegun::NotKept(_) | NotBegun::WearUnknown { .. } => explain::not_begun(why),
     }
 }
 

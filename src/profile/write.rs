@@ -1,0 +1,165 @@
+//! How a plan is carried out, the same for every kind of device: its base is read again, then its operations are carried
+//! out one after the other, and the device is led back. A kind brings a [`Write`]. `worker::commit` alone calls this,
+//! because it keeps the before-image between the two.
+
+use std::fmt;
+use std::hash::Hash;
+
+use super::{Consent, Operation, Plan, WriteRecord};
+
+/// A device into which a plan is written: what differs from kind to kind.
+pub trait Write {
+    /// What a plan rests upon.
+    type Base: Hash;
+    /// An operation of a plan.
+    type Op: Operation + Clone + Hash;
+    /// Why an operation ended early.
+    type Error: OperationError;
+    /// What was written.
+    type Written: WriteRecord;
+    /// In which state a write that ended early has left the device.
+    type Left;
+
+    /// Reads again what the plan rests upon, and writes nothing: first of all, whether it is the device for which the plan
+    /// was made.
+    ///
+    /// # Errors
+    /// When anything is no longer as it was.
+    fn confirm(&mut self, plan: &Plan<Self::Base, Self::Op>) -> Result<(), <Self::Error as OperationError>::Device>;
+
+    /// Prepares the device for the first operation.
+    ///
+    /// # Errors
+    /// No operation is begun then.
+    fn begin(&mut self) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    /// Carries an operation out, reads it back where that is possible, and counts it.
+    ///
+    /// # Errors
+    /// The operations after it are not begun then.
+    fn apply(
+        &mut self,
+        op: &Self::Op,
+        confirmed: &Confirmed<'_, Self::Base, Self::Op>,
+        done: &mut Self::Written,
+    ) -> Result<(), Self::Error>;
+
+    /// Reads back what can only be read when all operations are carried out.
+    ///
+    /// # Errors
+    /// When it is not as it should be.
+    fn finish(
+        &mut self,
+        _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
+        _done: &mut Self::Written,
+    ) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
+    /// Leads the device back to a safe state, however the operations ended.
+    ///
+    /// # Errors
+    /// Why the operations ended early, or why the device cannot be led back.
+    fn lead_back(
+        &mut self,
+        _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
+        ended: Result<(), Self::Error>,
+        _done: &mut Self::Written,
+    ) -> Result<(), Self::Error> {
+        ended
+    }
+
+    /// Returns in which state a write that ended early has left the device.
+    fn left(&mut self, cause: &Self::Error) -> Self::Left;
+}
+
+/// Why an operation of a plan ended early.
+pub trait OperationError: fmt::Display {
+    /// What goes wrong with the device or on the way to it.
+    type Device;
+
+    /// Returns what went wrong with the device or on the way to it; `None` where it was neither.
+    fn device(&self) -> Option<&Self::Device>;
+
+    /// The user cancelled it.
+    fn is_cancelled(&self) -> bool;
+}
+
+/// A plan that a person consented to and whose base still holds. Without one no operation can be carried out.
+pub struct Confirmed<'p, Base, Op> {
+    plan: &'p Plan<Base, Op>,
+}
+
+/// How far a write came that ended early, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interrupted<Op, E, Done, Left> {
+    /// What was written until then.
+    pub done: Done,
+    /// The operation that was not finished, and may have begun; `None` where all were carried out.
+    pub unfinished: Option<Op>,
+    /// Why it ended.
+    pub cause: E,
+    /// In which state the device was left.
+    pub left: Left,
+}
+
+/// [`Interrupted`], of a kind of device.
+pub(crate) type InterruptedWrite<W> =
+    Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::Left>;
+
+impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
+    /// Checks the consent, and has the device read again what the plan rests upon; `None` where the consent is for another
+    /// plan.
+    pub(crate) fn confirm<W: Write<Base = Base, Op = Op>>(
+        plan: &'p Plan<Base, Op>,
+        consent: Consent,
+        write: &mut W,
+    ) -> Option<Result<Self, <W::Error as OperationError>::Device>> {
+        consent.covers(plan.id()).then(|| write.confirm(plan).map(|()| Confirmed { plan }))
+    }
+
+    /// Returns the plan.
+    pub fn plan(&self) -> &'p Plan<Base, Op> {
+        self.plan
+    }
+
+    /// Carries the plan out; each operation is told before it begins, with its number from 0.
+    ///
+    /// # Errors
+    /// How far it came.
+    pub(crate) fn carry_out<W: Write<Base = Base, Op = Op>>(
+        &self,
+        write: &mut W,
+        tell: &mut dyn FnMut(usize, &Op),
+    ) -> Result<W::Written, Box<InterruptedWrite<W>>> {
+        let (mut at, mut done) = (0, W::Written::default());
+        let mut carry_out = || {
+            write.begin()?;
+            for op in &self.plan.ops {
+                tell(at, op);
+                write.apply(op, self, &mut done)?;
+                at += 1;
+            }
+            write.finish(self, &mut done)
+        };
+        let ended = carry_out();
+        let Err(cause) = write.lead_back(self, ended, &mut done) else { return Ok(done) };
+        let (unfinished, left) = (self.plan.ops.get(at).cloned(), write.left(&cause));
+        Err(Box::new(Interrupted { done, unfinished, cause, left }))
+    }
+}
+
+impl<Op, E: OperationError, Done: WriteRecord, Left> Interrupted<Op, E, Done, Left> {
+    /// Returns for the logbook why it ended; `None` where the user cancelled it.
+    pub(crate) fn reason(&self) -> Option<String> {
+        (!self.cause.is_cancelled()).then(|| self.cause.to_string())
+    }
+}
+
+impl<Op, E: fmt::Display, Done: WriteRecord, Left> fmt::Display for Interrupted<Op, E, Done, Left> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "after {} of the operations: {}", self.done.ops(), self.cause)
+    }
+}

@@ -1,0 +1,247 @@
+//! The steps of a write, and what stops one before its first byte.
+
+use super::*;
+use crate::profile::Written;
+
+/// Notes what is asked of it, and looks on disk what has been done before.
+struct Spy {
+    store: Store,
+    steps: Vec<&'static str>,
+    refuses: bool,
+    ends_early: bool,
+}
+
+/// The user cancelled it.
+#[derive(Debug, PartialEq)]
+struct Cancelled;
+
+impl std::fmt::Display for Cancelled {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("cancelled")
+    }
+}
+
+impl OperationError for Cancelled {
+    type Device = ();
+
+    fn device(&self) -> Option<&()> {
+        None
+    }
+
+    fn is_cancelled(&self) -> bool {
+        true
+    }
+}
+
+/// Costs so many write cycles.
+#[derive(Clone, Hash)]
+struct Op(u64);
+
+impl Operation for Op {
+    fn write_cycles(&self) -> u64 {
+        self.0
+    }
+}
+
+impl Spy {
+    fn new(store: &Store, refuses: bool, ends_early: bool) -> Self {
+        Spy { store: store.clone(), steps: Vec::new(), refuses, ends_early }
+    }
+
+    fn open_intents(&self) -> usize {
+        let logbook = Logbook::open(&self.store.logbook_path()).unwrap();
+        let entries = logbook.history(&device(), 9).unwrap();
+        entries.iter().filter(|entry| entry.conclusion.is_none()).count()
+    }
+}
+
+impl Write for Spy {
+    type Base = ();
+    type Op = Op;
+    type Error = Cancelled;
+    type Written = Written;
+    type Left = &'static str;
+
+    fn confirm(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
+        self.steps.push("confirm");
+        assert!(self.store.backups().list("spy", "1").unwrap().is_empty());
+        if self.refuses { Err(()) } else { Ok(()) }
+    }
+
+    fn begin(&mut self) -> Result<(), Cancelled> {
+        self.steps.push("begin");
+        assert_eq!(self.store.backups().list("spy", "1").unwrap().len(), 1);
+        assert_eq!(self.open_intents(), 1);
+        Ok(())
+    }
+
+    fn apply(&mut self, op: &Op, _: &Confirmed<'_, (), Op>, done: &mut Written) -> Result<(), Cancelled> {
+        self.steps.push("apply");
+        if self.ends_early && done.ops == 1 {
+            return Err(Cancelled);
+        }
+        done.write_cycles += op.0;
+        done.carried_out(1);
+        Ok(())
+    }
+
+    fn finish(&mut self, _: &Confirmed<'_, (), Op>, done: &mut Written) -> Result<(), Cancelled> {
+        self.steps.push("finish");
+        done.verified = done.written;
+        Ok(())
+    }
+
+    fn lead_back(
+        &mut self,
+        _: &Confirmed<'_, (), Op>,
+        ended: Result<(), Cancelled>,
+        _: &mut Written,
+    ) -> Result<(), Cancelled> {
+        self.steps.push("lead back");
+        ended
+    }
+
+    fn left(&mut self, _: &Cancelled) -> &'static str {
+        "as it was"
+    }
+}
+
+struct Prepared {
+    seen: Option<u64>,
+    plan: Plan<(), Op>,
+}
+
+impl Planned for Prepared {
+    type Base = ();
+    type Op = Op;
+    type Kind = char;
+
+    fn plan(&self) -> &Plan<(), Op> {
+        &self.plan
+    }
+
+    fn kind(&self) -> char {
+        'k'
+    }
+
+    fn device(&self, is_virtual: bool) -> DeviceKey {
+        assert!(is_virtual);
+        device()
+    }
+
+    fn cycles_seen(&self) -> Option<u64> {
+        self.seen
+    }
+
+    fn wear_limit(&self) -> u64 {
+        10
+    }
+
+    fn note(&self, op: &Op) -> String {
+        op.0.to_string()
+    }
+
+    fn before_image(&self) -> String {
+        "before".to_owned()
+    }
+}
+
+fn device() -> DeviceKey {
+    let (kind, one) = ("spy".to_owned(), "1".to_owned());
+    DeviceKey { kind, device_type: one.clone(), serial_number: one, is_virtual: true }
+}
+
+fn agreed(seen: Option<u64>, ops: &[u64], force_wear: bool) -> Agreed<Prepared> {
+    let plan = Plan { base: (), ops: ops.iter().copied().map(Op).collect() };
+    let consent = Consent::to(plan.id());
+    Agreed { prepared: Prepared { seen, plan }, consent, force_wear }
+}
+
+fn write(spy: &mut Spy, agreed: &Agreed<Prepared>) -> Result<Committed<Written>, Unfinished<Prepared, Spy, ()>> {
+    let (store, mut told) = (spy.store.clone(), Vec::new());
+    let ended = write_plan(&store, true, agreed, spy, &mut |at| told.push((at.done, at.total, at.what.0)));
+    let applied = spy.steps.iter().filter(|step| **step == "apply").count();
+    let ops = (0..).zip(&agreed.prepared.plan.ops).map(|(at, op)| (at, agreed.prepared.plan.ops.len() as u64, op.0));
+    assert_eq!(told, ops.take(applied).collect::<Vec<_>>(), "each is told before it begins");
+    ended
+}
+
+#[test]
+fn every_write_takes_all_steps_in_their_order() {
+    let whole = vec!["confirm", "begin", "apply", "apply", "finish", "lead back"];
+    let cases = [
+        ("done", 0, false, false, whole, 3),
+        ("cut off", 0, false, true, vec!["confirm", "begin", "apply", "apply", "lead back"], 1),
+        ("refused", 0, true, false, vec!["confirm"], 0),
+        ("worn", 9, false, false, vec![], 0),
+    ];
+    for (label, seen, refuses, ends_early, steps, spent) in cases {
+        let root = tempfile::tempdir().unwrap();
+        let mut spy = Spy::new(&Store::at(root.path()), refuses, ends_early);
+        let ended = write(&mut spy, &agreed(Some(seen), &[1, 2], false));
+        assert_eq!(spy.steps, steps, "{label}");
+        assert_eq!(cycles_seen(&spy.store, &device()), Some(spent), "{label}");
+        match ended {
+            Ok(done) => assert!(label == "done" && done.written.verified == 2 && done.logbook_warning.is_none()),
+            Err(JobError::Interrupted { interrupted, backup, planned: 2, kind: 'k' }) => {
+                assert!(label == "cut off" && interrupted.cause == Cancelled && backup.exists());
+                assert_eq!((interrupted.unfinished.map(|op| op.0), interrupted.left), (Some(2), "as it was"));
+            }
+            Err(JobError::Device(())) => assert_eq!(label, "refused"),
+            Err(JobError::NotBegun(NotBegun::Worn { seen: 9, cost: 3, limit: 10 })) => assert_eq!(label, "worn"),
+            Err(_) => panic!("{label}"),
+        }
+    }
+}
+
+#[test]
+fn nothing_is_written_without_operations_or_with_a_consent_to_another_plan() {
+    let root = tempfile::tempdir().unwrap();
+    let mut spy = Spy::new(&Store::at(root.path()), false, false);
+    let done = write(&mut spy, &agreed(Some(0), &[], false)).ok().unwrap();
+    assert_eq!((done.written, done.backup), (Written::default(), None));
+    let consent = agreed(Some(0), &[2], false).consent;
+    let ended = write(&mut spy, &Agreed { consent, ..agreed(Some(0), &[1], false) });
+    assert!(matches!(ended, Err(JobError::NotBegun(NotBegun::OtherPlan))) && spy.steps.is_empty());
+}
+
+/// Issue 22.4: a count that is not known is no 0. It opens by force alone, and is told then.
+#[test]
+fn a_logbook_that_cannot_be_used_stops_a_write() {
+    /// Looks at nothing.
+    struct Plain(u32);
+    impl Write for Plain {
+        type Base = ();
+        type Op = Op;
+        type Error = Cancelled;
+        type Written = Written;
+        type Left = ();
+        fn confirm(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
+            Ok(())
+        }
+        fn apply(&mut self, _: &Op, _: &Confirmed<'_, (), Op>, _: &mut Written) -> Result<(), Cancelled> {
+            self.0 += 1;
+            Ok(())
+        }
+        fn left(&mut self, _: &Cancelled) {}
+    }
+    let root = tempfile::tempdir().unwrap();
+    let store = Store::at(root.path());
+    std::fs::create_dir_all(store.logbook_path()).unwrap();
+    let seen = cycles_seen(&store, &device());
+    assert_eq!(seen, None);
+    let write = |plain: &mut Plain, agreed| -> Result<_, Unfinished<Prepared, Plain, ()>> {
+        write_plan(&store, true, &agreed, plain, &mut |_| {})
+    };
+    // Not read; or read before and not to be written now.
+    for seen in [seen, Some(0)] {
+        let mut plain = Plain(0);
+        let ended = write(&mut plain, agreed(seen, &[2], false));
+        let refused = matches!(ended, Err(JobError::NotBegun(NotBegun::WearUnknown { cost: 2 })));
+        assert!(refused && plain.0 == 0, "{seen:?}");
+        let Ok(done) = write(&mut plain, agreed(seen, &[2], true)) else { panic!("{seen:?}") };
+        assert!(done.logbook_warning.is_some() && plain.0 == 1, "{seen:?}");
+        // What costs nothing wears nothing.
+        assert!(write(&mut plain, agreed(seen, &[0], false)).is_ok() && plain.0 == 2, "{seen:?}");
+    }
+}
