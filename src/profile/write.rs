@@ -83,8 +83,8 @@ pub trait OperationError: fmt::Display {
     /// Returns what went wrong with the device or on the way to it; `None` where it was neither.
     fn device(&self) -> Option<&Self::Device>;
 
-    /// The user cancelled it.
-    fn is_cancelled(&self) -> bool;
+    /// The user cancelled it, and nothing else went wrong.
+    fn is_only_cancelled(&self) -> bool;
 }
 
 /// A plan that a person consented to and whose base still holds. Without one no operation can be carried out.
@@ -154,7 +154,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
 impl<Op, E: OperationError, Done: WriteRecord, Left> Interrupted<Op, E, Done, Left> {
     /// Returns for the logbook why it ended; `None` where the user cancelled it.
     pub(crate) fn reason(&self) -> Option<String> {
-        (!self.cause.is_cancelled()).then(|| self.cause.to_string())
+        (!self.cause.is_only_cancelled()).then(|| self.cause.to_string())
     }
 }
 

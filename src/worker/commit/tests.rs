@@ -28,7 +28,7 @@ impl OperationError for Cancelled {
         None
     }
 
-    fn is_cancelled(&self) -> bool {
+    fn is_only_cancelled(&self) -> bool {
         true
     }
 }

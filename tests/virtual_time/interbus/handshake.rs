@@ -88,7 +88,7 @@ fn an_error_at_any_step_is_told_and_led_back_from() {
             assert!(interrupted.cause.to_string().contains(meaning), "{interrupted}");
             assert_eq!(interrupted.left, Left::AsFound, "{interrupted}");
             assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "a store may have been spent");
-            assert_eq!(interrupted.unclear.len(), 4);
+            assert_eq!(interrupted.unfinished.unwrap().items().len(), 4);
             // The words up to that one, then back.
             assert_eq!(sent[..=at], words[..=at], "{sent:08X?}");
             assert!(sent[1 + at..].contains(&0) && sent.contains(&RUN), "{sent:08X?}");

@@ -4,15 +4,20 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use encoder_studio::devices::interbus::jobs::{ChangeKind, Commit, Committed, JobError, Prepared};
+use encoder_studio::devices::interbus::procedures::write::{EncoderWrite, Interrupted, Written};
 use encoder_studio::devices::interbus::procedures::{
-    Asked, Error, Exception, Handshake, Identity, Master, ProcessData, write,
+    Asked, Error, Exception, Handshake, Identity, Master, ProcessData,
 };
 use encoder_studio::devices::interbus::profile::{
-    Base, CamChange, Direction, Edge, InterbusPlan, Op, ParameterChange, ProgramChange,
+    Base, CamChange, Direction, Edge, InterbusPlan, Op, ParameterChange, Parameters, ProgramChange,
 };
 use encoder_studio::devices::interbus::protocol::{CamNumber, Flags, Parameter, StartupMode, Value};
 use encoder_studio::profile::Consent;
+use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
+use encoder_studio::worker::Progress;
+use encoder_studio::worker::commit::write_plan;
 
 use super::support::{program, station};
 
@@ -148,18 +153,41 @@ pub(crate) fn identity() -> Identity {
 }
 
 /// Carries operations out with a script; how that ended, each step, and all words that were written then.
-pub(crate) fn carry_out(
-    script: Script,
-    ops: Vec<Op>,
-) -> (Result<write::Written, Box<write::Interrupted>>, Vec<Handshake>, Vec<u32>) {
+pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<Interrupted>>, Vec<Handshake>, Vec<u32>) {
     let plan = InterbusPlan { base: Base::default(), ops };
+    let (folder, consent) = (tempfile::tempdir().unwrap(), Consent::to(plan.id()));
+    let parameters =
+        Parameters { steps: 103, revolutions: 203, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
+    let prepared = Prepared {
+        kind: ChangeKind::Edits,
+        plan,
+        identity: identity(),
+        parameters,
+        cycles_seen: Some(0),
+        unchanged: 0,
+        missing: Vec::new(),
+        mounting_left: Vec::new(),
+        other_type: None,
+        mounting_written: Vec::new(),
+    };
+    let commit = Commit { prepared, consent, force_wear: false };
     let (mut station, sent) = (station(""), script.sent.clone());
     let mut steps = Vec::new();
-    let ended = {
-        let mut master = Master::over(script, &mut station).telling(|step| steps.push(step));
-        let confirmed = write::confirm(&mut master, &plan, Consent::to(plan.id()), &identity()).unwrap();
-        sent.lock().unwrap().clear();
-        write::carry_out(&mut master, &confirmed, &mut |_| {})
+    let ended: Result<Committed, JobError> = {
+        let master = Master::over(script, &mut station).telling(|step| steps.push(step));
+        let mut write = EncoderWrite { master, identity: &commit.prepared.identity };
+        // What was read again is no part of it.
+        let begins = &mut |at: Progress<&Op>| {
+            if at.done == 0 {
+                sent.lock().unwrap().clear()
+            }
+        };
+        write_plan(&Store::at(folder.path()), true, &commit, &mut write, begins)
+    };
+    let ended = match ended {
+        Ok(done) => Ok(done.written),
+        Err(JobError::Interrupted { interrupted, .. }) => Err(interrupted),
+        Err(other) => panic!("{other}"),
     };
     let sent = sent.lock().unwrap().clone();
     (ended, steps, sent)

@@ -223,7 +223,7 @@ fn a_consent_is_for_its_plan_alone() {
     let consent = Consent::to(stand.prepare(Change::Preset { value: 2 }).plan.id());
     let commit = Commit { prepared, consent, force_wear: false };
     let error = stand.run(InterbusJob::Commit(Box::new(commit))).unwrap_err();
-    assert!(matches!(error, JobError::Device(Error::OtherPlan)), "{error}");
+    assert!(matches!(error, JobError::NotBegun(NotBegun::OtherPlan)), "{error}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use crate::devices::hiperface::protocol::{CodeNumber, Command, ReplyError, StatusCode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
+use crate::profile::OperationError;
 
 /// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -154,6 +155,18 @@ impl From<LineError> for Error {
             LineError::NeverSilent => Error::NeverSilent,
             LineError::Link(error) => Error::Link(error),
         }
+    }
+}
+
+impl OperationError for Error {
+    type Device = Self;
+
+    fn device(&self) -> Option<&Self> {
+        Some(self)
+    }
+
+    fn is_only_cancelled(&self) -> bool {
+        *self == Error::Cancelled
     }
 }
 

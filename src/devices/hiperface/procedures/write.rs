@@ -15,7 +15,7 @@ use crate::devices::hiperface::profile::{Base, FieldImage, HiperfacePlan, Item, 
 use crate::devices::hiperface::protocol::{
     BROADCAST, CodeNumber, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request, StatusCode,
 };
-use crate::profile::{OperationError, Write};
+use crate::profile::Write;
 
 type Confirmed<'p> = crate::profile::Confirmed<'p, Base, Op>;
 
@@ -112,18 +112,6 @@ impl Write for EncoderWrite<'_, '_> {
 
     fn left(&mut self, _: &Error) -> Left {
         std::mem::take(&mut self.left)
-    }
-}
-
-impl OperationError for Error {
-    type Device = Self;
-
-    fn device(&self) -> Option<&Self> {
-        Some(self)
-    }
-
-    fn is_cancelled(&self) -> bool {
-        *self == Error::Cancelled
     }
 }
 

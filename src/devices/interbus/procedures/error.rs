@@ -6,6 +6,7 @@ use super::Standing;
 use crate::devices::interbus::protocol::{Command, ErrorWord, GearError, Refused, Reply, StartupMode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
+use crate::profile::OperationError;
 
 /// What was asked of a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -326,9 +327,6 @@ pub enum Error {
         /// In which state it may be.
         standing: Standing,
     },
-    /// The consent is for another plan.
-    #[error("the consent is for another plan")]
-    OtherPlan,
 }
 
 /// The error as it came.
@@ -350,6 +348,18 @@ impl From<LineError> for Error {
             LineError::NeverSilent => Error::NeverSilent,
             LineError::Link(error) => Error::Link(error),
         }
+    }
+}
+
+impl OperationError for Error {
+    type Device = Self;
+
+    fn device(&self) -> Option<&Self> {
+        Some(self)
+    }
+
+    fn is_only_cancelled(&self) -> bool {
+        *self == Error::Cancelled
     }
 }
 

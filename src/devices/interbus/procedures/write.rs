@@ -1,7 +1,5 @@
-//! The one way to write to an encoder: a plan, a consent to it, what was read is read again, then exactly the operations
-//! that were shown, each read back, and back to the mode in which the encoder was found.
-//!
-//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+//! How a plan is written into an encoder: what was read is read again, then each operation is carried out and read back, and
+//! the encoder is led back to the mode in which it was found.
 
 use std::time::Duration;
 
@@ -11,31 +9,16 @@ use super::error::Implausible;
 use super::handshake::Standing;
 use super::identify::{direction_of, programs, read_cam, read_parameters, read_program, read_shift, refresh_gear};
 use super::{Error, Identity, Master};
-use crate::devices::interbus::profile::{CamChange, Edge, InterbusPlan, Item, Op, ParameterChange, ProgramChange};
+use crate::devices::interbus::profile::{
+    Base, CamChange, Edge, InterbusPlan, Item, Op, ParameterChange, ProgramChange,
+};
 use crate::devices::interbus::protocol::{
     Command, Gear, PARAMETERS, Parameter, ParameterRow, ReadOut, Reply, StartupMode, Value,
 };
-use crate::profile::Consent;
-
-/// A plan that a person consented to and whose base still holds.
-pub struct Confirmed<'p> {
-    plan: &'p InterbusPlan,
-}
+use crate::profile::{Confirmed, Write};
 
 /// A write that ended early.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("after {} of the operations: {cause}", done.ops)]
-pub struct Interrupted {
-    /// What was written until then.
-    pub done: Written,
-    /// What the operation changes that was under way, and of which is not known how far it came; empty where all were
-    /// carried out.
-    pub unclear: Vec<Item>,
-    /// Why it ended.
-    pub cause: Error,
-    /// In which state the encoder was left.
-    pub left: Left,
-}
+pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, Left>;
 
 /// In which state an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,88 +29,88 @@ pub enum Left {
     Unknown(Standing),
 }
 
-/// What is told of a write: the operation that begins, from 0.
-pub type News = usize;
-
 /// So long a shaft is watched before a preset.
 const WATCHED: Duration = Duration::from_millis(300);
 /// Between two looks at it.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the encoder for which it
-/// was made.
-///
-/// # Errors
-/// [`Error::Changed`] when anything is no longer as it was; [`Error::Moving`]; [`Error::OtherPlan`]; the handshake and the
-/// way.
-pub fn confirm<'p>(
-    master: &mut Master<'_>,
-    plan: &'p InterbusPlan,
-    consent: Consent,
-    identity: &Identity,
-) -> Result<Confirmed<'p>, Error> {
-    if !consent.covers(plan.id()) {
-        return Err(Error::OtherPlan);
-    }
-    let changed = |item: String| Err(Error::Changed { item });
-    master.guarded(|master| {
-        if master.read_out(ReadOut::SERIAL_NUMBER)?.get().to_string() != identity.serial_number {
-            return changed("the encoder itself".to_owned());
-        }
-        if let Some(before) = plan.base.parameters {
-            let now = read_parameters(master)?;
-            let differs = |row: &&ParameterRow| now.value(row.parameter) != before.value(row.parameter);
-            if let Some(row) = PARAMETERS.iter().find(differs) {
-                return changed(row.name.to_owned());
-            }
-        }
-        master.will_read(plan.base.programs.len())?;
-        for (number, program) in &plan.base.programs {
-            master.go(StartupMode::Cams(*number))?;
-            if read_program(master)? != *program {
-                return changed(format!("cam program {}", number.get()));
-            }
-        }
-        if let Some(shift) = plan.base.shift
-            && programs(master, &[], &mut |_, _, _| {})?.1 != shift
-        {
-            return changed(Item::Shift.to_string());
-        }
-        if plan.ops.iter().any(|op| matches!(op, Op::FirePreset { .. })) {
-            refresh_gear(master)?;
-            ensure_standstill(master)?;
-        }
-        Ok(Confirmed { plan })
-    })
+/// An encoder into which a plan is written.
+pub struct EncoderWrite<'w, 'm> {
+    /// The host's side of its process data.
+    pub master: Master<'m>,
+    /// The encoder for which the plan was made.
+    pub identity: &'w Identity,
 }
 
-/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
-/// words; the encoder is led back all the same.
-///
-/// # Errors
-/// [`Interrupted`], with what was written until then and the state in which the encoder was left.
-pub fn carry_out(
-    master: &mut Master<'_>,
-    confirmed: &Confirmed<'_>,
-    tell: &mut dyn FnMut(News),
-) -> Result<Written, Box<Interrupted>> {
-    let mut done = Written::default();
-    let ops = &confirmed.plan.ops;
-    let ended = master.guarded(|master| {
-        for (number, op) in ops.iter().enumerate() {
-            tell(number);
-            perform(master, op, &mut done)?;
-            done.ops += 1;
-        }
+impl Write for EncoderWrite<'_, '_> {
+    type Base = Base;
+    type Op = Op;
+    type Error = Error;
+    type Written = Written;
+    type Left = Left;
+
+    fn confirm(&mut self, plan: &InterbusPlan) -> Result<(), Error> {
+        let Self { master, identity } = self;
+        master.guarded(|master| confirm(master, plan, identity))
+    }
+
+    fn begin(&mut self) -> Result<(), Error> {
+        self.master.begin()
+    }
+
+    /// A wish to end is heard between two words.
+    fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
+        perform(&mut self.master, op, done)?;
+        done.carried_out(op.weight());
         Ok(())
-    });
-    let Err(cause) = ended else { return Ok(done) };
-    let left = match &cause {
-        Error::NotLedBack { standing, .. } => Left::Unknown(*standing),
-        _ => Left::AsFound,
-    };
-    let unclear = ops.get(done.ops).map(Op::items).unwrap_or_default();
-    Err(Box::new(Interrupted { done, unclear, cause, left }))
+    }
+
+    fn lead_back(
+        &mut self,
+        _: &Confirmed<'_, Base, Op>,
+        ended: Result<(), Error>,
+        _: &mut Written,
+    ) -> Result<(), Error> {
+        self.master.end(ended)
+    }
+
+    fn left(&mut self, cause: &Error) -> Left {
+        match cause {
+            Error::NotLedBack { standing, .. } => Left::Unknown(*standing),
+            _ => Left::AsFound,
+        }
+    }
+}
+
+fn confirm(master: &mut Master<'_>, plan: &InterbusPlan, identity: &Identity) -> Result<(), Error> {
+    let changed = |item: String| Err(Error::Changed { item });
+    if master.read_out(ReadOut::SERIAL_NUMBER)?.get().to_string() != identity.serial_number {
+        return changed("the encoder itself".to_owned());
+    }
+    if let Some(before) = plan.base.parameters {
+        let now = read_parameters(master)?;
+        let differs = |row: &&ParameterRow| now.value(row.parameter) != before.value(row.parameter);
+        if let Some(row) = PARAMETERS.iter().find(differs) {
+            return changed(row.name.to_owned());
+        }
+    }
+    master.will_read(plan.base.programs.len())?;
+    for (number, program) in &plan.base.programs {
+        master.go(StartupMode::Cams(*number))?;
+        if read_program(master)? != *program {
+            return changed(format!("cam program {}", number.get()));
+        }
+    }
+    if let Some(shift) = plan.base.shift
+        && programs(master, &[], &mut |_, _, _| {})?.1 != shift
+    {
+        return changed(Item::Shift.to_string());
+    }
+    if plan.ops.iter().any(|op| matches!(op, Op::FirePreset { .. })) {
+        refresh_gear(master)?;
+        ensure_standstill(master)?;
+    }
+    Ok(())
 }
 
 fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), Error> {
@@ -148,7 +131,6 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
             refresh_gear(master)?;
         }
     }
-    done.written += op.weight();
     Ok(())
 }
 

@@ -107,7 +107,6 @@ pub fn encoder(error: &Error) -> Text {
             .text("interbus.not_led_back")
             .with_text("cause", encoder(cause))
             .with_text("standing", self::standing(standing)),
-        Error::OtherPlan => Text::new("write.other_plan"),
     }
 }
 

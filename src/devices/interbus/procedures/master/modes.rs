@@ -24,6 +24,14 @@ impl Master<'_> {
     /// Those of `work`; [`Error::NotRunning`] before it begins; [`Error::NotLedBack`].
     pub fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
         let ended = self.begin().and_then(|()| work(self));
+        self.end(ended)
+    }
+
+    /// Leads the encoder back to what it did before [`begin`](Self::begin), however the work between the two has ended.
+    ///
+    /// # Errors
+    /// That of the work; [`Error::NotLedBack`].
+    pub(in crate::devices::interbus::procedures) fn end<T>(&mut self, ended: Result<T, Error>) -> Result<T, Error> {
         let led = match &ended {
             // Nothing can be sent any more.
             Err(error @ Error::Link(_)) => Err(error.clone()),
@@ -103,7 +111,7 @@ impl Master<'_> {
     }
 
     /// Looks at the encoder, and asks what it does: so nothing is sent that it would take for something else.
-    fn begin(&mut self) -> Result<(), Error> {
+    pub(in crate::devices::interbus::procedures) fn begin(&mut self) -> Result<(), Error> {
         let begun = self.data.now();
         let mut looks = 0;
         loop {

@@ -7,7 +7,7 @@ use crate::app::Language::{English, German};
 use crate::devices::interbus::jobs::ChangeKind;
 use crate::devices::interbus::procedures::write::{Interrupted, Left, Written};
 use crate::devices::interbus::procedures::{Asked, Damage, Exception};
-use crate::devices::interbus::profile::{Edge, Item, Op, OtherType, PlanError};
+use crate::devices::interbus::profile::{Edge, Item, Op, OtherType, PlanError, ProgramChange};
 use crate::devices::interbus::protocol::{
     CamNumber, Code, Command, Flags, Mode, OutOfRange, Parameter, ProgramNumber, Refused, StartupMode, Value,
     WindowShift,
@@ -74,7 +74,6 @@ fn every_error_of_an_encoder_says_what_to_do() {
         (Error::Moving { from: 100, to: 180 }, vec!["100", "180"]),
         (Error::NotTaken { item: "steps".to_owned(), wanted: 255, reads: 256 }, vec!["steps", "255", "256"]),
         (Error::Changed { item: "shift".to_owned() }, vec!["shift"]),
-        (Error::OtherPlan, vec![]),
         (
             Error::NotLedBack {
                 cause: Box::new(Error::NoReply { asked, tries: 3 }),
@@ -148,7 +147,10 @@ fn every_refusal_of_a_plan_names_both_limits() {
 fn a_write_that_was_cut_off_says_what_is_left_to_do() {
     let told = |write_cycles, left, kind| -> Vec<String> {
         let done = Written { ops: 1, write_cycles, written: 1, verified: 1 };
-        let interrupted = Interrupted { done, unclear: vec![Item::Shift], cause: Error::NeverSilent, left };
+        let shift = Some((WindowShift::default(), WindowShift::default()));
+        let program = ProgramNumber::new(1).unwrap();
+        let unfinished = Some(Op::Program(ProgramChange { program, cams: Vec::new(), mask: None, shift }));
+        let interrupted = Interrupted { done, unfinished, cause: Error::NeverSilent, left };
         let texts = write::interruption(&interrupted, Path::new("b.ron"), 3, kind);
         assert!(texts.iter().all(|text| text.words(English) != text.words(German)), "{texts:?}");
         texts.iter().map(Text::terminal).collect()
@@ -175,7 +177,7 @@ fn what_completes_a_write_comes_after_leading_back() {
     for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
         let done = Written { ops: 1, write_cycles: 1, written: 1, verified: 1 };
         let last = |left| {
-            let interrupted = Interrupted { done: done.clone(), unclear: vec![], cause: Error::NeverSilent, left };
+            let interrupted = Interrupted { done: done.clone(), unfinished: None, cause: Error::NeverSilent, left };
             write::interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
         };
         let (found, unknown) = (last(Left::AsFound), last(Left::Unknown(standing)));
