@@ -209,7 +209,7 @@ fn a_presence_test_that_is_not_answered_ends_in_time() {
             Error::NoReply { asked: Asked::Set(number(47)), tries: 1, late: None },
             "{query}"
         );
-        assert_eq!((interrupted.unclear.as_deref(), interrupted.done.ops), (Some("47"), 0), "{query}");
+        assert_eq!((interrupted.unclear().as_deref(), interrupted.done.ops), (Some("47"), 0), "{query}");
         assert!(within.contains(&took), "{query}: {took} ms");
         assert_eq!(stand.sets(), [(47, vec![0xFC, 0xFF])], "{query}");
     }

@@ -1,12 +1,12 @@
-//! What an adapter or a hub brings to a write.
+//! Carries a plan out.
 
-use super::{Commit, Committed, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
-use crate::devices::hiperdrive::procedures::write::{Confirmed, Interrupted, Written, carry_out, confirm};
-use crate::devices::hiperdrive::procedures::{Error, Master};
-use crate::devices::hiperdrive::profile::{HiperdriveProfile, Op};
+use super::{ChangeKind, Commit, Committed, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
+use crate::devices::hiperdrive::procedures::write::DeviceWrite;
+use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, HiperdriveProfile, Op};
 use crate::profile::Body;
-use crate::worker::commit::{Intended, OldWrite as Write, Terms, backup_of, commit as carry_through};
-use crate::worker::{Desk, Interruption, Progress, Tell};
+use crate::store::DeviceKey;
+use crate::worker::commit::{Planned, backup_of, write_plan};
+use crate::worker::{Desk, Tell};
 
 pub(super) fn commit(
     device: &mut Hiperdrive,
@@ -14,74 +14,45 @@ pub(super) fn commit(
     commit: &Commit,
     tell: Told<'_>,
 ) -> Result<Committed, JobError> {
-    let prepared = &commit.prepared;
-    let plan = &prepared.plan;
-    let store = desk.store.clone();
-    let key = device_key(&prepared.identity, desk.is_virtual);
-    // No limit is known (`U`): saves are counted and told, and refused only where they cannot be.
-    let terms = Terms::of(key, plan, Op::note, (prepared.cycles_seen, u64::MAX), commit.force_wear);
-    let told = &mut |progress| tell(Tell::Progress(progress));
-    let mut write = DeviceWrite { master: device.master(desk), commit, told };
-    carry_through(&store, &terms, prepared.kind, &mut write)
+    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let mut write = DeviceWrite { master: device.master(desk), identity: &commit.prepared.identity };
+    write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
+        tell(Tell::Progress(at.map(|op| Doing::Operation(op.item()))));
+    })
 }
 
-struct DeviceWrite<'w, 'm> {
-    master: Master<'m>,
-    commit: &'w Commit,
-    told: &'w mut dyn FnMut(Progress<Doing>),
-}
+impl Planned for Prepared {
+    type Base = Base;
+    type Op = Op;
+    type Kind = ChangeKind;
 
-impl<'w> Write for DeviceWrite<'w, '_> {
-    type Confirmed = Confirmed<'w>;
-    type Written = Written;
-    type Refusal = Error;
-    type Interrupted = Interrupted;
-
-    fn confirm(&mut self) -> Result<Confirmed<'w>, Error> {
-        let Commit { prepared, consent, .. } = self.commit;
-        confirm(&mut self.master, &prepared.plan, *consent, &prepared.identity)
+    fn plan(&self) -> &HiperdrivePlan {
+        &self.plan
     }
 
+    fn kind(&self) -> ChangeKind {
+        self.kind
+    }
+
+    fn device(&self, is_virtual: bool) -> DeviceKey {
+        device_key(&self.identity, is_virtual)
+    }
+
+    fn cycles_seen(&self) -> Option<u64> {
+        self.cycles_seen
+    }
+
+    /// No limit is known (`U`): saves are counted and told, and refused only where they cannot be.
+    fn wear_limit(&self) -> u64 {
+        u64::MAX
+    }
+
+    fn note(&self, op: &Op) -> String {
+        op.note()
+    }
+
+    /// All that the device keeps.
     fn before_image(&self) -> String {
-        before_image(&self.commit.prepared)
+        backup_of(Body::new(HiperdriveProfile::of(self.identity.profile(), self.image.clone()))).emit()
     }
-
-    fn carry_out(&mut self, confirmed: &Confirmed<'w>, _intended: &Intended) -> Result<Written, Box<Interrupted>> {
-        let ops = &self.commit.prepared.plan.ops;
-        let told = &mut |number: usize| {
-            let item = ops.get(number).map(Op::item).unwrap_or_default();
-            (self.told)(Progress::at(ops, number, Doing::Operation(item)));
-        };
-        carry_out(&mut self.master, confirmed, told)
-    }
-
-    fn write_cycles(written: &Written) -> u64 {
-        written.write_cycles
-    }
-}
-
-impl Interruption for Interrupted {
-    type Error = Error;
-
-    fn error(&self) -> Option<&Error> {
-        Some(&self.cause)
-    }
-
-    fn why(&self) -> Option<String> {
-        (self.cause != Error::Cancelled).then(|| self.cause.to_string())
-    }
-
-    fn done(&self) -> usize {
-        self.done.ops
-    }
-
-    fn write_cycles(&self) -> u64 {
-        self.done.write_cycles
-    }
-}
-
-/// A profile of all that the device keeps, as it was.
-fn before_image(prepared: &Prepared) -> String {
-    let profile = HiperdriveProfile::of(prepared.identity.profile(), prepared.image.clone());
-    backup_of(Body::new(profile)).emit()
 }

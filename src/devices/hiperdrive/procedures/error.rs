@@ -9,6 +9,7 @@ use crate::buses::ethernet_ip::protocol::{
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, Topology, ValueError};
 use crate::link::LinkError;
 use crate::link::line::LineError;
+use crate::profile::OperationError;
 
 /// What a device was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -318,9 +319,6 @@ pub enum Error {
         /// What changed.
         item: String,
     },
-    /// The consent is for another plan.
-    #[error("the consent is for another plan")]
-    OtherPlan,
 }
 
 fn named(number: ParameterNumber) -> &'static str {
@@ -340,6 +338,18 @@ impl From<LineError> for Error {
 impl From<LinkError> for Error {
     fn from(error: LinkError) -> Self {
         Error::Link(error)
+    }
+}
+
+impl OperationError for Error {
+    type Device = Self;
+
+    fn device(&self) -> Option<&Self> {
+        Some(self)
+    }
+
+    fn is_only_cancelled(&self) -> bool {
+        *self == Error::Cancelled
     }
 }
 

@@ -1,7 +1,5 @@
-//! The one way to write to a device: a plan, a consent to it, what was read is read again, then exactly the operations that
-//! were shown, each read back (reference 4).
-//!
-//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+//! How a plan is written into a device: what was read is read again, then each operation is carried out and read back
+//! (reference 4).
 
 use std::time::Duration;
 
@@ -12,79 +10,86 @@ use super::identify::{drive_status, drive_text, of, own, topology};
 use super::network::settings;
 use super::{Error, Identity, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
-use crate::devices::hiperdrive::profile::{HiperdrivePlan, Item, NetworkSettings, Op, Service};
+use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, Item, NetworkSettings, Op, Service};
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
 };
-use crate::profile::Consent;
+use crate::profile::{Confirmed, Write};
 
-/// A plan that a person consented to and whose base still holds.
-pub struct Confirmed<'p> {
-    plan: &'p HiperdrivePlan,
+/// A write that ended early. Without a save what was written until then may be gone when the supply goes.
+pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, ()>;
+
+impl Interrupted {
+    /// Returns what the operation changes of which is not known how far it came; `None` where it did not begin, which is so
+    /// where the user cancelled it.
+    pub fn unclear(&self) -> Option<String> {
+        self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item)
+    }
 }
-
-/// A write that ended early.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("after {} of the operations: {cause}", done.ops)]
-pub struct Interrupted {
-    /// What was written until then. Without a save it may be gone when the supply goes.
-    pub done: Written,
-    /// What the operation changes that was under way, and of which is not known how far it came; `None` where it did not
-    /// begin.
-    pub unclear: Option<String>,
-    /// Why it ended.
-    pub cause: Error,
-}
-
-/// What is told of a write: the operation that begins, from 0.
-pub type News = usize;
 
 /// Between two looks at parameter 47.
 const LOOK: Duration = Duration::from_millis(50);
 /// Before the first look after something that resets: it may not have begun.
 const BEGINS: Duration = Duration::from_millis(100);
 
-/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the device for which it was
-/// made, and the same drives; and that none moves.
-///
-/// # Errors
-/// [`Error::Changed`] when anything is no longer as it was; [`Error::Moving`]; [`Error::OtherPlan`]; the way.
-pub fn confirm<'p>(
-    master: &mut Master<'_>,
-    plan: &'p HiperdrivePlan,
-    consent: Consent,
-    identity: &Identity,
-) -> Result<Confirmed<'p>, Error> {
-    if !consent.covers(plan.id()) {
-        return Err(Error::OtherPlan);
-    }
-    let changed = |item: String| Err(Error::Changed { item });
-    if master.read_number(own(17)?)?.to_string() != identity.serial_number {
-        return changed("the device itself".to_owned());
-    }
-    for drive in touched(plan, identity) {
-        if let Some(known) = identity.drive(drive)
-            && drive_text(master, 123, drive)? != known.serial_number
+/// A device into which a plan is written.
+pub struct DeviceWrite<'w, 'm> {
+    /// The host's side of explicit messages.
+    pub master: Master<'m>,
+    /// The device for which the plan was made.
+    pub identity: &'w Identity,
+}
+
+impl Write for DeviceWrite<'_, '_> {
+    type Base = Base;
+    type Op = Op;
+    type Error = Error;
+    type Written = Written;
+    type Left = ();
+
+    /// The drives have to be the same, and none moves.
+    fn confirm(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
+        let (master, identity) = (&mut self.master, self.identity);
+        let changed = |item: String| Err(Error::Changed { item });
+        if master.read_number(own(17)?)?.to_string() != identity.serial_number {
+            return changed("the device itself".to_owned());
+        }
+        for drive in touched(plan, identity) {
+            if let Some(known) = identity.drive(drive)
+                && drive_text(master, 123, drive)? != known.serial_number
+            {
+                return changed(format!("drive {}", drive.get()));
+            }
+            let status = master.read_number(of(105, drive)?)?;
+            // Of 16 bits.
+            if StatusWord::new(status as u16).state() == State::Moving {
+                return Err(Error::Moving { drive });
+            }
+        }
+        for (number, before) in &plan.base.values {
+            if master.read_number(*number)? != *before {
+                return changed(Item(*number).to_string());
+            }
+        }
+        if let Some(before) = &plan.base.network
+            && settings(master)? != *before
         {
-            return changed(format!("drive {}", drive.get()));
+            return changed("network".to_owned());
         }
-        let status = master.read_number(of(105, drive)?)?;
-        // Of 16 bits.
-        if StatusWord::new(status as u16).state() == State::Moving {
-            return Err(Error::Moving { drive });
+        Ok(())
+    }
+
+    /// A wish to end is heard between two operations.
+    fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
+        if !is_within_a_place(&confirmed.plan().ops, done.ops) {
+            self.master.check_cancel()?;
         }
+        self.master.shielded(|master| perform(master, op, done))?;
+        done.carried_out(op.weight());
+        Ok(())
     }
-    for (number, before) in &plan.base.values {
-        if master.read_number(*number)? != *before {
-            return changed(Item(*number).to_string());
-        }
-    }
-    if let Some(before) = &plan.base.network
-        && settings(master)? != *before
-    {
-        return changed("network".to_owned());
-    }
-    Ok(Confirmed { plan })
+
+    fn left(&mut self, _: &Error) {}
 }
 
 /// The drives that a plan is about: all of them where it is about the device as a whole.
@@ -102,32 +107,6 @@ fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     drives.sort();
     drives.dedup();
     drives
-}
-
-/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
-/// operations.
-///
-/// # Errors
-/// [`Interrupted`], with what was written until then.
-pub fn carry_out(
-    master: &mut Master<'_>,
-    confirmed: &Confirmed<'_>,
-    tell: &mut dyn FnMut(News),
-) -> Result<Written, Box<Interrupted>> {
-    let mut done = Written::default();
-    for (number, op) in confirmed.plan.ops.iter().enumerate() {
-        tell(number);
-        if !is_within_a_place(&confirmed.plan.ops, number)
-            && let Err(cause) = master.check_cancel()
-        {
-            return Err(Box::new(Interrupted { done, unclear: None, cause }));
-        }
-        if let Err(cause) = master.shielded(|master| perform(master, op, &mut done)) {
-            return Err(Box::new(Interrupted { done, unclear: Some(op.item()), cause }));
-        }
-        done.ops += 1;
-    }
-    Ok(done)
 }
 
 /// Scale or limits of a drive are begun before this operation and not yet whole: limits in another scale lie elsewhere, so that
@@ -154,7 +133,6 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
             done.verified += 1;
         }
     }
-    done.written += op.weight();
     Ok(())
 }
 

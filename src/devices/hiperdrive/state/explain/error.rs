@@ -71,7 +71,6 @@ pub fn device(error: &Error) -> Text {
             TEXTS.text("hd_said.busy").with("reads", reads).with("milliseconds", milliseconds)
         }
         Error::Changed { item } => TEXTS.text("hd_said.changed").with("item", item),
-        Error::OtherPlan => Text::new("write.other_plan"),
     }
 }
 

@@ -83,7 +83,6 @@ fn errors_say_what_happened_and_what_to_do() {
         Error::NetworkNotTaken { attribute: 5 },
         Error::Busy { reads: 1, milliseconds: 2000 },
         Error::Changed { item: "158".to_owned() },
-        Error::OtherPlan,
     ];
     for error in errors {
         says(&device(&error), 2);

@@ -167,14 +167,14 @@ pub fn written(written: &Written) -> Text {
 
 /// A write that was cut off: how far it came and why, and where the state before is.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
-    let Interrupted { done, unclear, cause } = interrupted;
+    let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.unclear());
     let mut texts = vec![if cause.is_cancelled() {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
         text.with_text("cause", device(cause))
     }];
-    if let Some(item) = unclear {
+    if let Some(item) = &unclear {
         texts.push(TEXTS.text("hd_left.unclear").with("item", item));
     }
     let untouched = done.written == 0 && done.write_cycles == 0 && unclear.is_none();
