@@ -5,7 +5,7 @@
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{Activity, Failure, Run, Step, steps_of};
-use encoder_studio::devices::biss::procedures::write::{Interrupted, Left};
+use encoder_studio::devices::biss::procedures::write::Interrupted;
 use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, PresetParts};
 use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::link::{Cancel, Direction};
@@ -89,7 +89,7 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
 
 /// Reconnected, the encoder is led back; and, once for each step, the change carried out once more.
 fn assert_can_be_led_back(bench: &Bench, scene: &Scene, told: &Interrupted, steps: &mut Vec<Step>, context: &str) {
-    let first = !steps.contains(&told.at);
+    let first = !steps.contains(&told.left.at);
     let mut again = if first { bench.reconnected() } else { bench.reconnected_knowing() };
     again.motor().set_rpm(0.0);
     again.lead_back().unwrap_or_else(|error| panic!("{context}: {error}"));
@@ -97,7 +97,7 @@ fn assert_can_be_led_back(bench: &Bench, scene: &Scene, told: &Interrupted, step
     if !first {
         return;
     }
-    steps.push(told.at);
+    steps.push(told.left.at);
     let prepared = again.prepare((scene.change)()).unwrap_or_else(|error| panic!("{context}: {error}"));
     let mut hands = Hands::on(&again);
     hands.rpm = (500.0, 2000.0);
@@ -217,7 +217,7 @@ fn power_lost_before_every_exchange() {
                     assert_cycles(&told, spent, &context);
                     let lost = !bench.encoder(|encoder, _| encoder.flash().is_calibrated());
                     let running = Activity::Running(Run::CalibrationClockwise);
-                    let warned = matches!(&told.left, Left::Unknown(standing) if standing.activity == running);
+                    let warned = told.left.standing.as_ref().is_some_and(|own| own.activity == running);
                     assert!(!lost || warned, "{context}: {told:?}");
                     // Power is back, and with it operation.
                     let mut again = bench.reconnected_knowing();
@@ -242,7 +242,7 @@ fn power_lost_in_every_store() {
                 bench.encoder(|encoder, _| encoder.set_faults(&format!("die-in-store:{store}").parse().unwrap()));
             });
             let Ended::Interrupted(told) = ended else { panic!("{context}") };
-            assert!(told.cause.is_lost() && matches!(told.left, Left::Unknown(_)), "{context}: {told:?}");
+            assert!(told.cause.is_lost() && told.left.standing.is_some(), "{context}: {told:?}");
             assert_eq!(told.done.write_cycles, store, "{context}");
             bench.encoder(|encoder, _| encoder.set_faults(&Default::default()));
             assert_can_be_led_back(&bench, scene, &told, &mut Vec::new(), &context);
@@ -273,7 +273,7 @@ fn cancelled_at_every_exchange() {
                 Ended::Refused(error) => assert_eq!((error, spent), (Error::Cancelled, 0), "{context}"),
                 Ended::Interrupted(told) => {
                     assert_eq!(told.cause, Failure::Device(Error::Cancelled), "{context}");
-                    assert_eq!((told.left, told.done.write_cycles), (Left::Operation, spent), "{context}");
+                    assert_eq!((told.left.standing, told.done.write_cycles), (None, spent), "{context}");
                     assert!(!done, "{context}");
                 }
             }

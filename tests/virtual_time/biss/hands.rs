@@ -216,9 +216,9 @@ pub(crate) const IN_OPERATION: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
 /// The state that was told is the one in which the encoder is.
 pub(crate) fn assert_told(left: &Left, bench: &Bench, context: &str) {
     let (mode, password) = bench.mode_and_password();
-    match left {
-        Left::Operation => assert_eq!((mode, password), IN_OPERATION, "{context}"),
-        Left::Unknown(standing) => {
+    match &left.standing {
+        None => assert_eq!((mode, password), IN_OPERATION, "{context}"),
+        Some(standing) => {
             assert!(standing.mode.may_be(mode), "{context}: {mode} is not in {standing:?}");
             assert!(standing.password.may_be(password != 0), "{context}: {password:02X}h is not in {standing:?}");
         }

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use encoder_studio::buses::bridge::procedures::SupplyAfter::{AsFound, Off, On};
 use encoder_studio::devices::biss::jobs::{BissJob, JobError};
-use encoder_studio::devices::biss::procedures::write::Left;
 use encoder_studio::units::SupplyVoltage;
 
 use super::hands::{Hands, data};
@@ -106,7 +105,7 @@ fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
         let error = *bench.commit(&prepared, &mut hands).unwrap_err();
         bench.tap().mute_from = None;
         let unknown =
-            matches!(&error, JobError::Interrupted { interrupted, .. } if interrupted.left != Left::Operation);
+            matches!(&error, JobError::Interrupted { interrupted, .. } if interrupted.left.standing.is_some());
         bench.session.leave();
         assert_eq!(has_power(&bench), unknown, "cut in part {part}: {error}");
         if unknown {

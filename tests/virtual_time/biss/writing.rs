@@ -6,7 +6,6 @@ use std::time::Duration;
 use encoder_studio::devices::biss::jobs::{Attendance, BissJob, Change, Commit, JobError, WEAR_LIMIT, device_key};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{Failure, Outcome};
-use encoder_studio::devices::biss::procedures::write::Left;
 use encoder_studio::devices::biss::profile::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
 use encoder_studio::devices::biss::protocol::{Filter, PresetValue};
 use encoder_studio::kinds::program;
@@ -252,7 +251,7 @@ fn one_lost_answer_or_request_at_every_exchange() {
                         let told = interrupted(error);
                         let unheard = matches!(told.cause, Failure::Status { .. } | Failure::NotVerified { .. });
                         assert!(unheard, "{context}: {told}");
-                        assert_eq!(told.left, Left::Operation, "{context}");
+                        assert_eq!(told.left.standing, None, "{context}");
                         assert!(told.done.write_cycles >= u64::from(spent) && spent < cost, "{context}");
                     }
                 }
@@ -286,7 +285,7 @@ fn what_cannot_be_read_back_is_unclear() {
             .unwrap_err();
         let told = interrupted(*error);
         assert!(matches!(told.cause, Failure::Device(Error::Unclear { value: 5, .. })), "{lost}: {told}");
-        assert_eq!((told.left, told.done.write_cycles), (Left::Operation, 1));
+        assert_eq!((told.left.standing, told.done.write_cycles), (None, 1));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
 }
@@ -329,7 +328,7 @@ fn a_single_register_is_written_and_read_back() {
     let prepared = bench.prepare(write("0x50", 1)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::ZERO).unwrap_err());
     assert!(matches!(told.cause, Failure::Device(Error::Refused { .. })), "{told}");
-    assert_eq!((told.done.write_cycles, told.left), (0, Left::Operation));
+    assert_eq!((told.done.write_cycles, told.left.standing), (0, None));
     for place in ["0x6A", "0x6B", "0x00:0x1A", "0x01:0x02"] {
         let error = bench.prepare(write(place, 1)).unwrap_err();
         assert!(matches!(error, JobError::Plan(PlanError::Guarded { .. })), "{place}: {error}");

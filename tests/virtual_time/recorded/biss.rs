@@ -3,7 +3,6 @@
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::Failure;
-use encoder_studio::devices::biss::procedures::write::Left;
 use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, PresetParts};
 use encoder_studio::devices::biss::protocol::PresetValue;
 
@@ -34,7 +33,7 @@ fn recorded(name: &str, change: fn(&mut Bench) -> Change, every: usize) {
                         if interrupted.cause == Failure::Device(Error::Cancelled) { "cancelled" } else { "cut off" },
                         interrupted.done.ops,
                         interrupted.done.write_cycles,
-                        if interrupted.left == Left::Operation { "in operation" } else { "not led back" },
+                        if interrupted.left.standing.is_none() { "in operation" } else { "not led back" },
                     ),
                     Err(JobError::Device(Error::Cancelled)) => "cancelled, nothing written".to_owned(),
                     Err(JobError::Device(error)) if error.is_lost() => "cut off, nothing written".to_owned(),

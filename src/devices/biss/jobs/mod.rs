@@ -164,7 +164,7 @@ impl Device for Biss {
             }
             BissJob::Commit(commit) => {
                 let steps = &mut |progress| tell(Tell::Progress(progress));
-                BissOutput::Committed(Box::new(commit::commit(self, desk, &commit, steps)?))
+                BissOutput::Committed(Box::new(commit::commit(self, desk, *commit, steps)?))
             }
             BissJob::LeadBack => {
                 let mode = procedure::lead_back(&mut self.master(desk), &types)?;

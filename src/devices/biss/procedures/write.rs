@@ -1,7 +1,5 @@
-//! The one way to write to an encoder: a plan, a consent to it, what was read is read again, then exactly the operations
-//! that were shown, each read back, with a person at the motor where one is needed.
-//!
-//! Between [`confirm`] and [`carry_out`] the caller keeps the before-image on disk and notes the intent.
+//! How a plan is written into an encoder: what was read is read again, then each operation is carried out and read back,
+//! with a person at the motor where one is needed, and the encoder is led back to operation after each.
 
 use super::procedure::{Failure, Guide, News, Operator, Outcome, Standing, Step};
 use super::{Error, Identity, Master, ensure_standstill};
@@ -9,14 +7,7 @@ use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceSta
 use crate::devices::biss::protocol::{
     Area, Description, DeviceMode, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress, Role,
 };
-use crate::profile::Consent;
-
-/// A plan that a person consented to and whose base still holds.
-pub struct Confirmed<'p> {
-    plan: &'p BissPlan,
-    /// Somebody has left the password set.
-    password: bool,
-}
+use crate::profile::{Confirmed, Write, WriteRecord};
 
 /// What was written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,130 +24,127 @@ pub struct Written {
     pub outcomes: Vec<Outcome>,
 }
 
-/// A write that ended early.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("after {} of the operations: {cause}", done.ops)]
-pub struct Interrupted {
-    /// What was written until then.
-    pub done: Written,
-    /// At which step of the operation that was under way.
-    pub at: Step,
-    /// Why it ended.
-    pub cause: Failure,
-    /// In which state the encoder was left.
-    pub left: Left,
-    /// A register that is written by itself, and of which is not known whether it took its value.
-    pub unclear: Option<RegisterAddress>,
+impl WriteRecord for Written {
+    fn ops(&self) -> usize {
+        self.ops
+    }
+
+    fn write_cycles(&self) -> u64 {
+        self.write_cycles
+    }
 }
+
+/// A write that ended early.
+pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, Left>;
 
 /// In which state an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Left {
-    /// In operation, without the password.
-    Operation,
-    /// It could not be led back: what is known of it, unless it has lost power since, which leads back as well.
-    Unknown(Standing),
+pub struct Left {
+    /// At which step of the operation that was under way.
+    pub at: Step,
+    /// `None` in operation, without the password. Else it could not be led back: what is known of it, unless it has lost power
+    /// since, which leads back as well.
+    pub standing: Option<Standing>,
 }
 
-/// Checks the consent and reads again what the plan rests upon: first of all, that it is still the encoder for which it
-/// was made, because two new ones have the same memory.
-///
-/// # Errors
-/// [`Error::Changed`] when anything is no longer as it was; [`Error::Moving`]; the consent is for another plan; the line.
-pub fn confirm<'p>(
-    master: &mut Master<'_>,
-    plan: &'p BissPlan,
-    consent: Consent,
-    identity: &Identity,
-) -> Result<Confirmed<'p>, Error> {
-    if !consent.covers(plan.id()) {
-        return Err(Error::Unexpected("the consent is for another plan".to_owned()));
-    }
-    let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
-    if !is_same(master, identity)? {
-        return changed("the encoder itself");
-    }
-    let description = master.description()?;
-    ensure_operation(master, &description)?;
-    let password = match description.lock() {
-        Some(lock) => master.read(lock.password_at)? != 0,
-        None => false,
-    };
-    let Base { banks, filter, preset, registers } = &plan.base;
-    if filter.is_some() && read_filter(master, &description)? != *filter {
-        return changed(BissProfile::FILTER);
-    }
-    if preset.is_some() && read_preset(master, &description)? != *preset {
-        return changed(BissProfile::PRESET);
-    }
-    for (address, value) in registers {
-        if master.read(*address)? != *value {
-            return changed(&address.to_string());
+impl Interrupted {
+    /// Returns a register that is written by itself, and of which is not known whether it took its value. What was refused, or
+    /// ended before it was sent, has not.
+    pub fn unclear(&self) -> Option<RegisterAddress> {
+        match (&self.unfinished, &self.cause) {
+            (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
+            (Some(Op::WriteRegister { address, .. }), _) => Some(*address),
+            _ => None,
         }
     }
-    if !banks.is_empty() {
-        ensure_standstill(master)?;
-    }
-    for bank in banks {
-        if read_bank(master, bank.number)? != *bank {
-            return changed(&format!("bank 0x{:02X}", bank.number));
-        }
-    }
-    Ok(Confirmed { plan, password })
 }
 
-/// Carries the plan out, one operation after the other, and reads everything back. A wish to end is heard between two
-/// exchanges, but not where it would leave something half done; the encoder is led back all the same.
-///
-/// # Errors
-/// [`Interrupted`], with what was written until then and the state in which the encoder was left.
-pub fn carry_out(
-    master: &mut Master<'_>,
-    confirmed: &Confirmed<'_>,
-    operator: &mut dyn Operator,
-    tell: &mut dyn FnMut(News),
-) -> Result<Written, Box<Interrupted>> {
-    let mut done = Written::default();
-    let description = match master.description() {
-        Ok(description) => description,
-        Err(error) => {
-            let (at, cause, left) = (Step::LeadBack, Failure::Device(error), Left::Operation);
-            return Err(Box::new(Interrupted { done, at, cause, left, unclear: None }));
+/// An encoder into which a plan is written.
+pub struct EncoderWrite<'w, 'm> {
+    guide: Guide<'w, 'm>,
+    identity: &'w Identity,
+    /// The step at which an operation ended early.
+    at: Step,
+}
+
+impl<'w, 'm> EncoderWrite<'w, 'm> {
+    /// The encoder for which the plan was made has this identity; every step is told.
+    ///
+    /// # Errors
+    /// An encoder that was not identified.
+    pub fn new(
+        master: &'w mut Master<'m>,
+        identity: &'w Identity,
+        operator: &'w mut dyn Operator,
+        tell: &'w mut dyn FnMut(News),
+    ) -> Result<Self, Error> {
+        let description = master.description()?;
+        Ok(EncoderWrite { guide: Guide::new(master, description, operator, tell), identity, at: Step::LeadBack })
+    }
+}
+
+impl Write for EncoderWrite<'_, '_> {
+    type Base = Base;
+    type Op = Op;
+    type Error = Failure;
+    type Written = Written;
+    type Left = Left;
+
+    /// Two new encoders have the same memory: it has to be the one for which the plan was made.
+    fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
+        let master = self.guide.master();
+        let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
+        if !is_same(master, self.identity)? {
+            return changed("the encoder itself");
         }
-    };
-    let standing = Standing::in_operation(confirmed.password);
-    let mut guide = Guide::new(master, description, operator, tell, standing);
-    for (number, op) in confirmed.plan.ops.iter().enumerate() {
-        guide.begin(number);
+        let description = master.description()?;
+        ensure_operation(master, &description)?;
+        let password = match description.lock() {
+            Some(lock) => master.read(lock.password_at)? != 0,
+            None => false,
+        };
+        let Base { banks, filter, preset, registers } = &plan.base;
+        if filter.is_some() && read_filter(master, &description)? != *filter {
+            return changed(BissProfile::FILTER);
+        }
+        if preset.is_some() && read_preset(master, &description)? != *preset {
+            return changed(BissProfile::PRESET);
+        }
+        for (address, value) in registers {
+            if master.read(*address)? != *value {
+                return changed(&address.to_string());
+            }
+        }
+        if !banks.is_empty() {
+            ensure_standstill(master)?;
+        }
+        for bank in banks {
+            if read_bank(master, bank.number)? != *bank {
+                return changed(&format!("bank 0x{:02X}", bank.number));
+            }
+        }
+        self.guide.found(password);
+        Ok(())
+    }
+
+    /// A wish to end is heard between two exchanges, but not where it would leave something half done. The encoder is led
+    /// back after each operation, however it ended.
+    fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
+        let guide = &mut self.guide;
+        guide.begin(done.outcomes.len());
         let ended = guide.perform(op);
         done.write_cycles = guide.cycles();
-        let failed_at = guide.at();
-        let led = lead_back(&mut guide, ended.as_ref().err());
-        let (at, cause) = match (ended, led) {
-            (Ok(outcome), led) => {
-                count(&mut done, op, outcome);
-                match led {
-                    Ok(()) => continue,
-                    // It is done, and the encoder cannot be left so.
-                    Err(error) => (guide.at(), Failure::Device(error)),
-                }
-            }
-            (Err(cause), _) => (failed_at, cause),
-        };
-        let standing = guide.standing();
-        let left = if standing.is_in_operation() { Left::Operation } else { Left::Unknown(standing.clone()) };
-        let unclear = unclear(op, &cause);
-        return Err(Box::new(Interrupted { done, at, cause, left, unclear }));
+        self.at = guide.at();
+        let led = lead_back(guide, ended.as_ref().err());
+        count(done, op, ended?);
+        // It is done, and the encoder cannot be left so.
+        self.at = guide.at();
+        Ok(led?)
     }
-    Ok(done)
-}
 
-/// The register of an operation that may have written it. What was refused, or ended before it was sent, has not.
-fn unclear(op: &Op, cause: &Failure) -> Option<RegisterAddress> {
-    match (op, cause) {
-        (Op::WriteRegister { .. }, Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
-        (Op::WriteRegister { address, .. }, _) => Some(*address),
-        _ => None,
+    fn left(&mut self, _: &Failure) -> Left {
+        let standing = self.guide.standing();
+        Left { at: self.at, standing: (!standing.is_in_operation()).then(|| standing.clone()) }
     }
 }
 

@@ -13,7 +13,6 @@ use crate::devices::biss::jobs::{
     Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key,
 };
 use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, Unattended};
-use crate::devices::biss::procedures::write::Left;
 use crate::devices::biss::procedures::{Error, profile_of};
 use crate::devices::biss::profile::{
     Bank, BissProfile, DataImage, Op, RegisterRange, RestoreOptions, check_device, other_type,
@@ -69,8 +68,8 @@ impl Encoder {
         let (before, may_lead_back) = match error {
             None => (Vec::new(), true),
             Some(JobError::Interrupted { interrupted, .. }) => {
-                guide.cut = Some(interrupted.at);
-                (interrupted.done.outcomes.clone(), interrupted.left != Left::Operation)
+                guide.cut = Some(interrupted.left.at);
+                (interrupted.done.outcomes.clone(), interrupted.left.standing.is_some())
             }
             Some(JobError::Device(Error::NotInOperation { .. })) => (Vec::new(), true),
             Some(_) => (Vec::new(), false),

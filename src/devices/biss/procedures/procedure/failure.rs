@@ -3,6 +3,7 @@
 use super::{Blocker, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{CalibrationStatus, DeviceMode, ProcedureKind, WiegandStatus};
+use crate::profile::OperationError;
 
 /// Why a procedure did not reach its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -84,6 +85,21 @@ pub enum Failure {
         /// Which procedure.
         kind: ProcedureKind,
     },
+}
+
+impl OperationError for Failure {
+    type Device = Error;
+
+    fn device(&self) -> Option<&Error> {
+        match self {
+            Failure::Device(error) => Some(error),
+            _ => None,
+        }
+    }
+
+    fn is_only_cancelled(&self) -> bool {
+        self.is_cancelled()
+    }
 }
 
 impl Failure {

@@ -78,9 +78,19 @@ impl<'g, 'm> Guide<'g, 'm> {
         description: Arc<Description>,
         operator: &'g mut dyn Operator,
         tell: &'g mut dyn FnMut(News),
-        standing: Standing,
     ) -> Self {
+        let standing = Standing::in_operation(false);
         Guide { master, description, operator, tell, standing, op: 0, step: Step::LeadBack, cycles: 0 }
+    }
+
+    /// The host's side of the line.
+    pub(in crate::devices::biss::procedures) fn master(&mut self) -> &mut Master<'m> {
+        self.master
+    }
+
+    /// The encoder was found in operation; somebody may have left the password set.
+    pub(in crate::devices::biss::procedures) fn found(&mut self, password: bool) {
+        self.standing = Standing::in_operation(password);
     }
 
     /// What is known of the encoder's state.

@@ -12,7 +12,7 @@ use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::devices::biss::jobs::{Change, ChangeKind, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::procedure::{Activity, Failure, Run, Standing};
-use crate::devices::biss::procedures::write::{Interrupted, Left, Written};
+use crate::devices::biss::procedures::write::{Interrupted, Written};
 use crate::devices::biss::profile::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, WiegandStatus};
 use crate::devices::biss::state::TEXTS;
@@ -117,12 +117,12 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
         text.with_text("cause", failure(&interrupted.cause))
     }];
-    texts.push(TEXTS.text("biss_left.at").with_text("step", step(interrupted.at)));
-    texts.extend(match &interrupted.left {
-        Left::Operation => vec![TEXTS.text("biss_left.operation")],
-        Left::Unknown(standing) => left(standing),
+    texts.push(TEXTS.text("biss_left.at").with_text("step", step(interrupted.left.at)));
+    texts.extend(match &interrupted.left.standing {
+        None => vec![TEXTS.text("biss_left.operation")],
+        Some(standing) => left(standing),
     });
-    let what_next = match (interrupted.unclear, kind) {
+    let what_next = match (interrupted.unclear(), kind) {
         (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
         // The table may be lost without a write, and no backup holds it.
         (None, ChangeKind::Calibration) => TEXTS.text("write.backup_calibration"),
@@ -136,9 +136,9 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         (None, ChangeKind::Preset) => TEXTS.text("biss_write.preset"),
     };
     let what_next = what_next.with("backup", backup.display());
-    texts.push(match &interrupted.left {
-        Left::Operation => what_next,
-        Left::Unknown(_) => Text::new("write.after_lead_back").with_text("next", what_next),
+    texts.push(match &interrupted.left.standing {
+        None => what_next,
+        Some(_) => Text::new("write.after_lead_back").with_text("next", what_next),
     });
     texts
 }
@@ -245,14 +245,16 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::devices::biss::procedures::Error;
     use crate::devices::biss::procedures::procedure::{Blocker, Possible, Step, Task};
+    use crate::devices::biss::procedures::write::Left;
     use crate::devices::biss::protocol::{DeviceMode, ProcedureKind, RegisterAddress};
 
-    fn cut_off(write_cycles: u64, cause: Failure, left: Left) -> Interrupted {
+    fn cut_off(write_cycles: u64, cause: Failure, standing: Option<Standing>) -> Interrupted {
         let done = Written { ops: 1, write_cycles, ..Written::default() };
-        Interrupted { done, at: Step::Run(Run::CalibrationClockwise), cause, left, unclear: None }
+        let left = Left { at: Step::Run(Run::CalibrationClockwise), standing };
+        Interrupted { done, unfinished: None, cause, left }
     }
 
-    fn told(cause: Failure, left: Left) -> (Vec<String>, Vec<String>) {
+    fn told(cause: Failure, left: Option<Standing>) -> (Vec<String>, Vec<String>) {
         let texts = interruption(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
         let words = |language| texts.iter().map(|text| text.words(language)).collect();
         (words(English), words(German))
@@ -276,12 +278,13 @@ mod tests {
             (ChangeKind::Preset, "position biss"),
         ];
         for (kind, part) in cases {
-            let words = last(&cut_off(1, lost(), Left::Operation), kind);
+            let words = last(&cut_off(1, lost(), None), kind);
             assert!(words.contains(part), "{words}");
-            assert!(last(&cut_off(0, lost(), Left::Operation), kind).contains("Nothing was changed"));
+            assert!(last(&cut_off(0, lost(), None), kind).contains("Nothing was changed"));
         }
-        let mut interrupted = cut_off(0, lost(), Left::Operation);
-        interrupted.unclear = RegisterAddress::direct(0x6A);
+        let mut interrupted = cut_off(0, lost(), None);
+        let address = RegisterAddress::direct(0x6A).unwrap();
+        interrupted.unfinished = Some(Op::WriteRegister { address, old: None, new: 1, cycles: 0 });
         let words = last(&interrupted, ChangeKind::Bytes);
         assert!(words.contains("not known") && words.contains("read biss 0x6A"), "{words}");
     }
@@ -295,10 +298,10 @@ mod tests {
         }
     }
 
-    fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Left {
+    fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<Standing> {
         let mut mode = Possible::known(modes[0]);
         modes[1..].iter().for_each(|own| mode.or(*own));
-        Left::Unknown(Standing { mode, password: Possible::known(password), activity })
+        Some(Standing { mode, password: Possible::known(password), activity })
     }
 
     /// Issue 22.5: whatever completes it comes behind leading the encoder back.
@@ -309,7 +312,7 @@ mod tests {
                 let interrupted = cut_off(1, Failure::Device(Error::NeverSilent), left);
                 interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
             };
-            let found = last(Left::Operation);
+            let found = last(None);
             let unknown = last(standing(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
             assert_eq!(unknown.terminal(), format!("Lead the encoder back first. {}", found.terminal()));
             assert!(unknown.words(German).starts_with("Zuerst den Geber zurückführen. "), "{unknown:?}");
@@ -336,7 +339,7 @@ mod tests {
         for (words, [own, deutsch]) in english.iter().zip(&german).zip(expected) {
             assert!(words.0.contains(own) && words.1.contains(deutsch), "{words:?}");
         }
-        let (english, _) = told(Failure::Device(Error::Cancelled), Left::Operation);
+        let (english, _) = told(Failure::Device(Error::Cancelled), None);
         assert!(english[0].contains("1 of 3") && english[2].contains("in operation again"), "{english:?}");
     }
 
