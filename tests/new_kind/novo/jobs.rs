@@ -6,17 +6,17 @@ use std::time::Duration;
 
 use encoder_studio::bits::MaskedBytes;
 use encoder_studio::link::{ByteLink, Clock, Ctx, Direction, LinkError, LinkUrl, RealClock, Scheme};
-use encoder_studio::profile::{RestoreOptions, Written};
+use encoder_studio::profile::{Interrupted, RestoreOptions, Written};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
-use encoder_studio::worker::commit::{self, Agreed, Terms, cycles_seen};
+use encoder_studio::worker::commit::{Agreed, cycles_seen, write_plan};
 use encoder_studio::worker::open::{check_parameters, inside, leads_elsewhere, open_bytes};
-use encoder_studio::worker::{self, Desk, Device, OpenError, Session, Tell, Watched};
+use encoder_studio::worker::{self, Desk, Device, OpenError, Progress, Session, Tell, Watched};
 
-use super::profile::{NovoPlan, NovoProfile, plan};
+use super::profile::{NovoPlan, NovoProfile, Op, plan};
 use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of, parse_reply};
 use super::sim::Virtual;
-use super::write::{Interrupted, NovoWrite};
+use super::write::NovoWrite;
 
 /// Write cycles that it lasts.
 pub(crate) const LIFE: u64 = 10_000;
@@ -77,7 +77,7 @@ pub(crate) enum Error {
     Link(#[from] LinkError),
 }
 
-pub(crate) type JobError = worker::JobError<Error, Infallible, Interrupted, ()>;
+pub(crate) type JobError = worker::JobError<Error, Infallible, Interrupted<Op, Error, Written, ()>, ()>;
 
 impl From<Error> for JobError {
     fn from(error: Error) -> Self {
@@ -164,11 +164,10 @@ impl Device for Novo {
             Job::Position => Output::Position(self.sample(desk)?),
             Job::Prepare(change) => Output::Prepared(Box::new(self.prepare(desk, &change)?)),
             Job::Commit(own) => {
-                let (store, device) = (desk.store.clone(), device_key(own.prepared.serial, desk.is_virtual));
-                let wear = (own.prepared.seen, LIFE);
-                let terms = Terms::of(device, &own.prepared.plan, |op| op.name().to_owned(), wear, own.force_wear);
-                let mut write = NovoWrite { novo: self, desk, agreed: &own, tell };
-                Output::Committed(Box::new(commit::commit(&store, &terms, (), &mut write)?))
+                let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+                let told = &mut |at: Progress<&Op>| tell(Tell::Progress(at.map(|op| op.item)));
+                let written = write_plan(&store, is_virtual, &own, &mut NovoWrite { novo: self, desk }, told)?;
+                Output::Committed(Box::new(written))
             }
         })
     }

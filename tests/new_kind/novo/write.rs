@@ -1,86 +1,79 @@
-//! What a Novo encoder brings to a write.
+//! How a plan is written into a Novo encoder.
 
-use encoder_studio::profile::{Body, Written};
-use encoder_studio::worker::commit::{Agreed, Intended, OldWrite as Write, backup_of};
-use encoder_studio::worker::{Desk, Interruption, Progress, Tell};
+use encoder_studio::profile::{Body, Confirmed, OperationError, Write, Written};
+use encoder_studio::store::DeviceKey;
+use encoder_studio::worker::Desk;
+use encoder_studio::worker::commit::{Planned, backup_of};
 
-use super::jobs::{Error, Novo, Prepared, Told};
-use super::profile::{NovoProfile, Op};
-use super::protocol::{Request, address_of};
-
-/// A write that ended early.
-#[derive(Debug, thiserror::Error)]
-#[error("after {} operations: {cause}", done.ops)]
-pub(crate) struct Interrupted {
-    done: Written,
-    cause: Error,
-}
+use super::jobs::{Error, LIFE, Novo, Prepared, device_key};
+use super::profile::{NovoPlan, NovoProfile, Op};
+use super::protocol::{Request, Values, address_of};
 
 pub(super) struct NovoWrite<'w> {
     pub(super) novo: &'w mut Novo,
     pub(super) desk: &'w mut Desk,
-    pub(super) agreed: &'w Agreed<Prepared>,
-    pub(super) tell: Told<'w>,
-}
-
-impl NovoWrite<'_> {
-    fn perform(&mut self, op: &Op, done: &mut Written) -> Result<(), Error> {
-        done.write_cycles += 1;
-        self.novo.ask(self.desk, Request::Write(address_of(op.item), op.to))?;
-        done.written += 1;
-        if self.novo.ask(self.desk, Request::Read(address_of(op.item)))? != op.to {
-            return Err(Error::NotTaken(op.name()));
-        }
-        done.verified += 1;
-        done.ops += 1;
-        Ok(())
-    }
 }
 
 impl Write for NovoWrite<'_> {
-    type Confirmed = ();
+    type Base = (u16, Values);
+    type Op = Op;
+    type Error = Error;
     type Written = Written;
-    type Refusal = Error;
-    type Interrupted = Interrupted;
+    type Left = ();
 
-    fn confirm(&mut self) -> Result<(), Error> {
-        let plan = &self.agreed.prepared.plan;
+    fn confirm(&mut self, plan: &NovoPlan) -> Result<(), Error> {
         let now = self.novo.survey(self.desk)?;
-        let holds = self.agreed.consent.covers(plan.id()) && plan.base == (now.serial, now.values);
-        if holds { Ok(()) } else { Err(Error::Changed) }
+        if plan.base == (now.serial, now.values) { Ok(()) } else { Err(Error::Changed) }
     }
-    fn before_image(&self) -> String {
-        let (serial, values) = self.agreed.prepared.plan.base;
-        backup_of(Body::new(NovoProfile { serial, values })).emit()
-    }
-    fn carry_out(&mut self, (): &(), _: &Intended) -> Result<Written, Box<Interrupted>> {
-        let (ops, mut done) = (&self.agreed.prepared.plan.ops, Written::default());
-        for (number, op) in ops.iter().enumerate() {
-            (self.tell)(Tell::Progress(Progress::at(ops, number, op.item)));
-            if let Err(cause) = self.perform(op, &mut done) {
-                return Err(Box::new(Interrupted { done, cause }));
-            }
+    fn apply(&mut self, op: &Op, _: &Confirmed<'_, (u16, Values), Op>, done: &mut Written) -> Result<(), Error> {
+        let address = address_of(op.item);
+        done.write_cycles += 1;
+        self.novo.ask(self.desk, Request::Write(address, op.to))?;
+        if self.novo.ask(self.desk, Request::Read(address))? != op.to {
+            return Err(Error::NotTaken(op.name()));
         }
-        Ok(done)
+        done.verified += 1;
+        done.carried_out(1);
+        Ok(())
     }
-    fn write_cycles(written: &Written) -> u64 {
-        written.write_cycles
+    fn left(&mut self, _: &Error) {}
+}
+
+impl OperationError for Error {
+    type Device = Self;
+
+    fn device(&self) -> Option<&Self> {
+        Some(self)
+    }
+    fn is_only_cancelled(&self) -> bool {
+        *self == Error::Cancelled
     }
 }
 
-impl Interruption for Interrupted {
-    type Error = Error;
+impl Planned for Prepared {
+    type Base = (u16, Values);
+    type Op = Op;
+    type Kind = ();
 
-    fn error(&self) -> Option<&Error> {
-        Some(&self.cause)
+    fn plan(&self) -> &NovoPlan {
+        &self.plan
     }
-    fn why(&self) -> Option<String> {
-        (self.cause != Error::Cancelled).then(|| self.cause.to_string())
+    fn kind(&self) {}
+
+    fn device(&self, is_virtual: bool) -> DeviceKey {
+        device_key(self.serial, is_virtual)
     }
-    fn done(&self) -> usize {
-        self.done.ops
+    fn cycles_seen(&self) -> Option<u64> {
+        self.seen
     }
-    fn write_cycles(&self) -> u64 {
-        self.done.write_cycles
+    fn wear_limit(&self) -> u64 {
+        LIFE
+    }
+    fn note(&self, op: &Op) -> String {
+        op.name().to_owned()
+    }
+    fn before_image(&self) -> String {
+        let (serial, values) = self.plan.base;
+        backup_of(Body::new(NovoProfile { serial, values })).emit()
     }
 }
