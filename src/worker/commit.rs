@@ -2,7 +2,6 @@
 //! intent → the operations, each read back → logbook: result. A device brings what differs as a [`Write`] and cannot leave
 //! a step out: its operations take a [`Confirmed`], which only [`write_plan`] has made.
 
-mod terms;
 #[cfg(test)]
 mod tests;
 
@@ -10,8 +9,6 @@ use std::hash::Hash;
 use std::path::PathBuf;
 
 use jiff::Timestamp;
-
-pub use terms::{Terms, Write as OldWrite, commit};
 
 use super::{JobError, Progress};
 use crate::profile::{
@@ -31,7 +28,7 @@ pub struct Agreed<P> {
 }
 
 /// The before-image is kept, and the logbook has been told.
-pub struct Intended {
+struct Intended {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
 }

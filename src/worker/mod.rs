@@ -28,7 +28,7 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
 pub use commit::{Committed, NotBegun, check_wear, is_uncounted};
-pub use interruption::{Interruption, JobError};
+pub use interruption::JobError;
 pub use live::Stopper;
 pub use open::OpenError;
 pub use ring::Ring;
@@ -145,11 +145,6 @@ pub struct Progress<W> {
 }
 
 impl<W> Progress<W> {
-    /// The operation of this number begins, from 0.
-    pub fn at<Op>(ops: &[Op], number: usize, what: W) -> Self {
-        Progress { done: number as u64, total: ops.len() as u64, what }
-    }
-
     /// The same progress, with what is being done in other terms.
     pub fn map<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
         Progress { done: self.done, total: self.total, what: terms(self.what) }

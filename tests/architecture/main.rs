@@ -200,6 +200,14 @@ fn only_the_window_and_the_command_line_give_consent() {
     }
 }
 
+/// Nothing is carried out without a confirmed plan; the one function that confirms it keeps the before-image as well.
+#[test]
+fn only_the_one_way_to_write_confirms_a_plan() {
+    let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("Confirmed::confirm("));
+    let found: Vec<String> = sources().into_iter().filter(confirms).map(|source| source.path).collect();
+    assert_eq!(found, ["src/worker/commit.rs"]);
+}
+
 #[test]
 fn every_module_says_what_it_is_and_none_is_long() {
     for source in sources() {

@@ -68,7 +68,7 @@ enum Ended {
     /// Before the first operation; nothing was written.
     Refused(Error),
     /// In the middle.
-    Interrupted(Interrupted),
+    Interrupted(Box<Interrupted>),
 }
 
 /// Carries the change out on a copy of the bench; `disturb` is called when the plan stands.
@@ -81,7 +81,7 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
     let ended = match bench.commit(prepared, &mut hands).map_err(|error| *error) {
         Ok(_) => Ended::Done,
         Err(JobError::Device(error)) => Ended::Refused(error),
-        Err(JobError::Interrupted { interrupted, .. }) => Ended::Interrupted(*interrupted),
+        Err(JobError::Interrupted { interrupted, .. }) => Ended::Interrupted(interrupted),
         Err(other) => panic!("{other}"),
     };
     (bench, ended)
