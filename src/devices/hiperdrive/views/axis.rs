@@ -186,7 +186,7 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, age: f64, actions: &mut 
             ui.label(skin.caption(skin.words(&drive)));
         }
     };
-    card_with(ui, skin, TEXTS.text(content::heading(step)), aside, |ui| {
+    card_with(ui, skin, words::title(step), aside, |ui| {
         paragraph(ui, unbroken(skin.words(&words::todo(step, seen))));
         ui.add_space(skin.space.between);
         live(ui, skin, shown);

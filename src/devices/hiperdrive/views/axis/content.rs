@@ -19,22 +19,6 @@ const PAD: f32 = 64.0;
 /// Room for the button of a test move.
 const GO: f32 = 172.0;
 
-/// The heading of a step.
-pub(super) const fn heading(step: Step) -> &'static str {
-    match step {
-        Step::Request => "hd_axis.step_request",
-        Step::Scale => "hd_axis.step_scale",
-        Step::Confirm => "hd_axis.step_confirm",
-        Step::Jog => "hd_axis.step_jog",
-        Step::Reference => "hd_axis.step_reference",
-        Step::Lower => "hd_axis.step_lower",
-        Step::Upper => "hd_axis.step_upper",
-        Step::Test => "hd_axis.step_test",
-        Step::Save => "hd_axis.step_save",
-        Step::PowerCycle => "hd_axis.step_power",
-    }
-}
-
 pub(super) fn content_ui(
     ui: &mut Ui,
     skin: &Skin,
