@@ -2,13 +2,13 @@
 
 mod permit;
 
-use std::hash::Hash;
 use std::path::PathBuf;
 
 pub use permit::{Permit, Toggle};
 
 use super::{Severity, Text, explain};
-use crate::profile::{Operation, Plan, PlanId};
+use crate::profile::{Plan, PlanId};
+use crate::worker::commit::Planned;
 use crate::worker::{Committed, is_uncounted};
 
 /// A write on its way.
@@ -267,12 +267,8 @@ pub enum Stage {
 pub trait Reviewed {
     /// What a user wants.
     type Change: Clone;
-    /// What a plan rests upon.
-    type Base: Hash;
-    /// An operation of a plan.
-    type Op: Operation + Hash;
     /// What was read and planned.
-    type Prepared: Clone;
+    type Prepared: Planned + Clone;
     /// What came of it.
     type Written;
 
@@ -280,10 +276,8 @@ pub trait Reviewed {
     fn change(change: &Self::Change) -> Text;
     /// Whether this is allowed; `None` where it is not in question.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
-    /// What would be written.
-    fn plan(prepared: &Self::Prepared) -> &Plan<Self::Base, Self::Op>;
     /// An operation of it, in words.
-    fn op(prepared: &Self::Prepared, op: &Self::Op) -> OpWords;
+    fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OpWords;
     /// Values of the mounting differ and are left alone.
     fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
         false
@@ -311,10 +305,13 @@ pub trait Reviewed {
 
     /// What it costs.
     fn cost(prepared: &Self::Prepared) -> Text;
+
     /// The device counts as worn after it.
-    fn is_worn(prepared: &Self::Prepared) -> bool;
-    /// Write cycles that this computer has seen it take; `None` where the logbook does not tell.
-    fn cycles_seen(prepared: &Self::Prepared) -> Option<u64>;
+    fn is_worn(prepared: &Self::Prepared) -> bool {
+        let seen = prepared.cycles_seen().unwrap_or(0);
+        seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
+    }
+
     /// What was written.
     fn written(written: &Self::Written) -> Text;
 
@@ -328,6 +325,9 @@ pub trait Reviewed {
         Manner::Writes
     }
 }
+
+/// An operation of a plan.
+pub(crate) type Op<K> = <<K as Reviewed>::Prepared as Planned>::Op;
 
 /// What a write came to, and how much that weighs.
 pub fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
@@ -362,7 +362,7 @@ impl<K: Reviewed> Review<K> {
     }
 
     /// The same with the words that the device on the desk has for an operation.
-    pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &K::Op) -> OpWords) -> Sheet {
+    pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &Op<K>) -> OpWords) -> Sheet {
         let prepared = self.prepared();
         let cut_off = match &self.state {
             ReviewState::Failed { cut_off: Some((prepared, done)), .. } => Some((&**prepared, *done)),
@@ -370,7 +370,7 @@ impl<K: Reviewed> Review<K> {
         };
         let carried = prepared.or(cut_off.map(|(prepared, _)| prepared));
         let is_over = matches!(self.state, ReviewState::Done(..));
-        let plan = prepared.map(K::plan).filter(|plan| !plan.is_empty()).map(Plan::id);
+        let plan = prepared.map(Planned::plan).filter(|plan| !plan.is_empty()).map(Plan::id);
         let stage = match &self.state {
             ReviewState::Planning => Stage::Planning,
             ReviewState::Ready(_) => plan.map_or(Stage::Nothing, Stage::Ready),
@@ -386,8 +386,8 @@ impl<K: Reviewed> Review<K> {
         };
         let shown = prepared.filter(|_| !is_over);
         let costs = shown.filter(|_| plan.is_some());
-        let uncounted = |own: &K::Prepared| is_uncounted(K::cycles_seen(own), K::plan(own).write_cycles());
-        let lines = |own| K::plan(own).ops.iter().map(|own_op| op(own, own_op)).collect();
+        let uncounted = |own: &K::Prepared| is_uncounted(own.cycles_seen(), own.plan().write_cycles());
+        let lines = |own: &K::Prepared| own.plan().ops.iter().map(|own_op| op(own, own_op)).collect();
         Sheet {
             what: self.what.clone(),
             stage,

@@ -7,6 +7,8 @@ use super::args::Consenting;
 use super::output::{Output, say};
 use super::runner::{Ended, Runs};
 use super::{Failure, Result};
+use crate::profile::Consent;
+use crate::worker::commit::{Agreed, Planned};
 use crate::worker::{self, NotBegun};
 
 /// Without a terminal nobody can be asked: refused before anything is opened.
@@ -24,25 +26,27 @@ pub(crate) fn can_ask() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
-/// Shows the plan and asks, unless the command line has consented already.
-pub fn agree(output: &Output, consent: &Consenting, plan: &str) -> Result<()> {
-    if consent.yes {
-        return Ok(());
+/// Shows the plan, and what has to be agreed to beside it, and asks for each, unless the command line has consented already.
+/// Returns the plan with the consent to it.
+pub fn agreed<P: Planned>(output: &Output, consent: &Consenting, prepared: P, shown: &[&str]) -> Result<Agreed<P>> {
+    for text in shown.iter().filter(|_| !consent.yes) {
+        output.remark(text.trim_end());
+        if !ask("Write? [y/N] ") {
+            return Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]));
+        }
     }
-    output.remark(plan.trim_end());
-    if ask("Write? [y/N] ") {
-        return Ok(());
-    }
-    Err(Failure::Failed(vec!["Not confirmed; nothing was written.".to_owned()]))
+    let granted = Consent::to(prepared.plan().id());
+    Ok(Agreed { prepared, consent: granted, force_wear: consent.force_wear })
 }
 
 /// Refuses a write into a worn device, or one whose write cycles are not known, before anybody is asked for consent to it.
-pub fn check_wear<D>(consent: &Consenting, seen: Option<u64>, cost: u64, limit: u64) -> Result<()>
+pub fn check_wear<D>(consent: &Consenting, prepared: &impl Planned) -> Result<()>
 where
     D: Runs,
     D::Error: From<NotBegun>,
 {
-    worker::check_wear(seen, cost, limit, consent.force_wear)
+    let cost = prepared.plan().write_cycles();
+    worker::check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), consent.force_wear)
         .map_err(|refused| Ended::<D>::Job(Box::new(refused.into())).into_failure())
 }
 

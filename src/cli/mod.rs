@@ -23,7 +23,7 @@ use args::{Arguments, Called, Command};
 
 pub use args::{Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProtocolDecoder};
-pub use consent::{agree, check_wear, require_consent};
+pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
 pub use patience::Pace;
 pub use positions::readings;

@@ -2,16 +2,17 @@
 //! that carries it out, and what came of it. A kind says what its changes, plans and jobs are, and what else hangs on them.
 
 use super::{Cut, Drafted, Kind, OnDesk, OnLine};
-use crate::app::review::{OpWords, Permit, Review, ReviewState, Reviewed, Sheet, told};
+use crate::app::review::{self, OpWords, Permit, Review, ReviewState, Reviewed, Sheet, told};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
+use crate::worker::commit::Planned as _;
 use crate::worker::{self, Device};
 
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 type Error<T> = <<T as OnDesk>::Device as Device>::Error;
 type Change<T> = <<T as OnDesk>::Device as Reviewed>::Change;
-type Op<T> = <<T as OnDesk>::Device as Reviewed>::Op;
+type Op<T> = review::Op<<T as OnDesk>::Device>;
 type Prepared<T> = <<T as OnDesk>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Written>;
 
@@ -83,7 +84,7 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
 
     /// A write has begun: what it changes.
     fn log_begin(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
-        let ops = &Self::Device::plan(prepared).ops;
+        let ops = &prepared.plan().ops;
         let operations = ops.iter().map(|op| Self::Device::op(prepared, op).item);
         let text = Text::new("log.begins").with_text("what", what.clone()).with_list("operations", operations);
         services.note(Severity::Note, vec![text], Some(&self.session().name()));
@@ -177,7 +178,7 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     fn agree(&self, shown: PlanId) -> Option<Agreed<Self::Device>> {
         let review = self.review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
-        let is_shown = Self::Device::plan(prepared).id() == shown;
+        let is_shown = prepared.plan().id() == shown;
         is_shown.then(|| worker::commit::Agreed {
             prepared: (**prepared).clone(),
             consent: Consent::to(shown),

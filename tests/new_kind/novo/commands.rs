@@ -5,12 +5,11 @@ use std::convert::Infallible;
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
     Common, DeviceCommands, Done, Ended, Failure, Left, Output, Position, Restore, Result, Runs, Save, Simulate,
-    Simulated, agree, check_wear, keep, plan, readings, require_consent, restore_options, settings, show_dry_run,
+    Simulated, agreed, check_wear, keep, plan, readings, require_consent, restore_options, settings, show_dry_run,
     show_restored, unexpected,
 };
-use encoder_studio::profile::{Body, Comparison, Consent, Operation, ProfileError};
+use encoder_studio::profile::{Body, Comparison, Operation, ProfileError};
 use encoder_studio::worker::Session;
-use encoder_studio::worker::commit::Agreed;
 use serde_json::json;
 
 use super::jobs::{Change, Job, JobError, LIFE, Novo, Output as Came, Prepared};
@@ -86,10 +85,9 @@ impl DeviceCommands for NovoCommands {
         if restore.dry_run {
             return show_dry_run(output, &shown, &left);
         }
-        check_wear::<Novo>(&restore.consent, prepared.seen, shown.write_cycles, LIFE)?;
-        agree(output, &restore.consent, &shown.text)?;
-        let (consent, force_wear) = (Consent::to(prepared.plan.id()), restore.consent.force_wear);
-        match runner.run(Job::Commit(Box::new(Agreed { prepared, consent, force_wear })))? {
+        check_wear::<Novo>(&restore.consent, &prepared)?;
+        let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
+        match runner.run(Job::Commit(Box::new(agreed)))? {
             Came::Committed(done) => show_restored(output, &plan::Spent::of(output, *done), &left),
             other => Err(unexpected(&other)),
         }

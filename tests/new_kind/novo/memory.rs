@@ -3,18 +3,15 @@
 use encoder_studio::app::review::{OpWords, Permit, Review, Reviewed};
 use encoder_studio::app::session::{Agreed, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
 use encoder_studio::app::{Edits, PendingEdits, Services, Text, explain};
-use encoder_studio::profile::{Body, Document, Plan, ProfileError, Written};
+use encoder_studio::profile::{Body, Document, ProfileError, Written};
 use encoder_studio::store::DeviceKey;
 
-use super::jobs::{Change, Job, LIFE, Novo, Prepared, device_key};
+use super::jobs::{Change, Job, Novo, Prepared, device_key};
 use super::profile::{NovoProfile, Op};
-use super::protocol::Values;
 use super::state::{Encoder, TEXTS};
 
 impl Reviewed for Novo {
     type Change = Change;
-    type Base = (u16, Values);
-    type Op = Op;
     type Prepared = Prepared;
     type Written = Written;
 
@@ -28,20 +25,11 @@ impl Reviewed for Novo {
         change.restored?;
         permit.option(&mut change.options)
     }
-    fn plan(prepared: &Prepared) -> &Plan<(u16, Values), Op> {
-        &prepared.plan
-    }
     fn op(_: &Prepared, op: &Op) -> OpWords {
         OpWords::one(explain::plain(op.name()), explain::plain(op.from), explain::plain(op.to))
     }
     fn cost(prepared: &Prepared) -> Text {
         TEXTS.text("novo.cost").with("cycles", prepared.plan.write_cycles())
-    }
-    fn is_worn(prepared: &Prepared) -> bool {
-        prepared.seen.is_some_and(|seen| seen + prepared.plan.write_cycles() > LIFE)
-    }
-    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
-        prepared.seen
     }
     fn written(written: &Written) -> Text {
         TEXTS.text("novo.written").with("count", written.verified)

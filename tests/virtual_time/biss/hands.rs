@@ -14,6 +14,7 @@ use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingR
 use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::profile::Consent;
 use encoder_studio::sim::Motor;
+use encoder_studio::worker::commit::Agreed;
 
 use super::support::{Bench, at};
 
@@ -55,7 +56,10 @@ impl Hands {
     pub(crate) fn commit_of(&self, prepared: &Prepared) -> BissJob {
         let attendance = Attendance::Seat(self.seat.clone());
         let consent = Consent::to(prepared.plan.id());
-        BissJob::Commit(Box::new(Commit { prepared: prepared.clone(), consent, force_wear: false, attendance }))
+        BissJob::Commit(Box::new(Commit {
+            agreed: Agreed { prepared: prepared.clone(), consent, force_wear: false },
+            attendance,
+        }))
     }
 
     fn follow(&mut self, demand: &Demand) {
@@ -130,7 +134,7 @@ impl Bench {
     pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
         let attendance = Attendance::Nobody(Unattended { patience });
         let consent = Consent::to(prepared.plan.id());
-        let commit = Commit { prepared: prepared.clone(), consent, force_wear: false, attendance };
+        let commit = Commit { agreed: Agreed { prepared: prepared.clone(), consent, force_wear: false }, attendance };
         match self.run(BissJob::Commit(Box::new(commit)))? {
             BissOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),

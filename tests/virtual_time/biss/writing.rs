@@ -12,6 +12,7 @@ use encoder_studio::kinds::program;
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::store::{Entry, Logbook, Outcome as Noted, read_text};
 use encoder_studio::worker::NotBegun;
+use encoder_studio::worker::commit::Agreed;
 use jiff::Timestamp;
 
 use super::hands::{
@@ -166,7 +167,7 @@ fn a_consent_covers_one_plan() {
     let prepared = bench.prepare(data()).unwrap();
     let consent = Consent::to(shown.plan.id());
     let attendance = Attendance::Seat(Default::default());
-    let commit = Commit { prepared, consent, force_wear: false, attendance };
+    let commit = Commit { agreed: Agreed { prepared, consent, force_wear: false }, attendance };
     let error = bench.run(BissJob::Commit(Box::new(commit))).unwrap_err();
     assert_eq!(error.to_string(), "the consent is for another plan");
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
@@ -186,7 +187,9 @@ fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
     let attendance = Attendance::Nobody(encoder_studio::devices::biss::procedures::procedure::Unattended {
         patience: Duration::ZERO,
     });
-    bench.run(BissJob::Commit(Box::new(Commit { prepared, consent, force_wear: true, attendance }))).unwrap();
+    bench
+        .run(BissJob::Commit(Box::new(Commit { agreed: Agreed { prepared, consent, force_wear: true }, attendance })))
+        .unwrap();
     assert_eq!(bench.flash_cycles() - before, 1);
 }
 
@@ -213,7 +216,9 @@ fn a_worn_encoder_is_written_only_where_that_is_wished() {
     let attendance = Attendance::Nobody(encoder_studio::devices::biss::procedures::procedure::Unattended {
         patience: Duration::ZERO,
     });
-    bench.run(BissJob::Commit(Box::new(Commit { prepared, consent, force_wear: true, attendance }))).unwrap();
+    bench
+        .run(BissJob::Commit(Box::new(Commit { agreed: Agreed { prepared, consent, force_wear: true }, attendance })))
+        .unwrap();
     assert_eq!(bench.flash_cycles() - before, 3);
 }
 

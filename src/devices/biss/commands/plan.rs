@@ -9,7 +9,7 @@ use super::words;
 use crate::bits::hex_compact;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::{agree, check_wear};
+use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, Shown, Spent, Step, warn};
 use crate::cli::runner::unexpected;
@@ -19,7 +19,7 @@ use crate::devices::biss::procedures::write::Written;
 use crate::devices::biss::profile::{BissPlan, Op, PresetParts, RegisterRange};
 use crate::devices::biss::protocol::PresetValue;
 use crate::devices::biss::state::explain as explained;
-use crate::profile::{Consent, Operation as _};
+use crate::profile::Operation as _;
 
 /// Manual 6.4.
 pub(super) const CALIBRATION: &str =
@@ -45,14 +45,13 @@ pub(super) fn commit(
     if prepared.plan.is_empty() {
         return Ok((Spent::default(), Vec::new()));
     }
-    check_wear::<Biss>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT)?;
+    check_wear::<Biss>(consent, &prepared)?;
     if let Some(wear) = explained::wear(&prepared) {
         output.remark(&wear.terminal());
     }
-    agree(output, consent, &shown(&prepared).text)?;
-    let granted = Consent::to(prepared.plan.id());
-    let attendance = Attendance::Nobody(Unattended { patience });
-    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear, attendance };
+    let text = shown(&prepared).text;
+    let agreed = agreed(output, consent, prepared, &[&text])?;
+    let commit = Commit { agreed, attendance: Attendance::Nobody(Unattended { patience }) };
     let committed = match runner.run(BissJob::Commit(Box::new(commit)))? {
         BissOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),

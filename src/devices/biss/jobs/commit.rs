@@ -6,7 +6,7 @@ use crate::devices::biss::procedures::write::EncoderWrite;
 use crate::devices::biss::profile::{Base, BissPlan, BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, Unknown};
 use crate::store::DeviceKey;
-use crate::worker::commit::{Agreed, Planned, backup_of, write_plan};
+use crate::worker::commit::{Planned, backup_of, write_plan};
 use crate::worker::{Desk, Progress};
 
 pub(super) fn commit(
@@ -16,8 +16,7 @@ pub(super) fn commit(
     tell: &mut dyn FnMut(Progress<Doing>),
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-    let Commit { prepared, consent, force_wear, mut attendance } = commit;
-    let agreed = Agreed { prepared, consent, force_wear };
+    let Commit { agreed, mut attendance } = commit;
     let Prepared { identity, plan, .. } = &agreed.prepared;
     // Each step of an operation is told, and so where it begins.
     let told = &mut |news: News| {

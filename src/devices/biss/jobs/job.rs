@@ -13,9 +13,8 @@ use crate::devices::biss::profile::{
     RestoreOptions,
 };
 use crate::devices::biss::protocol::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
-use crate::profile::Consent;
 use crate::store::{DeviceKey, StoreError};
-use crate::worker::commit::wear;
+use crate::worker::commit::{Agreed, wear};
 
 /// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
@@ -154,12 +153,8 @@ impl Prepared {
 /// A plan that a person consented to.
 #[derive(Clone, Debug)]
 pub struct Commit {
-    /// The plan as it was shown.
-    pub prepared: Prepared,
-    /// The consent to it.
-    pub consent: Consent,
-    /// Write although the encoder counts as worn.
-    pub force_wear: bool,
+    /// The plan, with the consent to it.
+    pub agreed: Agreed<Prepared>,
     /// Who stands at the motor.
     pub attendance: Attendance,
 }

@@ -4,10 +4,9 @@ use crate::app::review::{self, Manner, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::write::Written;
-use crate::devices::biss::profile::{Base, Op};
+use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
-use crate::profile::Plan;
 
 /// A write on its way.
 pub type Review = review::Review<Biss>;
@@ -21,8 +20,6 @@ pub(super) fn is_guided(op: &Op) -> bool {
 
 impl Reviewed for Biss {
     type Change = Change;
-    type Base = Base;
-    type Op = Op;
     type Prepared = Prepared;
     type Written = Written;
 
@@ -33,10 +30,6 @@ impl Reviewed for Biss {
     fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
         permit.option(options)
-    }
-
-    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
-        &prepared.plan
     }
 
     fn op(prepared: &Prepared, op: &Op) -> OpWords {
@@ -93,14 +86,6 @@ impl Reviewed for Biss {
             None => TEXTS.text("biss_review.cost_unknown").with("cycles", cycles),
         }
         .with("limit", WEAR_LIMIT)
-    }
-
-    fn is_worn(prepared: &Prepared) -> bool {
-        prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles()) > WEAR_LIMIT
-    }
-
-    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
-        prepared.cycles_seen
     }
 
     fn written(written: &Written) -> Text {

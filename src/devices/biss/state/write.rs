@@ -204,6 +204,5 @@ impl Saved for Encoder {
 }
 
 fn commit(agreed: Agreed<Biss>, attendance: Attendance) -> BissJob {
-    let (prepared, consent, force_wear) = (agreed.prepared, agreed.consent, agreed.force_wear);
-    BissJob::Commit(Box::new(Commit { prepared, consent, force_wear, attendance }))
+    BissJob::Commit(Box::new(Commit { agreed, attendance }))
 }

@@ -5,17 +5,15 @@ use serde_json::{Value as Json, json};
 use super::run::Runner;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::{agree, check_wear};
+use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::{Lines, Output};
 use crate::cli::plan::{self, Shown, Spent};
 use crate::cli::runner::unexpected;
-use crate::devices::hiperdrive::jobs::{
-    Change, Commit, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING,
-};
+use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
 use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, warnings};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
-use crate::profile::{Consent, Operation as _};
+use crate::profile::Operation as _;
 
 /// Makes a plan for a change; nothing is written. What it brings along is told.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
@@ -46,18 +44,16 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     if prepared.plan.is_empty() {
         return Ok(Spent::default());
     }
-    // The manual names no limit.
-    check_wear::<Hiperdrive>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), u64::MAX)?;
+    check_wear::<Hiperdrive>(consent, &prepared)?;
     if let Some(saves) = prepared.wear() {
         output.remark(&format!(
             "{saves} saves have been counted here with this one: the manual names no limit, and from {WEAR_WARNING} on an \
              EEPROM may wear out."
         ));
     }
-    agree(output, consent, &shown(&prepared).text)?;
-    let granted = Consent::to(prepared.plan.id());
-    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
-    let committed = match runner.run(HiperdriveJob::Commit(Box::new(commit)))? {
+    let text = shown(&prepared).text;
+    let agreed = agreed(output, consent, prepared, &[&text])?;
+    let committed = match runner.run(HiperdriveJob::Commit(Box::new(agreed)))? {
         HiperdriveOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };

@@ -22,8 +22,6 @@ pub type ReviewState = review::ReviewState<Hiperdrive>;
 
 impl Reviewed for Hiperdrive {
     type Change = Change;
-    type Base = Base;
-    type Op = Op;
     type Prepared = Prepared;
     type Written = Written;
 
@@ -34,10 +32,6 @@ impl Reviewed for Hiperdrive {
     fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
         permit.option(options)
-    }
-
-    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
-        &prepared.plan
     }
 
     fn op(prepared: &Prepared, op: &Op) -> OpWords {
@@ -90,15 +84,6 @@ impl Reviewed for Hiperdrive {
             Some(seen) => TEXTS.text("hd_review.cost").with("saves", saves).with("seen", seen),
             None => TEXTS.text("hd_review.cost_unknown").with("saves", saves),
         }
-    }
-
-    fn is_worn(_: &Prepared) -> bool {
-        // No limit is known.
-        false
-    }
-
-    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
-        prepared.cycles_seen
     }
 
     fn written(written: &Written) -> Text {

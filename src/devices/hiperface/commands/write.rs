@@ -4,7 +4,7 @@ use serde_json::{Value as Json, json};
 
 use crate::bits::{hex_compact, parse_hex};
 use crate::cli::args::{Common, Consenting, Write};
-use crate::cli::consent::{agree, check_wear, require_consent};
+use crate::cli::consent::{agreed, check_wear, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
 use crate::cli::plan::{self, Spent};
@@ -12,11 +12,10 @@ use crate::cli::profiles::show_changed;
 use crate::cli::runner::unexpected;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
-use crate::devices::hiperface::jobs::{Change, Commit, Hiperface, HiperfaceJob, HiperfaceOutput, Prepared, WEAR_LIMIT};
+use crate::devices::hiperface::jobs::{Change, Hiperface, HiperfaceJob, HiperfaceOutput, Prepared};
 use crate::devices::hiperface::profile::{HiperfacePlan, Item, Op};
 use crate::devices::hiperface::protocol::{DataFieldStatus, DeviceAddress, LineSettings};
 use crate::devices::hiperface::state::explain as words;
-use crate::profile::Consent;
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let item = super::item(&write.item)?;
@@ -108,11 +107,10 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     if prepared.plan.is_empty() {
         return Ok(Spent::default());
     }
-    check_wear::<Hiperface>(consent, prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT)?;
-    agree(output, consent, &plan_text(&prepared))?;
-    let granted = Consent::to(prepared.plan.id());
-    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
-    let committed = match runner.run(HiperfaceJob::Commit(Box::new(commit)))? {
+    check_wear::<Hiperface>(consent, &prepared)?;
+    let text = plan_text(&prepared);
+    let agreed = agreed(output, consent, prepared, &[&text])?;
+    let committed = match runner.run(HiperfaceJob::Commit(Box::new(agreed)))? {
         HiperfaceOutput::Committed(committed) => committed,
         other => return Err(unexpected(&other)),
     };

@@ -2,13 +2,12 @@
 
 use crate::app::review::{self, OpWords, Permit, Question, Reviewed};
 use crate::app::{Text, explain};
-use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared, WEAR_LIMIT};
+use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
 use crate::devices::hiperface::procedures::write::Written;
-use crate::devices::hiperface::profile::{Base, Op, RestoreOptions, UnknownField};
+use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownField};
 use crate::devices::hiperface::protocol::CodeNumber;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
-use crate::profile::Plan;
 
 /// A write on its way.
 pub type Review = review::Review<Hiperface>;
@@ -27,8 +26,6 @@ impl Review {
 
 impl Reviewed for Hiperface {
     type Change = Change;
-    type Base = Base;
-    type Op = Op;
     type Prepared = Prepared;
     type Written = Written;
 
@@ -45,10 +42,6 @@ impl Reviewed for Hiperface {
             Permit::OtherType => Some(&mut options.allow_other_type),
             Permit::Copy(field) => Some(options.copy.entry(field).or_insert(false)),
         }
-    }
-
-    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
-        &prepared.plan
     }
 
     fn op(_: &Prepared, op: &Op) -> OpWords {
@@ -129,14 +122,6 @@ impl Reviewed for Hiperface {
             Some(seen) => TEXTS.text("review.cost").with("cycles", cycles).with("seen", seen),
             None => TEXTS.text("review.cost_unknown").with("cycles", cycles),
         }
-    }
-
-    fn is_worn(prepared: &Prepared) -> bool {
-        prepared.cycles_seen.unwrap_or(0).saturating_add(prepared.plan.write_cycles()) > WEAR_LIMIT
-    }
-
-    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
-        prepared.cycles_seen
     }
 
     fn written(written: &Written) -> Text {

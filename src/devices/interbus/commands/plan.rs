@@ -5,18 +5,16 @@ use serde_json::Value as Json;
 use super::run::Runner;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::{agree, check_wear};
+use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, Shown, Spent, Step};
 use crate::cli::runner::unexpected;
-use crate::devices::interbus::jobs::{
-    Change, Commit, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear, wear_limit,
-};
+use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
-use crate::profile::{Consent, Operation as _};
+use crate::profile::Operation as _;
 
 /// Makes a plan for a change; nothing is written.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
@@ -47,21 +45,21 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
     if prepared.plan.is_empty() {
         return Ok(Spent::default());
     }
-    let (wear, cost) = (prepared.wear(), prepared.plan.write_cycles());
-    check_wear::<Interbus>(consent, prepared.cycles_seen, cost, wear_limit(cost))?;
+    let wear = prepared.wear();
+    check_wear::<Interbus>(consent, &prepared)?;
     let said = words::wear(&prepared).map(|text| text.terminal());
     if let Some(said) = &said {
         output.remark(said);
     }
     let stop = TEXTS.text("ib_disturbs.writing").terminal();
-    agree(output, consent, &format!("{}{stop}", shown(&prepared).text))?;
+    let text = format!("{}{stop}", shown(&prepared).text);
+    let mut texts = vec![text.as_str()];
     if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(said)) = (wear, &said) {
         // More than the maker names: once more.
-        agree(output, consent, said)?;
+        texts.push(said);
     }
-    let granted = Consent::to(prepared.plan.id());
-    let commit = Commit { prepared, consent: granted, force_wear: consent.force_wear };
-    let committed = match runner.run(InterbusJob::Commit(Box::new(commit)))? {
+    let agreed = agreed(output, consent, prepared, &texts)?;
+    let committed = match runner.run(InterbusJob::Commit(Box::new(agreed)))? {
         InterbusOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };

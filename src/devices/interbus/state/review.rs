@@ -4,10 +4,9 @@ use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, Wear};
 use crate::devices::interbus::procedures::write::Written;
-use crate::devices::interbus::profile::{Base, Op};
+use crate::devices::interbus::profile::Op;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
-use crate::profile::Plan;
 
 /// A write on its way.
 pub type Review = review::Review<Interbus>;
@@ -16,8 +15,6 @@ pub type ReviewState = review::ReviewState<Interbus>;
 
 impl Reviewed for Interbus {
     type Change = Change;
-    type Base = Base;
-    type Op = Op;
     type Prepared = Prepared;
     type Written = Written;
 
@@ -28,10 +25,6 @@ impl Reviewed for Interbus {
     fn permitted(change: &mut Change, permit: Permit) -> Option<&mut bool> {
         let Change::Restore { options, .. } = change else { return None };
         permit.option(options)
-    }
-
-    fn plan(prepared: &Prepared) -> &Plan<Base, Op> {
-        &prepared.plan
     }
 
     fn op(_: &Prepared, op: &Op) -> OpWords {
@@ -84,10 +77,6 @@ impl Reviewed for Interbus {
     fn is_worn(prepared: &Prepared) -> bool {
         // Beyond what the maker names, somebody has to say once more that it is wanted; so where it is refused otherwise.
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
-    }
-
-    fn cycles_seen(prepared: &Prepared) -> Option<u64> {
-        prepared.cycles_seen
     }
 
     fn written(written: &Written) -> Text {
