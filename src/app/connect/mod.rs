@@ -8,6 +8,7 @@ pub(crate) mod parameters;
 mod ports;
 pub(crate) mod target;
 
+pub use parameters::Typed;
 pub use ports::{Offer, offered_ports};
 pub use target::is_missing;
 

@@ -1,8 +1,11 @@
 //! The parameters of a link beside the entries of its form, in both directions: what an entry says, and what has none.
 
+use std::collections::BTreeMap;
+
 use super::target::{filled, other};
 use crate::app::{Text, explain};
 use crate::link::{LinkUrl, Query, Scheme};
+use crate::parameter::Entry;
 
 /// A parameter of a link and its value.
 pub(crate) type Pair = (String, String);
@@ -10,6 +13,33 @@ pub(crate) type Pair = (String, String);
 /// Those of a link that `take` finds no entry for: it fills one in and says whether it did.
 pub(crate) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
+}
+
+/// What is typed into the entries of a form, by the keys of their parameters.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Typed(BTreeMap<&'static str, String>);
+
+impl Typed {
+    /// What is typed for a parameter; empty for what is usual.
+    pub fn get(&self, key: &str) -> &str {
+        self.0.get(key).map_or("", String::as_str)
+    }
+
+    /// Types a value for a parameter.
+    pub fn set(&mut self, key: &'static str, text: impl Into<String>) {
+        let text = text.into();
+        if text.is_empty() {
+            self.0.remove(key)
+        } else {
+            self.0.insert(key, text)
+        };
+    }
+
+    /// Fills in the entry of a parameter; false where there is none.
+    pub(crate) fn take(&mut self, entries: &[Entry], name: &str, value: &str) -> bool {
+        let entry = entries.iter().find(|entry| entry.key == name);
+        entry.inspect(|entry| self.set(entry.key, value)).is_some()
+    }
 }
 
 /// The parameters of a link as the entries of its form say them, in that order. What is as usual is left out.
@@ -25,6 +55,16 @@ impl Parameters {
     /// What an entry says, unless it is empty.
     pub(crate) fn entry(&mut self, name: &str, entry: &str) {
         self.0.extend(filled(entry).map(|value| (name.to_owned(), value)));
+    }
+
+    /// What is typed into these entries; a German keyboard has a comma where a decimal point should be.
+    pub(crate) fn typed(&mut self, entries: &[Entry], typed: &Typed) {
+        for entry in entries {
+            match entry.is_decimal {
+                true => self.decimal(entry.key, typed.get(entry.key)),
+                false => self.entry(entry.key, typed.get(entry.key)),
+            }
+        }
     }
 
     /// The same of a number: a German keyboard has a comma where the point should be.

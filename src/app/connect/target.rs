@@ -61,7 +61,7 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     };
     let own = [("margin", "form.margin"), ("rpm", "form.rpm"), ("clock", "form.clock")];
     match own.iter().find(|(own, _)| own == name) {
-        Some((_, id)) => Text::new(id).with("value", value),
+        Some((_, id)) => Text::new(id).with("value", value).with_text("allowed", explain::expected(allowed)),
         None => Text::new("form.parameter")
             .with("name", name)
             .with("value", value)

@@ -26,14 +26,14 @@ parameters! {
     /// What a device that hangs on it may take as well: where noise begins, and faults of the line and the device.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
-        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS;
+        pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
 parameters! {
     /// The shaft, where no device on it has this setting.
     pub(super) struct Shaft: ConfigError {
-        pub(super) rpm: f64 = 0.0, "rpm" => RPM;
+        pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
     }
 }
 

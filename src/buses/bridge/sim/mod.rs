@@ -28,4 +28,4 @@ mod uart;
 
 pub use adapter::Adapter;
 pub use attached::{Attachable, Attached, BissDevice, SerialDevice, SsiDevice};
-pub use settings::keys;
+pub use settings::{entries, keys};

@@ -3,7 +3,7 @@
 use super::adapter::Adapter;
 use super::attached::{Attachable, Attached};
 use super::config::{Config, Shaft, Shared};
-use crate::parameter::Parameters;
+use crate::parameter::{Entry, Parameters};
 use crate::sim::ConfigError;
 
 /// The settings of an adapter with these devices: the adapter's and those of the devices with a few, by the alphabet, then
@@ -18,6 +18,11 @@ pub fn keys(devices: &[&dyn Attachable]) -> Vec<&'static str> {
     let last = last.into_iter().flat_map(|device| device.keys());
     keys.extend(last.filter(|key| !Shared::KEYS.contains(key)));
     keys
+}
+
+/// What a person types of an adapter: the speed of the shaft, be it the adapter's or a device's, and faults.
+pub fn entries() -> Vec<Entry> {
+    [Shaft::entries(), Shared::entries()].concat()
 }
 
 /// Whether the shaft is the adapter's own: no device on it has a setting for its speed.

@@ -3,12 +3,13 @@
 use super::discovery::DiscoveryFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::parameters::{Parameters, Typed, without_entry};
 use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::devices::hiperdrive::jobs::check;
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
 use crate::link::{LinkUrl, Scheme};
+use crate::parameter::{Entry, Parameters as _};
 
 /// How the drives are reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,18 +49,10 @@ pub struct HiperdriveForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// Milliseconds from one cyclic packet to the next; empty: 10.
-    pub interval: String,
     /// The high byte of process data comes first.
     pub big_endian: bool,
-    /// Where cyclic data go, unless the device says so itself; empty: as usual.
-    pub udp: String,
-    /// Milliseconds that a reply may take; empty: as usual.
-    pub timeout: String,
-    /// Which places of a virtual hub have a drive, such as `1,0,1`.
-    pub drives: String,
-    /// What goes wrong with a virtual device on purpose.
-    pub fault: String,
+    /// What is typed for other parameters.
+    pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
 }
@@ -122,27 +115,33 @@ impl FormModel for HiperdriveForm {
 }
 
 impl HiperdriveForm {
+    /// The parameters that are typed: those of the virtual device, where it is one, and those of the link.
+    pub fn entries(&self) -> Vec<Entry> {
+        let own = if self.way == HiperdriveWay::Virtual { Config::entries() } else { Vec::new() };
+        [own, LinkParameters::entries()].concat()
+    }
+
+    /// That of how often set-points go to the drives while they are moved from here, and those that are rarely needed.
+    pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
+        LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
+    }
+
+    /// Those of the virtual device. An adapter has one drive.
+    pub fn of_the_virtual(&self) -> Vec<Entry> {
+        let has = |own: &Entry| own.key != "drives" || self.hub != VirtualHub::Adapter;
+        Config::entries().into_iter().filter(has).collect()
+    }
+
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        let is_virtual = self.way == HiperdriveWay::Virtual;
-        let entry = match name {
-            "rpi" => &mut self.interval,
-            "udp" => &mut self.udp,
-            "timeout" => &mut self.timeout,
-            "drives" if is_virtual => &mut self.drives,
-            "fault" if is_virtual => &mut self.fault,
-            "hub" if is_virtual => {
-                let Some(hub) = VirtualHub::of_word(value) else { return false };
-                self.hub = hub;
-                return true;
-            }
-            _ => {
-                self.big_endian |= (name, value) == BIG_ENDIAN;
-                return (name, value) == BIG_ENDIAN;
-            }
-        };
-        value.clone_into(entry);
-        true
+        if (name, self.way) == ("hub", HiperdriveWay::Virtual) {
+            let hub = VirtualHub::of_word(value);
+            self.hub = hub.unwrap_or(self.hub);
+            return hub.is_some();
+        }
+        let is_big_endian = (name, value) == BIG_ENDIAN;
+        self.big_endian |= is_big_endian;
+        is_big_endian || self.typed.take(&self.entries(), name, value)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
@@ -160,15 +159,11 @@ impl HiperdriveForm {
         let mut parameters = Parameters::default();
         if is_virtual {
             parameters.entry("hub", self.hub.word().unwrap_or_default());
-            parameters.entry("drives", &self.drives);
-            parameters.entry("fault", &self.fault);
         }
-        parameters.entry("rpi", &self.interval);
+        parameters.typed(&self.entries(), &self.typed);
         if self.big_endian {
             parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }
-        parameters.entry("udp", &self.udp);
-        parameters.entry("timeout", &self.timeout);
         // What only a virtual device has is not taken along.
         let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !Config::KEYS.contains(&name);
         parameters.rest(&self.rest, belongs);
@@ -204,9 +199,9 @@ mod tests {
         };
         assert_eq!(refused(|form| form.way = HiperdriveWay::Network), "form.device_missing");
         assert_eq!(refused(|form| form.way = HiperdriveWay::Replay), "form.file_missing");
-        assert_eq!(refused(|form| form.interval = "4".to_owned()), "form.parameter");
-        assert_eq!(refused(|form| form.drives = "2".to_owned()), "form.parameter");
-        assert_eq!(refused(|form| form.timeout = "x".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.typed.set("rpi", "4")), "form.parameter");
+        assert_eq!(refused(|form| form.typed.set("drives", "2")), "form.parameter");
+        assert_eq!(refused(|form| form.typed.set("timeout", "x")), "form.parameter");
     }
 
     #[test]

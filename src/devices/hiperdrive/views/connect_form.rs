@@ -8,9 +8,9 @@ use crate::devices::hiperdrive::state::{
     Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveWay, TEXTS, VirtualHub,
 };
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner, text_entry};
+use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
+use crate::ui::dialogs::connect::entries::{place, recording, segments, typed, unfolded};
 use crate::ui::{Skin, icons};
 
 /// The connection form of HIPERDRIVE drives.
@@ -61,13 +61,8 @@ impl TypedConnectForm for HiperdriveConnectForm {
                 let orders = [(false, "connect.little_endian"), (true, "connect.big_endian")];
                 choice(ui, &word, &mut form.big_endian, orders.map(|(order, id)| (order, say(skin, id))));
             });
-            let word = say(skin, "connect.udp_port");
-            entry(ui, skin, &word, |ui| text_entry(ui, &mut form.udp, 96.0, &word, "2222"));
-            let word = say(skin, "connect.reply_time");
-            entry(ui, skin, &word, |ui| {
-                text_entry(ui, &mut form.timeout, 96.0, &word, "1000");
-                ui.label(skin.label("ms"));
-            });
+            let (_, rest) = HiperdriveForm::of_the_link();
+            typed(ui, skin, say, rest, &mut form.typed);
         }
     }
 }
@@ -82,21 +77,13 @@ fn simulated(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
         ];
         choice(ui, &word, &mut form.hub, hubs.map(|(hub, id)| (hub, say(skin, id))));
     });
-    if form.hub != VirtualHub::Adapter {
-        let word = say(skin, "connect.plugged");
-        entry(ui, skin, &word, |ui| text_entry(ui, &mut form.drives, 200.0, &word, "1,0,1"));
-    }
-    let word = skin.say("connect.fault");
-    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.fault, 200.0, &word, "drop:0.01"));
+    let own = form.of_the_virtual();
+    typed(ui, skin, say, own, &mut form.typed);
 }
 
-/// How often set-points go to the drives while they are moved from here.
 fn interval(ui: &mut Ui, skin: &Skin, form: &mut HiperdriveForm) {
-    let word = say(skin, "connect.interval");
-    entry(ui, skin, &word, |ui| {
-        text_entry(ui, &mut form.interval, 96.0, &word, "10");
-        ui.label(skin.label("ms"));
-    });
+    let (interval, _) = HiperdriveForm::of_the_link();
+    typed(ui, skin, say, interval, &mut form.typed);
 }
 
 /// Who is there.

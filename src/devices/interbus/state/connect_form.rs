@@ -2,12 +2,13 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::parameters::{Parameters, Typed, without_entry};
 use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
 use crate::devices::interbus::jobs::check;
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
 use crate::link::{LinkUrl, Scheme};
+use crate::parameter::{Entry, Parameters as _};
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,20 +34,10 @@ pub struct InterbusForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// The gateway's unit; empty: 1.
-    pub unit: String,
-    /// The first input register of the IN word; empty: 0.
-    pub input: String,
-    /// The first holding register of the OUT word; empty: 0.
-    pub output: String,
+    /// What is typed for other parameters.
+    pub typed: Typed,
     /// The low word of the two comes first.
     pub low_first: bool,
-    /// Milliseconds until an echo has to stand.
-    pub handshake: String,
-    /// The virtual encoder's speed in revolutions a minute.
-    pub rpm: String,
-    /// What goes wrong with it on purpose.
-    pub fault: String,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
 }
@@ -98,23 +89,27 @@ impl FormModel for InterbusForm {
 }
 
 impl InterbusForm {
+    /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
+    pub fn entries(&self) -> Vec<Entry> {
+        let own = if self.way == InterbusWay::Virtual { Config::entries() } else { Vec::new() };
+        [own, LinkParameters::entries()].concat()
+    }
+
+    /// Those of where the words stand in the gateway, and those that are rarely needed.
+    pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
+        LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
+    }
+
+    /// Those of the virtual encoder.
+    pub fn of_the_virtual() -> Vec<Entry> {
+        Config::entries()
+    }
+
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        let is_virtual = self.way == InterbusWay::Virtual;
-        let entry = match name {
-            "unit" => &mut self.unit,
-            "input" => &mut self.input,
-            "output" => &mut self.output,
-            "handshake" => &mut self.handshake,
-            "rpm" if is_virtual => &mut self.rpm,
-            "fault" if is_virtual => &mut self.fault,
-            _ => {
-                self.low_first |= (name, value) == LOW_FIRST;
-                return (name, value) == LOW_FIRST;
-            }
-        };
-        value.clone_into(entry);
-        true
+        let is_low_first = (name, value) == LOW_FIRST;
+        self.low_first |= is_low_first;
+        is_low_first || self.typed.take(&self.entries(), name, value)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
@@ -130,14 +125,7 @@ impl InterbusForm {
     fn parameters(&self) -> Parameters {
         let is_virtual = self.way == InterbusWay::Virtual;
         let mut parameters = Parameters::default();
-        if is_virtual {
-            parameters.decimal("rpm", &self.rpm);
-            parameters.entry("fault", &self.fault);
-        }
-        parameters.entry("unit", &self.unit);
-        parameters.entry("input", &self.input);
-        parameters.entry("output", &self.output);
-        parameters.entry("handshake", &self.handshake);
+        parameters.typed(&self.entries(), &self.typed);
         if self.low_first {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }
@@ -175,10 +163,10 @@ mod tests {
         };
         assert_eq!(refused(|form| form.way = InterbusWay::Gateway), "form.gateway_missing");
         assert_eq!(refused(|form| form.way = InterbusWay::Replay), "form.file_missing");
-        assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
-        assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
-        assert_eq!(refused(|form| form.unit = "300".to_owned()), "form.parameter");
-        assert_eq!(refused(|form| form.input = "x".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.typed.set("rpm", "fast")), "form.rpm");
+        assert_eq!(refused(|form| form.typed.set("fault", "drop:2")), "form.fault");
+        assert_eq!(refused(|form| form.typed.set("unit", "300")), "form.parameter");
+        assert_eq!(refused(|form| form.typed.set("input", "x")), "form.parameter");
     }
 
     #[test]

@@ -7,9 +7,9 @@ use crate::app::connect::Connect as Dialog;
 use crate::devices::interbus::state::{InterbusForm, InterbusWay};
 use crate::devices::interbus::views::say;
 use crate::ui::Skin;
-use crate::ui::controls::{choice, entry, paragraph, text_entry};
+use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{place, recording, segments, unfolded};
+use crate::ui::dialogs::connect::entries::{place, recording, segments, typed, unfolded};
 
 /// The connection form of INTERBUS encoders.
 pub(crate) struct InterbusConnectForm;
@@ -37,7 +37,7 @@ impl TypedConnectForm for InterbusConnectForm {
         }
         ui.add_space(skin.space.between);
         match form.way {
-            InterbusWay::Virtual => simulated(ui, skin, form),
+            InterbusWay::Virtual => typed(ui, skin, say, InterbusForm::of_the_virtual(), &mut form.typed),
             InterbusWay::Gateway => {
                 place(
                     ui,
@@ -57,23 +57,16 @@ impl TypedConnectForm for InterbusConnectForm {
             if form.way == InterbusWay::Virtual {
                 registers(ui, skin, form);
             }
-            let word = say(skin, "connect.handshake");
-            entry(ui, skin, &word, |ui| {
-                text_entry(ui, &mut form.handshake, 96.0, &word, "2000");
-                ui.label(skin.label("ms"));
-            });
+            let (_, rest) = InterbusForm::of_the_link();
+            typed(ui, skin, say, rest, &mut form.typed);
         }
     }
 }
 
 /// Where the words stand in the gateway.
 fn registers(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
-    let word = say(skin, "connect.unit");
-    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.unit, 96.0, &word, "1"));
-    let word = say(skin, "connect.input");
-    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.input, 96.0, &word, "0"));
-    let word = say(skin, "connect.output");
-    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.output, 96.0, &word, "0"));
+    let (registers, _) = InterbusForm::of_the_link();
+    typed(ui, skin, say, registers, &mut form.typed);
     order(ui, skin, form);
 }
 
@@ -82,12 +75,5 @@ fn order(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
     entry(ui, skin, &word, |ui| {
         let orders = [(false, "connect.high_first"), (true, "connect.low_first")];
         choice(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, say(skin, id))));
-    });
-}
-
-fn simulated(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
-    entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
-    entry(ui, skin, &skin.say("connect.fault"), |ui| {
-        text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
     });
 }

@@ -12,7 +12,8 @@ use crate::sim::ConfigError;
 pub const DELIVERED: &str = "atm60,code=gray";
 
 parameters! {
-    pub(crate) struct Settings: ConfigError {
+    /// The SSI encoder on the shaft at an adapter, and what is wrong with its frame.
+    pub struct Settings: ConfigError {
         /// Family and settings of the encoder; a host that clocks otherwise gets its frame cut off, or zeros behind it.
         encoder: Option<Encoder> = None,
             "ssi" => Maybe(Checked(Expected::Family, Encoder::named)),

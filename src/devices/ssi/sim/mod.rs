@@ -13,5 +13,5 @@ mod encoder;
 mod tests;
 mod trouble;
 
-pub use at_adapter::{AtAdapter, DELIVERED};
+pub use at_adapter::{AtAdapter, DELIVERED, Settings};
 pub use encoder::Encoder;

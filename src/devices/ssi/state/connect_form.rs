@@ -2,14 +2,16 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::parameters::{Parameters, Typed, without_entry};
 use crate::app::connect::target::{adapter_in_network, checked, entered, parted, to_adapter};
 use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
 use crate::devices::ssi::procedures::LinkParameters;
+use crate::devices::ssi::sim::Settings;
 use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
+use crate::parameter::{Entry, Parameters as _};
 
 /// How the encoder is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,18 +41,10 @@ pub struct SsiForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// Volts that the adapter supplies the encoder with; empty: none.
-    pub voltage: String,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
-    /// Milliseconds that a reply may come later than usual.
-    pub margin: String,
-    /// The frame that the virtual encoder sends: a family with its settings.
-    pub layout: String,
-    /// The virtual encoder's speed in revolutions a minute.
-    pub rpm: String,
-    /// What goes wrong with it on purpose.
-    pub fault: String,
+    /// What is typed for other parameters.
+    pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
 }
@@ -99,23 +93,29 @@ impl FormModel for SsiForm {
 }
 
 impl SsiForm {
+    /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
+    pub fn entries(&self) -> Vec<Entry> {
+        let own = if self.way == SsiWay::Virtual { Self::of_the_virtual() } else { Vec::new() };
+        [own, LinkParameters::entries()].concat()
+    }
+
+    /// Those of the virtual encoder and the adapter before it.
+    pub fn of_the_virtual() -> Vec<Entry> {
+        [Settings::entries(), bridge::entries()].concat()
+    }
+
+    /// That of the encoder's supply, and the others.
+    pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
+        LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
+    }
+
     /// Fills in the entry of a parameter; false where there is none.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        let is_virtual = self.way == SsiWay::Virtual;
         if name == SupplyAfter::LEFT_ON.0 {
             self.leave_supply = value == SupplyAfter::LEFT_ON.1;
             return self.leave_supply;
         }
-        let entry = match name {
-            "margin" => &mut self.margin,
-            "voltage" => &mut self.voltage,
-            "ssi" if is_virtual => &mut self.layout,
-            "rpm" if is_virtual => &mut self.rpm,
-            "fault" if is_virtual => &mut self.fault,
-            _ => return false,
-        };
-        value.clone_into(entry);
-        true
+        self.typed.take(&self.entries(), name, value)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
@@ -130,16 +130,10 @@ impl SsiForm {
     fn parameters(&self) -> Parameters {
         let is_virtual = self.way == SsiWay::Virtual;
         let mut parameters = Parameters::default();
-        if is_virtual {
-            parameters.entry("ssi", &self.layout);
-            parameters.decimal("rpm", &self.rpm);
-            parameters.entry("fault", &self.fault);
-        }
-        parameters.decimal("voltage", &self.voltage);
+        parameters.typed(&self.entries(), &self.typed);
         if self.leave_supply {
             parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
         }
-        parameters.entry("margin", &self.margin);
         // What only a virtual encoder has is not taken along.
         let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !is_of_the_virtual(name);
         parameters.rest(&self.rest, belongs);
@@ -185,11 +179,11 @@ mod tests {
         assert_eq!(refused(|form| form.way = SsiWay::Adapter), "form.port_missing");
         assert_eq!(refused(|form| (form.way, form.network) = (SsiWay::Adapter, true)), "form.host_missing");
         assert_eq!(refused(|form| form.way = SsiWay::Replay), "form.file_missing");
-        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.margin");
-        assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
-        assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
-        assert_eq!(refused(|form| form.layout = "atm61".to_owned()), "form.parameter");
-        assert_eq!(refused(|form| form.voltage = "48".to_owned()), "form.parameter");
+        assert_eq!(refused(|form| form.typed.set("margin", "soon")), "form.margin");
+        assert_eq!(refused(|form| form.typed.set("rpm", "fast")), "form.rpm");
+        assert_eq!(refused(|form| form.typed.set("fault", "drop:2")), "form.fault");
+        assert_eq!(refused(|form| form.typed.set("ssi", "atm61")), "form.parameter");
+        assert_eq!(refused(|form| form.typed.set("voltage", "48")), "form.parameter");
     }
 
     #[test]
@@ -199,7 +193,8 @@ mod tests {
         assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");
         // What a typed link had and its way has no entry for.
         let mut form = SsiForm::from_url(&"bridge:COM3?rpm=60".parse().unwrap());
-        (form.way, form.rpm) = (SsiWay::Virtual, "6".to_owned());
+        form.way = SsiWay::Virtual;
+        form.typed.set("rpm", "6");
         assert_eq!(form.url().unwrap().to_string(), "sim:?rpm=6");
     }
 }

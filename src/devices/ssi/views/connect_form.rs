@@ -6,10 +6,11 @@ use crate::app::Action;
 use crate::app::connect::Connect as Dialog;
 use crate::devices::ssi::state::{SsiForm, SsiWay};
 use crate::devices::ssi::views::say;
+use crate::parameter::Entry;
 use crate::ui::Skin;
-use crate::ui::controls::{entry, paragraph, text_entry};
+use crate::ui::controls::paragraph;
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{leave_supply, margin, network, recording, segments, serial, unfolded};
+use crate::ui::dialogs::connect::entries::{leave_supply, network, recording, segments, serial, typed, unfolded};
 
 /// The connection form of SSI encoders.
 pub(crate) struct SsiConnectForm;
@@ -37,7 +38,7 @@ impl TypedConnectForm for SsiConnectForm {
         }
         ui.add_space(skin.space.between);
         match form.way {
-            SsiWay::Virtual => simulated(ui, skin, form),
+            SsiWay::Virtual => typed(ui, skin, say, SsiForm::of_the_virtual(), &mut form.typed),
             SsiWay::Adapter => {
                 segments(ui, skin, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
@@ -49,23 +50,12 @@ impl TypedConnectForm for SsiConnectForm {
             SsiWay::Replay => recording(ui, skin, &mut form.file, actions),
         }
         if form.way != SsiWay::Replay && unfolded(ui, skin, more) {
-            let word = say(skin, "connect.voltage");
-            entry(ui, skin, &word, |ui| {
-                text_entry(ui, &mut form.voltage, 96.0, &word, &say(skin, "connect.voltage_none"));
-                ui.label(skin.label("V"));
-            });
+            let (supply, rest) = SsiForm::of_the_link();
+            let none = say(skin, "connect.voltage_none");
+            typed(ui, skin, say, supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }), &mut form.typed);
             paragraph(ui, skin.caption(say(skin, "connect.voltage_words")));
             leave_supply(ui, skin, &mut form.leave_supply);
-            margin(ui, skin, &mut form.margin);
+            typed(ui, skin, say, rest, &mut form.typed);
         }
     }
-}
-
-fn simulated(ui: &mut Ui, skin: &Skin, form: &mut SsiForm) {
-    let word = say(skin, "connect.ssi_layout");
-    entry(ui, skin, &word, |ui| text_entry(ui, &mut form.layout, 260.0, &word, "atm60,code=gray"));
-    entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
-    entry(ui, skin, &skin.say("connect.fault"), |ui| {
-        text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
-    });
 }

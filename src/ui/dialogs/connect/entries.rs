@@ -2,9 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::connect::{Action as Connect, Connect as Dialog, Typed};
 use crate::app::{Action, explain};
 use crate::link::Echo;
+use crate::parameter::Entry;
 use crate::ui::controls::{LABELS, choice, entry, icon_button, name, paragraph, text_entry};
 use crate::ui::{Skin, icons};
 use crate::units::Parity;
@@ -100,6 +101,29 @@ pub(crate) fn margin(ui: &mut Ui, skin: &Skin, margin: &mut String) {
         text_entry(ui, margin, 72.0, &skin.say("connect.margin"), "50");
         ui.label(skin.label("ms"));
     });
+}
+
+/// Entries of parameters; `say` is the device's.
+pub(crate) fn typed(
+    ui: &mut Ui,
+    skin: &Skin,
+    say: fn(&Skin, &'static str) -> String,
+    entries: impl IntoIterator<Item = Entry>,
+    typed: &mut Typed,
+) {
+    for own in entries {
+        let (word, mut text) = (say(skin, own.label), typed.get(own.key).to_owned());
+        // A number needs less room than a list of faults.
+        let width = if own.hint.parse::<f64>().is_ok() { 96.0 } else { 200.0 };
+        entry(ui, skin, &word, |ui| {
+            if text_entry(ui, &mut text, width, &word, &own.hint).changed() {
+                typed.set(own.key, text);
+            }
+            if !own.unit.is_empty() {
+                ui.label(skin.label(own.unit));
+            }
+        });
+    }
 }
 
 /// Whether the adapter leaves the encoder's supply on at the end.
