@@ -210,6 +210,12 @@ impl Catalogue {
         Text { catalogue, id, arguments: Vec::new() }
     }
 
+    /// The text that stands by a number of a table, such as `hd_parameter.158`.
+    pub(crate) fn numbered(&'static self, area: &str, number: u16) -> Option<Text> {
+        let (id, _) = self.rows().get_key_value(&format!("{area}.{number}"))?;
+        Some(Text { catalogue: self, id, arguments: Vec::new() })
+    }
+
     /// The text of that name with the arguments with which it is `words` in English; nothing where it cannot be.
     pub(crate) fn recognised(&'static self, id: &'static str, words: &str) -> Option<Text> {
         let mut text = self.text(id);

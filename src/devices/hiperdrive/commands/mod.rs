@@ -168,7 +168,7 @@ fn listed_parameters() -> String {
 Parameters of HIPERDRIVE, of the device below 100, of drive 1 from 101 on (drive 2 from 201 on, and so on to drive 8):
 "
     .to_owned();
-    for row in &PARAMETERS {
+    for row in PARAMETERS {
         let unit = if row.unit.is_empty() { String::new() } else { format!(", {}", row.unit) };
         text.push_str(&format!("  {:3}  {}{unit}\n", row.number, row.name));
     }

@@ -32,6 +32,8 @@ pub struct ParameterRow {
     pub access: Access,
     /// It survives the supply, after a save where it was written.
     pub saved: bool,
+    /// The adapter or hub holds it, and not a drive.
+    pub(super) kept_by_device: bool,
     /// What it may be.
     pub range: Range,
     /// How far from 0 it may be in turns of the drive, beside its range; `None` where turns do not bound it.
@@ -134,10 +136,9 @@ impl DriveNumber {
 }
 
 impl ParameterRow {
-    /// It is kept by the adapter or hub itself: 47 = −1 and −2 change these, and no others (manual, 47; 152 by its sections 3.4
-    /// and 4.5, 190 by its own row). All others of a drive are kept by that drive.
+    /// It is kept by the adapter or hub itself: 47 = −1 and −2 change these, and no others (manual, 47).
     pub const fn is_kept_by_device(&self) -> bool {
-        self.saved && (self.number < 100 || matches!(self.number, 152 | 190))
+        self.saved && self.kept_by_device
     }
 }
 

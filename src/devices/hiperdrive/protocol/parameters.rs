@@ -18,6 +18,7 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
         kind,
         access: Access::Read,
         saved: false,
+        kept_by_device: number < 100,
         range: Range::Any,
         reach: None,
         factory: Factory::None,
@@ -29,6 +30,11 @@ impl ParameterRow {
     /// It can be written, and is gone without supply.
     const fn written(self, range: Range, factory: Factory) -> Self {
         ParameterRow { access: Access::ReadWrite, range, factory, ..self }
+    }
+
+    /// It is a drive's, and kept by the adapter or hub (manual, 152: sections 3.4 and 4.5; 190: its own row).
+    const fn in_device(self) -> Self {
+        ParameterRow { kept_by_device: true, ..self }
     }
 
     /// It can be written, and is kept by a save.
@@ -98,7 +104,7 @@ const fn scale(number: u16, name: &'static str, factory: i64) -> ParameterRow {
 }
 
 /// All of them, by number. That 11 and 119 have a sign is assumed (`U`): the manual has their bits alone.
-pub const PARAMETERS: [ParameterRow; 71] = [
+pub const PARAMETERS: &[ParameterRow] = &[
     read(9, "control supply", U16, "0.1 V"),
     read(11, "device temperature", I16, "°C"),
     read(12, "address switch", U16, ""),
@@ -148,7 +154,10 @@ pub const PARAMETERS: [ParameterRow; 71] = [
     text(127, "nominal current", "A"),
     text(128, "nominal torque", "Nm"),
     text(129, "nominal speed", "rpm"),
-    read(152, "requested", U8, "").kept(Within(0, 1), Factory::Topology { adapter: 1, hub: 0 }).slow(REQUEST),
+    read(152, "requested", U8, "")
+        .kept(Within(0, 1), Factory::Topology { adapter: 1, hub: 0 })
+        .in_device()
+        .slow(REQUEST),
     scale(154, "position scale numerator", 256),
     scale(156, "position scale denominator", 1),
     read(158, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)).reaching(Reach::Position),
@@ -165,7 +174,7 @@ pub const PARAMETERS: [ParameterRow; 71] = [
     read(182, "wait before hand drive", U16, "ms").written(Within(100, 10000), Factory::Number(1000)),
     read(186, "RS-485 time-out", U16, "0.1 s").kept(WithinOr(1, 100, 255), Factory::Number(20)),
     read(188, "RS-485 address", U8, "").kept(Within(0, 253), Factory::Number(1)),
-    read(190, "RS-485 baud rate", U32, "baud").kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400)),
+    read(190, "RS-485 baud rate", U32, "baud").kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400)).in_device(),
     read(192, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
     read(197, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
     read(198, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(Reach::Position),

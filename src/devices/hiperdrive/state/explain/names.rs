@@ -100,67 +100,14 @@ pub fn error(code: ErrorCode) -> ErrorWords {
 
 /// A parameter, without its number and drive.
 pub fn parameter(number: ParameterNumber) -> Text {
-    let id = match number.base() {
-        9 => "hd_parameter.supply",
-        11 => "hd_parameter.warmth",
-        12 => "hd_parameter.switch",
-        13 => "hd_parameter.category",
-        15 => "hd_parameter.name",
-        16 => "hd_parameter.article",
-        17 => "hd_parameter.serial",
-        18 => "hd_parameter.produced",
-        19 => "hd_parameter.version",
-        47 => "hd_parameter.save",
-        101 => "hd_parameter.control",
-        102 => "hd_parameter.speed_percent",
-        103 => "hd_parameter.torque_percent",
-        104 => "hd_parameter.target",
-        105 => "hd_parameter.status",
-        106 => "hd_parameter.actual_speed",
-        107 => "hd_parameter.actual_position",
-        116 => "hd_parameter.word_drive",
-        117 => "hd_parameter.word_motion",
-        118 => "hd_parameter.word_bus",
-        119 => "hd_parameter.drive_warmth",
-        120 => "hd_parameter.variant",
-        121 => "hd_parameter.drive_name",
-        122 => "hd_parameter.drive_article",
-        123 => "hd_parameter.drive_serial",
-        124 => "hd_parameter.drive_produced",
-        125 => "hd_parameter.drive_version",
-        126 => "hd_parameter.volts",
-        127 => "hd_parameter.amperes",
-        128 => "hd_parameter.newton",
-        129 => "hd_parameter.nominal_speed",
-        152 => "hd_parameter.requested",
-        154 => "hd_parameter.position_numerator",
-        156 => "hd_parameter.position_denominator",
-        158 => "hd_parameter.lower",
-        160 => "hd_parameter.upper",
-        162 => "hd_parameter.speed_numerator",
-        164 => "hd_parameter.speed_denominator",
-        166 => "hd_parameter.most_speed",
-        170 => "hd_parameter.jog_one_step",
-        172 => "hd_parameter.jog_one_speed",
-        174 => "hd_parameter.jog_one_torque",
-        176 => "hd_parameter.jog_two_step",
-        178 => "hd_parameter.jog_two_speed",
-        180 => "hd_parameter.jog_two_torque",
-        182 => "hd_parameter.hand_wait",
-        186 => "hd_parameter.timeout",
-        188 => "hd_parameter.address",
-        190 => "hd_parameter.baud",
-        192 => "hd_parameter.complete",
-        197 => "hd_parameter.faults",
-        198 => "hd_parameter.reference",
-        199 => "hd_parameter.reset",
-        base @ (24..=42) if base % 2 == 0 => {
-            return TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2);
-        }
-        base @ (108..=115) => return TEXTS.text("hd_parameter.error").with("number", base - 107),
-        _ => return TEXTS.text("hd_parameter.other").with("number", number),
-    };
-    TEXTS.text(id)
+    match number.base() {
+        base @ (24..=42) if base % 2 == 0 => TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2),
+        base @ (108..=115) => TEXTS.text("hd_parameter.error").with("number", base - 107),
+        base => match TEXTS.numbered("hd_parameter", base) {
+            Some(name) => name,
+            None => TEXTS.text("hd_parameter.other").with("number", number),
+        },
+    }
 }
 
 /// Which drive it is.
@@ -169,5 +116,25 @@ pub fn variant(variant: Variant) -> Text {
         Some(row) => plain(row.name),
         None if variant == Variant::NONE => TEXTS.text("hd_variant.none"),
         None => TEXTS.text("hd_variant.other").with("number", format!("{:04X}", variant.number())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperdrive::protocol::PARAMETERS;
+
+    /// Names stand in the catalogue by the number of their parameter.
+    #[test]
+    fn each_parameter_has_a_name_and_each_name_a_parameter() {
+        let other = |number| parameter(number).id() == "hd_parameter.other";
+        for row in PARAMETERS {
+            assert!(!other(ParameterNumber::new(row.number).unwrap()), "{}", row.number);
+        }
+        assert!(other(ParameterNumber::new(10).unwrap()));
+        let numbers = TEXTS.ids().filter_map(|id| id.strip_prefix("hd_parameter.")?.parse::<u16>().ok());
+        for number in numbers {
+            assert!(PARAMETERS.iter().any(|row| row.number == number), "{number}");
+        }
     }
 }
