@@ -39,7 +39,7 @@ pub enum Expected {
     },
     /// Revolutions a minute in one direction.
     #[error("0 to {most} revolutions a minute")]
-    Revolutions {
+    RevolutionsAMinute {
         /// The greatest.
         most: u32,
     },
@@ -169,6 +169,57 @@ pub enum Expected {
     /// A frame without error bits.
     #[error("nothing, as this encoder's frame has no error bits")]
     NoErrorBits,
+    /// Any text.
+    #[error("a text")]
+    Text,
+    /// A text of a form.
+    #[error("a text such as {0:?}")]
+    TextSuchAs(&'static str),
+    /// A byte.
+    #[error("a number from 0 to 255 (0x00 to 0xFF)")]
+    Byte,
+    /// Two bytes.
+    #[error("a number from 0 to 65535 (0x0000 to 0xFFFF)")]
+    Word,
+    /// Bytes in lines.
+    #[error("a list of texts with hexadecimal bytes")]
+    HexLines,
+    /// A structure of RON.
+    #[error("a structure: (name: value, …)")]
+    Structure,
+    /// The names of a structure.
+    #[error("names before the colons")]
+    Names,
+    /// A list of RON.
+    #[error("a list: […]")]
+    List,
+    /// A map of RON.
+    #[error("a map: {{number: value, …}}")]
+    Map,
+    /// Voltages of Wiegand pulses.
+    #[error("a list of four numbers from 0 to 255, in tenths of a volt")]
+    FourTenths,
+    /// Two banks.
+    #[error("the first and the last bank such as (0x24, 0x43)")]
+    Banks,
+    /// Revolutions, which may be a fraction.
+    #[error("a whole number, or a text such as \"25/2\"")]
+    Revolutions,
+    /// A fraction.
+    #[error("a number or a fraction such as 25/2")]
+    Fraction,
+    /// A whole frame.
+    #[error("ones, or a number with the bits of a whole frame")]
+    Frame,
+    /// A parity bit.
+    #[error("even@CLOCK or odd@CLOCK")]
+    ParityBit,
+    /// The repetition of a frame.
+    #[error("BITS+ZEROS, as 25+1")]
+    Repetition,
+    /// Clocks of a frame.
+    #[error("clocks, as 1+26")]
+    Clocks,
 }
 
 /// What the number of a range counts, with its article.
@@ -266,6 +317,11 @@ impl Expected {
     /// A number of a range.
     pub fn range(quantity: Quantity, low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         Expected::Range { quantity, low: low.into(), high: high.into() }
+    }
+
+    /// A whole number of a range.
+    pub const fn between(low: i128, high: i128) -> Self {
+        Expected::Range { quantity: Quantity::Number, low: Limit::whole(low), high: Limit::whole(high) }
     }
 
     /// A number without a unit.

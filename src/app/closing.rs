@@ -143,8 +143,8 @@ impl Studio {
             Some(Then::CloseSession(id)) => self.remove(id),
             Some(Then::Write(question, path)) => self.chosen(question, path),
             Some(Then::Save(saving)) => {
-                let formats = self.services.world.kinds.formats;
-                self.services.tasks.run("save", move || saving.run(formats));
+                let kinds = self.services.world.kinds;
+                self.services.tasks.run("save", move || saving.run(kinds));
             }
             Some(Then::OpenLink(id)) => self.open_confirmed(id),
             Some(Then::Find(tab)) => self.find_confirmed(tab),

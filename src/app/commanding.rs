@@ -30,7 +30,7 @@ impl Studio {
         let taken = self.devices.get_mut(at).map(|device| device.take_over(body, &mut self.services));
         if let Some(Err(error)) = taken {
             let place = self.device(id).map(AnyDevice::place).unwrap_or_default();
-            let text = read_error(place.as_ref(), &ReadError::Profile(error));
+            let text = read_error(place.as_ref(), &ReadError::Profile(error), self.services.world.kinds);
             self.services.tell(Severity::Error, vec![text], None);
         }
     }

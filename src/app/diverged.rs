@@ -1,13 +1,14 @@
 //! A profile that others have changed in its file since it was opened here: what differs, entry by entry, and what becomes
 //! of it.
 
+use super::Kinds;
 use super::action::ReadError;
 use super::documents::read_error;
 use super::question::{Question, Then};
 use super::session::{Found, Guard, ProfileFile, Saving, Source};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
-use crate::profile::{Change, Changed, Document, Formats, ProfileError, divergence};
+use crate::profile::{Change, Changed, Document, ProfileError, divergence};
 
 /// One profile in two versions.
 #[derive(Debug)]
@@ -75,7 +76,8 @@ impl Row {
 
 impl Diverged {
     /// What differs between what a file says and what is to be written there.
-    pub(super) fn new(saving: Saving, Found { text, document }: Found, formats: Formats) -> Self {
+    pub(super) fn new(saving: Saving, Found { text, document }: Found, kinds: Kinds) -> Self {
+        let formats = kinds.formats;
         let kind = saving.document.body.kind();
         let is_of_kind = |found: Box<Document>| match found.body.kind() == kind {
             true => Ok(found),
@@ -95,7 +97,8 @@ impl Diverged {
         };
         let row = |(change, changed)| Row { change, changed, take: take(changed) };
         let rows = rows.into_iter().map(row).collect();
-        Diverged { saving, theirs: document, text, rows, problem: None }
+        let problem = document.as_ref().err().map(|error| read_error(&saving.path, error, kinds));
+        Diverged { saving, theirs: document, text, rows, problem }
     }
 
     /// Whose it is.
@@ -115,10 +118,7 @@ impl Diverged {
 
     /// Why the file cannot be read again, or why what was chosen cannot be.
     pub fn problem(&self) -> Option<Text> {
-        match &self.theirs {
-            Err(error) => Some(read_error(&self.saving.path, error)),
-            Ok(_) => self.problem.clone(),
-        }
+        self.problem.clone()
     }
 
     /// The file can be taken as it is.
@@ -138,12 +138,12 @@ impl Diverged {
     }
 
     /// The versions brought together.
-    fn merged(&self, formats: Formats) -> Result<Document, Text> {
+    fn merged(&self, kinds: Kinds) -> Result<Document, Text> {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));
         let changes: Vec<Change> = mine.map(|row| row.change.clone()).collect();
-        theirs.changed(&changes, formats).map_err(|error| match error {
-            Some(error) => read_error(&self.saving.path, &ReadError::Profile(error)),
+        theirs.changed(&changes, kinds.formats).map_err(|error| match error {
+            Some(error) => read_error(&self.saving.path, &ReadError::Profile(error), kinds),
             None => Text::new("diverged.unfit"),
         })
     }
@@ -210,7 +210,7 @@ impl Studio {
             }
             Resolve::Reload => return self.reload(diverged),
             Resolve::KeepMine if diverged.can_keep_mine() => diverged.over_theirs(None),
-            Resolve::Merge if diverged.can_merge() => match diverged.merged(self.services.world.kinds.formats) {
+            Resolve::Merge if diverged.can_merge() => match diverged.merged(self.services.world.kinds) {
                 Ok(document) => diverged.over_theirs(Some(document)),
                 Err(why) => {
                     diverged.problem = Some(why);
@@ -223,8 +223,8 @@ impl Studio {
                 return;
             }
         };
-        let formats = self.services.world.kinds.formats;
-        self.services.tasks.run("save", move || saving.run(formats));
+        let kinds = self.services.world.kinds;
+        self.services.tasks.run("save", move || saving.run(kinds));
     }
 
     fn reload(&mut self, diverged: Diverged) {

@@ -48,7 +48,11 @@ impl Studio {
                     self.show(tab, id);
                 }
             }
-            Err(error) => self.services.tell(Severity::Error, vec![read_error(&file.path, &error)], None),
+            Err(error) => self.services.tell(
+                Severity::Error,
+                vec![read_error(&file.path, &error, self.services.world.kinds)],
+                None,
+            ),
         }
     }
 
@@ -58,7 +62,7 @@ impl Studio {
             found: found.to_owned(),
             known: self.services.world.kinds.formats.kinds().collect(),
         };
-        self.services.tell(Severity::Error, vec![explain::profile(path, &error)], None);
+        self.services.tell(Severity::Error, vec![explain::profile(path, &error, self.services.world.kinds)], None);
     }
 
     /// The draft of a session was looked for, kept or removed.
@@ -120,9 +124,9 @@ fn read_text_and_profile(path: &Path, formats: Formats) -> Result<(String, Docum
     Ok((text, document))
 }
 
-pub(super) fn read_error(path: &Path, error: &ReadError) -> Text {
+pub(super) fn read_error(path: &Path, error: &ReadError, kinds: Kinds) -> Text {
     match error {
         ReadError::File(error) => explain::file(error),
-        ReadError::Profile(error) => explain::profile(path, error),
+        ReadError::Profile(error) => explain::profile(path, error, kinds),
     }
 }

@@ -4,7 +4,8 @@
 use super::devices::DeviceKind;
 use super::tab::Tab;
 use super::tool::ToolKind;
-use crate::profile::Formats;
+use super::{Text, explain};
+use crate::profile::{Cause, Formats};
 
 /// The kinds of devices and the tools, in the order of the navigation.
 #[derive(Clone, Copy)]
@@ -46,6 +47,11 @@ impl Kinds {
     /// Returns the kind of device of a profile.
     pub(super) fn of_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.word() == word)
+    }
+
+    /// Returns why one of the kinds refuses a profile; in the cause's own words, which are English, where none knows it.
+    pub(super) fn explain(self, cause: &Cause) -> Text {
+        self.devices.iter().find_map(|kind| kind.explain(cause)).unwrap_or_else(|| explain::plain(cause))
     }
 
     /// Returns the first tab of a device; where there is none, the first of a tool.

@@ -339,10 +339,10 @@ pub fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Te
 }
 
 /// What a restore leaves alone: what only one side has, by the words for it, and what belongs to another mounting.
-pub(crate) fn left_alone(words: impl Into<Text>, missing: &[String], mounting: Vec<Text>) -> Vec<Text> {
+pub(crate) fn left_alone(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
-        texts.push(words.into().with_list("items", missing.iter().map(|item| explain::phrase(item))));
+        texts.push(words.into().with_list("items", missing));
     }
     if !mounting.is_empty() {
         texts.push(Text::new("review.mounting_left").with_list("items", mounting));

@@ -94,15 +94,6 @@ impl Text {
         self
     }
 
-    /// With another text in place of what stands for `{name}`; as it is where nothing does.
-    #[must_use]
-    pub(crate) fn replacing(mut self, name: &str, text: &Text) -> Self {
-        for (_, argument) in self.arguments.iter_mut().filter(|(own, _)| *own == name) {
-            *argument = Argument::Text(text.clone());
-        }
-        self
-    }
-
     /// With a name for `{name}` that stands in no table: as it is in English and in German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
@@ -216,25 +207,6 @@ impl Catalogue {
         Some(Text { catalogue: self, id, arguments: Vec::new() })
     }
 
-    /// The text of that name with the arguments with which it is `words` in English; nothing where it cannot be.
-    pub(crate) fn recognised(&'static self, id: &'static str, words: &str) -> Option<Text> {
-        let mut text = self.text(id);
-        let (mut template, mut rest) = (text.catalogue.rows().get(id)?.en.as_str(), words);
-        while let Some((before, after)) = template.split_once('{') {
-            let (name, behind) = after.split_once('}')?;
-            rest = rest.strip_prefix(before)?;
-            // An argument ends where what stands behind it begins; the last one, where that is the end.
-            let length = match behind.split_once('{') {
-                Some((literal, _)) => rest.find(literal)?,
-                None => rest.strip_suffix(behind)?.len(),
-            };
-            let (argument, remaining) = rest.split_at_checked(length)?;
-            text = text.with(name, argument);
-            (template, rest) = (behind, remaining);
-        }
-        (template == rest).then_some(text)
-    }
-
     /// Names of all texts.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         self.rows().keys().map(String::as_str)
@@ -340,17 +312,6 @@ mod tests {
         assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
         assert!(text.words(Language::English).contains("Connect… lists"), "{}", text.words(Language::English));
         assert_eq!(Text::new("encoder.cancelled").terminal(), Text::new("encoder.cancelled").words(Language::English));
-    }
-
-    #[test]
-    fn a_text_is_recognised_by_its_english_words() {
-        let recognised = |id, words| COMMON.recognised(id, words).map(|text| text.words(Language::German));
-        assert_eq!(recognised("phrase.number", "a number from 1 to 8").unwrap(), "eine Zahl von 1 bis 8");
-        assert_eq!(recognised("phrase.text", "a text").unwrap(), "ein Text");
-        assert_eq!(recognised("phrase.twice", "a {b} stands twice").unwrap(), "a {b} steht zweimal da");
-        for (id, words) in [("phrase.text", "a text such"), ("phrase.number", "a number"), ("phrase.twice", "twice")] {
-            assert_eq!(recognised(id, words), None, "{words}");
-        }
     }
 
     #[test]

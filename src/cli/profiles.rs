@@ -11,7 +11,7 @@ use super::output::{Lines, Output, say};
 use super::plan::{NOTHING, Shown, Spent};
 use super::runner::failed;
 use super::{Done, Failure, Result};
-use crate::app::{explain, review};
+use crate::app::{Kinds, explain, review};
 use crate::profile::{Body, Comparison, Document, RestoreOptions};
 use crate::store::{read_text, write_atomically};
 
@@ -24,7 +24,8 @@ pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
 
 /// Reads a profile that is to be written into a device: all of it has to be known.
 pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
-    let document = read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error)))?;
+    let document =
+        read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))?;
     remark(output, path, &document)?;
     Ok(document.body)
 }
@@ -40,7 +41,7 @@ fn remark(output: &Output, path: &Path, document: &Document) -> Result<()> {
 
 fn read_document(output: &Output, path: &Path) -> Result<Document> {
     let text = read_text(path).map_err(|error| failed(&explain::file(&error)))?;
-    Document::parse(&text, output.formats()).map_err(|error| failed(&explain::profile(path, &error)))
+    Document::parse(&text, output.formats()).map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))
 }
 
 /// Writes a profile that was read just now.
@@ -61,7 +62,8 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
         Some(path) => (load(output, path)?, path.as_path()),
         None => (kind.present(common, output, None)?, Path::new("the device")),
     };
-    let comparison = kind.compare(&left, &right).map_err(|error| failed(&explain::profile(name, &error)))?;
+    let comparison =
+        kind.compare(&left, &right).map_err(|error| failed(&explain::profile(name, &error, Kinds::NONE)))?;
     let missing = comparison.missing();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
@@ -74,7 +76,8 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     if let Some(words) = kind.other_device(&profile, &device) {
         output.remark(&words);
     }
-    let comparison = kind.compare(&profile, &device).map_err(|error| failed(&explain::profile(file, &error)))?;
+    let comparison =
+        kind.compare(&profile, &device).map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))?;
     // What only the device has is not the profile's business.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)

@@ -30,7 +30,9 @@ pub use replies::Replies;
 pub use serial::{PortInfo, SerialLink, ports};
 pub use sim::{SimLink, SimPort};
 pub use tcp::TcpLink;
-pub use trace::{Direction, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header};
+pub use trace::{
+    Direction, HEADER as TRACE_HEADER, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header,
+};
 pub use udp::{UdpPort, UdpShout};
 pub use url::{LinkUrl, Query, Scheme, UrlError, Wire};
 

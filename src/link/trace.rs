@@ -67,7 +67,8 @@ impl Trace {
     }
 }
 
-const HEADER: &str = "# encoder-studio trace 1";
+/// First line of a trace file.
+pub const HEADER: &str = "# encoder-studio trace 1";
 
 /// Begins a trace file.
 ///

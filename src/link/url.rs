@@ -41,6 +41,18 @@ impl Scheme {
     pub fn word(self) -> &'static str {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
+
+    /// What stands behind the colon.
+    fn needs(self) -> &'static str {
+        match self {
+            Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
+            Scheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
+            Scheme::Enip => "a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818",
+            Scheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
+            Scheme::Replay => "a file, as in replay:capture.trace",
+            Scheme::Serial | Scheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
+        }
+    }
 }
 
 /// A link as the user writes it. Its text is the same on the command line and in the window.
@@ -87,12 +99,10 @@ pub enum UrlError {
         known: &'static str,
     },
     /// The port, host or file is missing.
-    #[error("{scheme}: needs {what}")]
+    #[error("{}: needs {}", scheme.word(), scheme.needs())]
     Target {
-        /// The word before the colon.
-        scheme: &'static str,
-        /// What is missing.
-        what: &'static str,
+        /// The kind of link.
+        scheme: Scheme,
     },
     /// Behind the host stands what is no port.
     #[error("{scheme}: {port} is no port: those are numbers from 1 to 65535")]
@@ -195,15 +205,7 @@ impl LinkUrl {
                 _ => false,
             },
         };
-        let what = match self.scheme {
-            Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
-            Scheme::Modbus => "a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502",
-            Scheme::Enip => "a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818",
-            Scheme::Bridge => "a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
-            Scheme::Replay => "a file, as in replay:capture.trace",
-            Scheme::Serial | Scheme::Sim => "a port, as in serial:/dev/ttyUSB0 or serial:COM3",
-        };
-        if is_there { Ok(()) } else { Err(UrlError::Target { scheme: self.scheme.word(), what }) }
+        if is_there { Ok(()) } else { Err(UrlError::Target { scheme: self.scheme }) }
     }
 }
 

@@ -5,10 +5,7 @@ use std::error::Error;
 use std::fmt;
 
 /// Why a text is refused, in the type of the device that refuses it. It reads like that error, and is equal to one like it.
-pub struct Cause {
-    fact: Box<dyn Fact>,
-    arguments: Vec<(&'static str, String)>,
-}
+pub struct Cause(Box<dyn Fact>);
 
 trait Fact: Any + Error + Send + Sync {
     fn boxed(&self) -> Box<dyn Fact>;
@@ -29,48 +26,37 @@ impl<E: Error + Clone + Eq + Send + Sync + 'static> Fact for E {
 impl Cause {
     /// An error of a device.
     pub fn new<E: Error + Clone + Eq + Send + Sync + 'static>(error: E) -> Self {
-        Cause { fact: Box::new(error), arguments: Vec::new() }
-    }
-
-    /// With arguments of the error's words that are phrases themselves, by the names that they have in the table of texts.
-    #[must_use]
-    pub fn with_arguments(self, arguments: Vec<(&'static str, String)>) -> Self {
-        Cause { arguments, ..self }
-    }
-
-    /// Arguments of the error's words that are phrases themselves.
-    pub fn arguments(&self) -> &[(&'static str, String)] {
-        &self.arguments
+        Cause(Box::new(error))
     }
 
     /// The error, where it is of this type.
     pub fn get<E: Error + 'static>(&self) -> Option<&E> {
-        let any: &dyn Any = self.fact.as_ref();
+        let any: &dyn Any = self.0.as_ref();
         any.downcast_ref()
     }
 }
 
 impl Clone for Cause {
     fn clone(&self) -> Self {
-        Cause { fact: self.fact.boxed(), arguments: self.arguments.clone() }
+        Cause(self.0.boxed())
     }
 }
 
 impl fmt::Debug for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Debug::fmt(&self.fact, f)
+        fmt::Debug::fmt(&self.0, f)
     }
 }
 
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(&self.fact, f)
+        fmt::Display::fmt(&self.0, f)
     }
 }
 
 impl PartialEq for Cause {
     fn eq(&self, other: &Self) -> bool {
-        self.fact.equals(other.fact.as_ref())
+        self.0.equals(other.0.as_ref())
     }
 }
 
@@ -78,6 +64,6 @@ impl Eq for Cause {}
 
 impl Error for Cause {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
-        self.fact.source()
+        self.0.source()
     }
 }

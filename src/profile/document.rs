@@ -1,16 +1,18 @@
 //! A profile document: schema version, kind of device, and what is saved of it.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use ron::Value;
 use ron::error::SpannedError;
 
 use super::body::{Body, Formats};
-use super::error::ProfileError;
+use super::error::{ProfileError, SyntaxProblem};
 use super::misspelt::Reading;
 use super::place::place_of;
 use super::ron_text::{Entries, Unknown, Writer};
 use super::unique_names::UniqueNames;
+use crate::expected::Expected;
 
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
@@ -44,17 +46,19 @@ impl Document {
     /// # Errors
     /// With line and column where the text is not RON, else with the entry that is wrong.
     pub fn parse(text: &str, formats: Formats) -> Result<Self, ProfileError> {
+        let twice = RefCell::default();
         let syntax = |error: SpannedError| ProfileError::Syntax {
             line: error.span.start.line,
             column: error.span.start.col,
-            what: match error.code {
+            what: match (error.code, twice.take()) {
+                (_, Some(name)) => SyntaxProblem::Twice(name),
                 // The crate's own words are for programmers.
-                ron::Error::ExceededRecursionLimit => "nested too deeply".to_owned(),
-                code => code.to_string(),
+                (ron::Error::ExceededRecursionLimit, None) => SyntaxProblem::TooDeep,
+                (code, None) => SyntaxProblem::Parser(code.to_string()),
             },
         };
         let value: Value = ron::from_str(text).map_err(syntax)?;
-        ron::from_str::<UniqueNames>(text).map_err(syntax)?;
+        ron::Options::default().from_str_seed(text, UniqueNames { twice: &twice }).map_err(syntax)?;
         let reading = Rc::new(Reading::default());
         Self::read(value, &reading, formats).map_err(|error| match reading.told(error) {
             ProfileError::Misspelt { path, meant, .. } => {
@@ -67,16 +71,16 @@ impl Document {
 
     fn read(value: Value, reading: &Rc<Reading>, formats: Formats) -> Result<Self, ProfileError> {
         let mut entries = Entries::open("", value, reading)?;
-        let schema: u32 = entries.required("schema", "a whole number")?;
+        let schema: u32 = entries.required("schema", Expected::Whole)?;
         if schema == 0 {
             return Err(ProfileError::Schema { found: schema, known: SCHEMA });
         }
         if schema > SCHEMA {
             reading.set_newer(schema);
         }
-        let device: String = entries.required("device", "a text")?;
-        let saved = entries.optional("saved", "a text")?;
-        let note = entries.optional("note", "a text")?;
+        let device: String = entries.required("device", Expected::Text)?;
+        let saved = entries.optional("saved", Expected::Text)?;
+        let note = entries.optional("note", Expected::Text)?;
         let body = formats.parse(device, &mut entries)?;
         let unknown = entries.rest()?;
         Ok(Document { saved, note, body, unknown, schema, beyond: reading.beyond() })

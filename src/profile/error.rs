@@ -1,6 +1,8 @@
 //! Why a text is not a profile.
 
 use super::Cause;
+use crate::bits::HexError;
+use crate::expected::Expected;
 
 /// Why a text is not a profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -12,8 +14,8 @@ pub enum ProfileError {
         line: usize,
         /// Counted from 1.
         column: usize,
-        /// What the parser says.
-        what: String,
+        /// What is wrong there.
+        what: SyntaxProblem,
     },
     /// The name of an entry is not known, and one like it is missing.
     #[error("line {line}, column {column}: {path} is not known, and {meant} is missing")]
@@ -63,17 +65,17 @@ pub enum ProfileError {
         /// Where.
         path: String,
         /// What belongs there.
-        expected: &'static str,
+        expected: Expected,
     },
-    /// A value that cannot be.
-    #[error("{path}: {what}")]
-    Value {
+    /// Bytes that are none.
+    #[error("{path}: {problem}")]
+    Bytes {
         /// Where.
         path: String,
-        /// What is wrong, and what is allowed.
-        what: String,
+        /// What is wrong.
+        problem: HexError,
     },
-    /// Values that cannot be together, as the device tells it.
+    /// A value that cannot be, or values that cannot be together, as the device tells it.
     #[error("{path}: {cause}")]
     Refused {
         /// Where.
@@ -81,6 +83,27 @@ pub enum ProfileError {
         /// Why not.
         cause: Cause,
     },
+}
+
+/// Why a text is not RON, or not RON for a profile.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SyntaxProblem {
+    /// Structures in structures in structures.
+    #[error("nested too deeply")]
+    TooDeep,
+    /// A name that a structure has twice.
+    #[error("{0} stands twice")]
+    Twice(String),
+    /// As the parser says it.
+    #[error("{0}")]
+    Parser(String),
+}
+
+impl ProfileError {
+    /// A device refuses what stands at `path`.
+    pub fn refused<E: std::error::Error + Clone + Eq + Send + Sync + 'static>(path: String, error: E) -> Self {
+        ProfileError::Refused { path, cause: Cause::new(error) }
+    }
 }
 
 fn quoted(kinds: &[&str]) -> String {

@@ -26,7 +26,7 @@ pub use body::{Body, Formats, Profile, ProfileBody, ProfileFormat};
 pub use cause::Cause;
 pub use difference::{Comparison, Difference};
 pub use document::{Document, SCHEMA};
-pub use error::ProfileError;
+pub use error::{ProfileError, SyntaxProblem};
 pub use mounting::MountingMark;
 pub use plan::{Consent, Operation, Plan, PlanId};
 pub use restore::{Restore, RestoreOptions};

@@ -1,7 +1,10 @@
 //! What belongs to the mounting of a device on one machine, as profiles mark it.
 
+use std::error::Error;
+
 use super::ProfileError;
 use super::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
+use crate::expected::Expected;
 
 /// Something that is right for one device on one machine and no other.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,23 +22,23 @@ const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
     /// Reads all marks of a profile. `item` reads what is marked, or says why it cannot; `expected` is what stands there.
-    pub(crate) fn read_all(
+    pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
-        expected: &'static str,
-        item: impl Fn(&str) -> Result<Item, String>,
+        expected: Expected,
+        item: impl Fn(&str) -> Result<Item, E>,
     ) -> Result<Vec<Self>, ProfileError> {
-        entries.structures(ENTRY)?.into_iter().map(|entries| Self::read(entries, expected, &item)).collect()
+        entries.structures(ENTRY)?.into_iter().map(|entries| Self::read(entries, expected.clone(), &item)).collect()
     }
 
-    fn read(
+    fn read<E: Error + Clone + Eq + Send + Sync + 'static>(
         mut entries: Entries,
-        expected: &'static str,
-        item: impl Fn(&str) -> Result<Item, String>,
+        expected: Expected,
+        item: impl Fn(&str) -> Result<Item, E>,
     ) -> Result<Self, ProfileError> {
         let path = entries.path_of("item");
         let text: String = entries.required("item", expected)?;
-        let item = item(&text).map_err(|what| ProfileError::Value { path, what })?;
-        let meaning = entries.optional("meaning", "a text")?.unwrap_or_default();
+        let item = item(&text).map_err(|error| ProfileError::refused(path, error))?;
+        let meaning = entries.optional("meaning", Expected::Text)?.unwrap_or_default();
         Ok(MountingMark { item, meaning, unknown: entries.rest()? })
     }
 }

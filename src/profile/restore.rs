@@ -13,13 +13,13 @@ pub struct RestoreOptions {
 
 /// What a restore would do.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Restore<Plan, Item> {
+pub struct Restore<Plan, Item, Missing = String> {
     /// The operations.
     pub plan: Plan,
     /// Things that are already as the profile says, counted as a comparison counts them.
     pub unchanged: u64,
     /// What is left alone because one side does not have it, or cannot read it.
-    pub missing: Vec<String>,
+    pub missing: Vec<Missing>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
     /// Values of the mounting of another device that are written: they have to be set up anew.

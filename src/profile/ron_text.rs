@@ -11,9 +11,7 @@ use serde::de::DeserializeOwned;
 use super::ProfileError;
 use super::misspelt::{Reading, Slip, letters_apart};
 use crate::bits::{HexError, parse_hex};
-
-/// What belongs where a byte is read.
-pub(crate) const BYTE: &str = "a number from 0 to 255 (0x00 to 0xFF)";
+use crate::expected::Expected;
 
 /// Entries that this program does not know, by name: a person's own, or those of a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
@@ -39,13 +37,13 @@ impl Entries {
             Value::Unit => ron::Map::new(),
             Value::Seq(values) if values.is_empty() => ron::Map::new(),
             _ => {
-                return Err(ProfileError::Shape { path: path.to_owned(), expected: "a structure: (name: value, …)" });
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: Expected::Structure });
             }
         };
         let mut entries = BTreeMap::new();
         for (key, value) in map {
             let Value::String(name) = key else {
-                return Err(ProfileError::Shape { path: path.to_owned(), expected: "names before the colons" });
+                return Err(ProfileError::Shape { path: path.to_owned(), expected: Expected::Names });
             };
             entries.insert(name, value);
         }
@@ -86,11 +84,7 @@ impl Entries {
     }
 
     /// Takes a plain value; `None` when it is not there.
-    pub fn optional<T: DeserializeOwned>(
-        &mut self,
-        name: &str,
-        expected: &'static str,
-    ) -> Result<Option<T>, ProfileError> {
+    pub fn optional<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<Option<T>, ProfileError> {
         let Some(value) = self.take(name) else { return Ok(None) };
         if matches!(value, Value::Option(None)) {
             return Ok(None);
@@ -99,7 +93,7 @@ impl Entries {
     }
 
     /// Takes a plain value that has to be there.
-    pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: &'static str) -> Result<T, ProfileError> {
+    pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<T, ProfileError> {
         self.optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
     }
 
@@ -121,17 +115,16 @@ impl Entries {
 
     /// Takes bytes: a list of hex lines, or one text.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
-        const EXPECTED: &str = "a list of texts with hexadecimal bytes";
         let path = self.path_of(name);
-        let Some(value) = self.optional::<Value>(name, EXPECTED)? else { return Ok(None) };
+        let Some(value) = self.optional::<Value>(name, Expected::HexLines)? else { return Ok(None) };
         let lines = match value {
             Value::String(line) => vec![line],
             value => value
                 .into_rust::<Vec<String>>()
-                .map_err(|_| ProfileError::Shape { path: path.clone(), expected: EXPECTED })?,
+                .map_err(|_| ProfileError::Shape { path: path.clone(), expected: Expected::HexLines })?,
         };
         let bytes = lines.iter().map(|line| parse_pairs(line)).collect::<Result<Vec<_>, _>>();
-        bytes.map(|rows| Some(rows.concat())).map_err(|error| ProfileError::Value { path, what: error.to_string() })
+        bytes.map(|rows| Some(rows.concat())).map_err(|problem| ProfileError::Bytes { path, problem })
     }
 
     /// Takes a list of structures that has to be there.
@@ -153,7 +146,7 @@ impl Entries {
                 .enumerate()
                 .map(|(at, value)| Entries::open(&format!("{path}[{at}]"), value, &self.reading))
                 .collect(),
-            Some(_) => Err(ProfileError::Shape { path, expected: "a list: […]" }),
+            Some(_) => Err(ProfileError::Shape { path, expected: Expected::List }),
         }
     }
 
@@ -162,7 +155,7 @@ impl Entries {
         match self.take(name).map(unwrapped) {
             None | Some(Value::Unit) => Ok(Vec::new()),
             Some(Value::Map(map)) => Ok(map.into_iter().collect()),
-            Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: "a map: {number: value, …}" }),
+            Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: Expected::Map }),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::testing::{changed_in_place, edited};
 use super::*;
+use crate::expected::Expected;
 
 /// A lamp that is lit in steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,10 +15,10 @@ impl Profile for Lamp {
     const KIND: &'static str = "lamp";
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let colour = entries.required("colour", "a text")?;
+        let colour = entries.required("colour", Expected::Text)?;
         let mut steps = Vec::new();
         for mut entries in entries.structures("steps")? {
-            steps.push((entries.required("level", "a number from 0 to 255")?, entries.rest()?));
+            steps.push((entries.required("level", Expected::between(0, 255))?, entries.rest()?));
         }
         Ok(Lamp { colour, steps })
     }

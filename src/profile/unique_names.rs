@@ -1,31 +1,36 @@
 //! Names that stand twice in a structure of a profile. The `ron` crate keeps the last of them without a word; in a file
 //! edited by hand that would drop the other.
 
+use std::cell::RefCell;
 use std::collections::HashSet;
 use std::fmt;
 
 use ron::Value;
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 /// Any RON in which no structure has a name twice; the content itself is not kept.
-pub(super) struct UniqueNames;
+#[derive(Clone, Copy)]
+pub(super) struct UniqueNames<'t> {
+    /// The name that stands twice, where one does.
+    pub(super) twice: &'t RefCell<Option<String>>,
+}
 
-impl<'de> Deserialize<'de> for UniqueNames {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Walk)
+impl<'de> DeserializeSeed<'de> for UniqueNames<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_any(self)
     }
 }
 
-struct Walk;
-
-impl<'de> Visitor<'de> for Walk {
-    type Value = UniqueNames;
+impl<'de> Visitor<'de> for UniqueNames<'_> {
+    type Value = ();
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("a RON value")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<UniqueNames, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         let mut seen = HashSet::new();
         while let Some(key) = map.next_key::<Value>()? {
             let name = match &key {
@@ -33,60 +38,61 @@ impl<'de> Visitor<'de> for Walk {
                 other => ron::to_string(other).unwrap_or_default(),
             };
             if !seen.insert(key) {
-                return Err(A::Error::custom(format_args!("{name} stands twice")));
+                *self.twice.borrow_mut() = Some(name);
+                return Err(A::Error::custom("a name stands twice"));
             }
-            map.next_value::<UniqueNames>()?;
+            map.next_value_seed(self)?;
         }
-        Ok(UniqueNames)
+        Ok(())
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<UniqueNames, A::Error> {
-        while seq.next_element::<UniqueNames>()?.is_some() {}
-        Ok(UniqueNames)
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<(), A::Error> {
+        while seq.next_element_seed(self)?.is_some() {}
+        Ok(())
     }
 
-    fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<UniqueNames, D::Error> {
-        UniqueNames::deserialize(deserializer)
+    fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_any(self)
     }
 
-    fn visit_newtype_struct<D: Deserializer<'de>>(self, deserializer: D) -> Result<UniqueNames, D::Error> {
-        UniqueNames::deserialize(deserializer)
+    fn visit_newtype_struct<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_any(self)
     }
 
-    fn visit_none<E>(self) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_none<E>(self) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_unit<E>(self) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_unit<E>(self) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_bool<E>(self, _: bool) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_bool<E>(self, _: bool) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_char<E>(self, _: char) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_char<E>(self, _: char) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_i64<E>(self, _: i64) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_i64<E>(self, _: i64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_u64<E>(self, _: u64) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_u64<E>(self, _: u64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_f64<E>(self, _: f64) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_f64<E>(self, _: f64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_str<E>(self, _: &str) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_str<E>(self, _: &str) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_bytes<E>(self, _: &[u8]) -> Result<UniqueNames, E> {
-        Ok(UniqueNames)
+    fn visit_bytes<E>(self, _: &[u8]) -> Result<(), E> {
+        Ok(())
     }
 }
 
@@ -96,8 +102,10 @@ mod tests {
 
     #[track_caller]
     fn check(text: &str, twice: Option<&str>) {
-        let found = ron::from_str::<UniqueNames>(text).err().map(|error| error.code.to_string());
-        assert_eq!(found, twice.map(|name| format!("{name} stands twice")), "{text}");
+        let found = RefCell::default();
+        let result = ron::Options::default().from_str_seed(text, UniqueNames { twice: &found });
+        assert_eq!(result.is_err(), twice.is_some(), "{text}");
+        assert_eq!(found.into_inner().as_deref(), twice, "{text}");
     }
 
     #[test]

@@ -12,7 +12,7 @@ pub mod sine_cosine;
 
 pub use fault::{Carried, FAULTS, FaultError, Faults, Passage};
 pub use motor::Motor;
-pub use setting::{ConfigError, RPM, SEED};
+pub use setting::{ConfigError, RPM, SEED, VirtualDevice};
 
 use std::net::SocketAddrV4;
 

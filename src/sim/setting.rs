@@ -11,8 +11,8 @@ pub enum ConfigError {
     /// No such key.
     #[error("{device} has no setting `{key}`; allowed are {known}")]
     Key {
-        /// What has no such key, with its article.
-        device: &'static str,
+        /// What has no such key.
+        device: VirtualDevice,
         /// The key as written.
         key: String,
         /// The keys that it has.
@@ -33,9 +33,26 @@ pub enum ConfigError {
     Fault(#[from] FaultError),
 }
 
+/// A virtual device, as it is called where it has no such setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum VirtualDevice {
+    /// An encoder.
+    #[error("a virtual encoder")]
+    Encoder,
+    /// An encoder of this kind.
+    #[error("a virtual {0} encoder")]
+    EncoderOf(&'static str),
+    /// The adapter for clocked buses.
+    #[error("a virtual adapter")]
+    Adapter,
+    /// A device of this name.
+    #[error("a virtual {0}")]
+    Device(&'static str),
+}
+
 impl ConfigError {
     /// `device` has no setting `key`; those that it has are `known`.
-    pub fn unknown(device: &'static str, key: &str, known: &[&str]) -> Self {
+    pub fn unknown(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
         ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
 }
@@ -51,7 +68,7 @@ impl From<Refused> for ConfigError {
 /// # Errors
 /// With a sentence that names the key and what is allowed.
 pub fn read<P: Parameters<Error = ConfigError>>(
-    device: &'static str,
+    device: VirtualDevice,
     pairs: &[(String, String)],
 ) -> Result<P, ConfigError> {
     let mut own = P::default();

@@ -70,7 +70,7 @@ fn fields_of(profile: &HiperfaceProfile) -> Fields {
 fn the_plan_is_the_shortest_there_is() {
     let (mut desk, wanted) = scene();
     let prepared = desk.prepare(restore_of(&wanted)).unwrap();
-    let items: Vec<String> = prepared.plan.ops.iter().map(Op::item).collect();
+    let items: Vec<String> = prepared.plan.ops.iter().map(|op| op.item().to_string()).collect();
     let expected = [
         "field:0@2+2",
         "field:0@9+1",

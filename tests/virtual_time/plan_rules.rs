@@ -35,7 +35,7 @@ fn a_base_that_changed_is_not_written_over() {
         desk.change(meanwhile).unwrap();
         let (memory, worn) = (desk.memory(), desk.wear());
         match desk.commit(&prepared) {
-            Err(JobError::Device(Error::Changed { item: named })) => assert_eq!(named, item),
+            Err(JobError::Device(Error::Changed { item: named })) => assert_eq!(named.to_string(), item),
             Err(JobError::Device(Error::Moving { .. })) => assert_eq!(item, ""),
             other => panic!("{item}: {other:?}"),
         }
@@ -50,7 +50,7 @@ fn a_plan_is_for_one_encoder() {
     let prepared = desk.prepare(store(0, 0, vec![1, 2])).unwrap();
     *desk.bus() = crate::support::bus("serial=B2");
     match desk.commit(&prepared) {
-        Err(JobError::Device(Error::Changed { item })) => assert_eq!(item, "the encoder itself"),
+        Err(JobError::Device(Error::Changed { item })) => assert_eq!(item.to_string(), "the encoder itself"),
         other => panic!("{other:?}"),
     }
     assert_eq!(desk.wear(), 0);
@@ -186,7 +186,7 @@ fn several_edits_are_written_in_one_go() {
     let reads = desk.tap().count(Command::ReadData);
     let prepared = desk.prepare(Change::Store(edits)).unwrap();
     assert_eq!(desk.tap().count(Command::ReadData) - reads, 2, "each field once");
-    let ops: Vec<String> = prepared.plan.ops.iter().map(Op::item).collect();
+    let ops: Vec<String> = prepared.plan.ops.iter().map(|op| op.item().to_string()).collect();
     assert_eq!(ops, ["field:0@2+1", "field:0@20+2", "field:1@3+1"]);
     assert_eq!(prepared.plan.base.fields.iter().map(|field| field.number).collect::<Vec<_>>(), [0, 1]);
     desk.commit(&prepared).unwrap();

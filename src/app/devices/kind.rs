@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::AnyDevice;
 use super::model::DeviceModel;
+use crate::app::Text;
 use crate::app::connect::form::{AnyForm, Filled, Finder, FormModel};
 use crate::app::payload::{Payload, WrongKind};
 use crate::app::services::Services;
@@ -13,7 +14,7 @@ use crate::app::session::{Kind, ProfileFile};
 use crate::app::studio::SessionId;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
-use crate::profile::{Document, Profile, ProfileFormat};
+use crate::profile::{Cause, Document, Profile, ProfileFormat};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -60,6 +61,11 @@ pub trait DeviceType: DeviceModel + Sized {
         services: &mut Services,
     ) -> Self;
 
+    /// Returns the words for why a profile of this kind is refused; `None` for a cause that is not this kind's.
+    fn explain(_cause: &Cause) -> Option<Text> {
+        None
+    }
+
     /// Returns a profile that is in no file yet; `None` for a kind whose profiles come from devices alone. `is_taken` tells
     /// which names others have.
     fn new_profile(_id: SessionId, _is_taken: &dyn Fn(&Path) -> bool, _services: &mut Services) -> Option<Self> {
@@ -89,6 +95,8 @@ pub trait DeviceKind: Sync {
     fn virtual_link(&self) -> LinkUrl;
     /// Returns whether another master may be on the line behind a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
+    /// Returns the words for why a profile of this kind is refused; `None` for a cause that is not this kind's.
+    fn explain(&self, cause: &Cause) -> Option<Text>;
     /// Returns the form in the connection dialog, filled in as a link says.
     fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
     #[doc(hidden)]
@@ -133,6 +141,10 @@ impl<M: DeviceType> DeviceKind for KindOf<M> {
 
     fn check(&self, url: &LinkUrl) -> Result<(), OpenError> {
         M::check(url)
+    }
+
+    fn explain(&self, cause: &Cause) -> Option<Text> {
+        M::explain(cause)
     }
 
     fn virtual_link(&self) -> LinkUrl {

@@ -5,195 +5,110 @@
 pub(crate) mod tests;
 
 use super::{expected, file, plain};
-use crate::app::{COMMON, Text};
-use crate::link::{TraceFileError, UrlError};
-use crate::profile::ProfileError;
-use crate::sim::ConfigError;
+use crate::app::{Kinds, Text};
+use crate::bits::HexError;
+use crate::link::{Scheme, TRACE_HEADER, TraceFileError, UrlError};
+use crate::profile::{ProfileError, SyntaxProblem};
+use crate::sim::{ConfigError, FaultError, VirtualDevice};
 use crate::store::{LogbookError, LogbookProblem};
-
-/// What lower floors say in phrases: what a value may be, what is wrong with an entry, names of
-/// what can be read. The first that fits counts.
-const PHRASES: &[&str] = &[
-    "phrase.no_link",
-    "phrase.link_device",
-    "phrase.bridge",
-    "phrase.no_parameter",
-    "phrase.unknown_parameter",
-    "phrase.port",
-    "phrase.file",
-    "phrase.host",
-    "phrase.no_setting",
-    "phrase.sim_adapter",
-    "phrase.no_fault",
-    "phrase.fault_probability",
-    "phrase.fault_number",
-    "phrase.whole_number",
-    "phrase.byte",
-    "phrase.number",
-    "phrase.text_such_as",
-    "phrase.text",
-    "phrase.flag",
-    "phrase.hex_lines",
-    "phrase.structure",
-    "phrase.names",
-    "phrase.list",
-    "phrase.too_deep",
-    "phrase.field_twice",
-    "phrase.program_twice",
-    "phrase.cam_twice",
-    "phrase.program_outside",
-    "phrase.cam_outside",
-    "phrase.ib_no_item",
-    "phrase.ib_measured",
-    "phrase.bank_twice",
-    "phrase.bank_order",
-    "phrase.bank_outside",
-    "phrase.banks",
-    "phrase.bytes_expected",
-    "phrase.release",
-    "phrase.mounting_item",
-    "phrase.four_tenths",
-    "phrase.ssi_codes",
-    "phrase.ssi_over",
-    "phrase.ssi_directions",
-    "phrase.ssi_meanings",
-    "phrase.ssi_word",
-    "phrase.ssi_revolutions_text",
-    "phrase.ssi_which",
-    "phrase.ssi_not_with",
-    "phrase.twice",
-    "phrase.no_status",
-    "phrase.locked_bytes",
-    "phrase.no_bytes",
-    "phrase.bytes_status",
-    "phrase.no_item",
-    "phrase.hex_digit",
-    "phrase.hex_odd",
-    "phrase.no_trace",
-    "phrase.trace_line",
-    "phrase.log_access",
-    "phrase.log_protected",
-    "phrase.log_locked",
-    "phrase.log_full",
-    "phrase.log_damaged",
-    "phrase.log_newer",
-    "phrase.log_entry",
-    "phrase.item_range",
-    "phrase.item_rest",
-    "phrase.item_field",
-    "phrase.item_status",
-    "phrase.item_analogue",
-    "phrase.item_counter",
-    "phrase.item_address",
-    "phrase.item_settings",
-    "phrase.item_position",
-    "phrase.item_code",
-    "phrase.item_encoder",
-    "phrase.item_fields",
-    "phrase.another_status",
-    "phrase.ssi_position",
-    "phrase.ssi_parity",
-    "phrase.ssi_error_bits",
-    "phrase.ssi_patterns",
-    "phrase.ssi_clocks",
-    "phrase.ssi_area",
-    "phrase.ssi_wide",
-    "phrase.ssi_between",
-    "phrase.ssi_overlap",
-    "phrase.ssi_behind",
-    "phrase.ssi_many",
-    "phrase.ssi_not_gray",
-    "phrase.ssi_inside_coded",
-    "phrase.ssi_inside_shifted",
-    "phrase.ssi_lost",
-    "phrase.ssi_repeat",
-    "phrase.ssi_pattern_bits",
-    "phrase.ssi_field_bits",
-    "phrase.ssi_single",
-    "phrase.ssi_revolutions",
-    "phrase.ssi_odd",
-    "phrase.ssi_digits",
-    "phrase.ssi_lc_form",
-    "phrase.ssi_lc_kind",
-    "phrase.ssi_lc_two",
-    "phrase.ssi_lc_none",
-    "phrase.ssi_lc_long",
-    "phrase.ssi_lc_gray_over",
-    "phrase.ssi_lc_between",
-    "phrase.ssi_lc_inverted",
-];
-
-/// A phrase of a lower floor, which speaks English: recognised by its words.
-pub fn phrase(words: &str) -> Text {
-    PHRASES.iter().find_map(|id| COMMON.recognised(id, words)).unwrap_or_else(|| plain(words))
-}
-
-/// A phrase of a lower layer, some arguments of which are phrases themselves.
-pub fn phrase_with(words: &str, arguments: &[(&'static str, String)]) -> Text {
-    arguments.iter().fold(phrase(words), |text, (name, words)| text.replacing(name, &phrase(words)))
-}
 
 /// A text that is no link, or a parameter that it does not take.
 pub fn url(error: &UrlError) -> Text {
     match error {
-        UrlError::Target { scheme, what } => {
-            Text::new("detail.needs").with("scheme", scheme).with_text("what", phrase(what))
-        }
+        UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),
+        UrlError::Device { scheme, known } => Text::new("url.other_device").with("scheme", scheme).with("known", known),
+        UrlError::Target { scheme } => Text::new(match scheme {
+            Scheme::Tcp => "url.needs_host_and_port",
+            Scheme::Modbus => "url.needs_gateway",
+            Scheme::Enip => "url.needs_device",
+            Scheme::Bridge => "url.needs_adapter",
+            Scheme::Replay => "url.needs_file",
+            Scheme::Serial | Scheme::Sim => "url.needs_port",
+        }),
         UrlError::Port { scheme, port } => Text::new("detail.no_port").with("scheme", scheme).with("port", port),
+        UrlError::Parameter(text) => Text::new("url.no_parameter").with("text", format!("{text:?}")),
+        UrlError::Twice(name) => Text::new("url.twice").with("name", name),
+        UrlError::Unknown { name, scheme, known } => {
+            Text::new("url.unknown").with("name", name).with("scheme", scheme).with("known", known)
+        }
         UrlError::Value { name, value, allowed } => Text::new("detail.parameter")
             .with("name", name)
             .with("value", value)
             .with_text("allowed", expected(allowed)),
-        UrlError::Scheme(_)
-        | UrlError::Device { .. }
-        | UrlError::Parameter(_)
-        | UrlError::Twice(_)
-        | UrlError::Unknown { .. } => phrase(&error.to_string()),
     }
 }
 
-/// A setting that a virtual encoder does not take.
+/// A setting that a virtual device does not take.
 pub fn setting(error: &ConfigError) -> Text {
     match error {
+        ConfigError::Key { device, key, known } => {
+            let device = match device {
+                VirtualDevice::Encoder => Text::new("sim.encoder"),
+                VirtualDevice::EncoderOf(name) => Text::new("sim.encoder_of").with("name", name),
+                VirtualDevice::Adapter => Text::new("sim.adapter"),
+                VirtualDevice::Device(name) => Text::new("sim.device").with("name", name),
+            };
+            Text::new("sim.no_setting").with_text("device", device).with("key", key).with("known", known)
+        }
         ConfigError::Value { key, value, allowed } => {
             Text::new("detail.setting").with("name", key).with("value", value).with_text("allowed", expected(allowed))
         }
-        ConfigError::Key { .. } | ConfigError::Fault(_) => phrase(&error.to_string()),
+        ConfigError::Fault(FaultError::Unknown { item }) => Text::new("sim.no_fault").with("item", item),
+        ConfigError::Fault(FaultError::Probability { item }) => Text::new("sim.fault_probability").with("item", item),
+        ConfigError::Fault(FaultError::Number { item, min, max }) => {
+            Text::new("sim.fault_number").with("item", item).with("min", min).with("max", max)
+        }
     }
 }
 
-/// A text that is no profile.
-pub fn document(error: &ProfileError) -> Text {
+/// A text that is no profile. `kinds` know why one of them refuses a value.
+pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
     match error {
-        ProfileError::Syntax { line, column, what } => syntax(*line, *column, what),
+        ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
         ProfileError::Misspelt { line, column, path, meant } => Text::new("detail.misspelt")
             .with("line", line)
             .with("column", column)
             .with("path", path)
             .with("meant", meant),
         ProfileError::Missing { path } => Text::new("detail.missing").with("path", path),
-        ProfileError::Shape { path, expected } => {
-            Text::new("detail.shape").with("path", path).with_text("expected", phrase(expected))
+        ProfileError::Shape { path, expected: shape } => {
+            Text::new("detail.shape").with("path", path).with_text("expected", expected(shape))
         }
-        ProfileError::Value { path, what } => {
-            Text::new("detail.value").with("path", path).with_text("what", phrase(what))
+        ProfileError::Bytes { path, problem } => {
+            Text::new("detail.value").with("path", path).with_text("what", hex(problem))
         }
         ProfileError::Refused { path, cause } => {
-            let what = phrase_with(&cause.to_string(), cause.arguments());
-            Text::new("detail.value").with("path", path).with_text("what", what)
+            Text::new("detail.value").with("path", path).with_text("what", kinds.explain(cause))
         }
         // These have sentences of their own.
         ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),
     }
 }
 
+fn syntax_problem(problem: &SyntaxProblem) -> Text {
+    match problem {
+        SyntaxProblem::TooDeep => Text::new("detail.too_deep"),
+        SyntaxProblem::Twice(name) => Text::new("detail.twice").with("name", name),
+        SyntaxProblem::Parser(words) => plain(words),
+    }
+}
+
+/// Digits that are no bytes.
+fn hex(error: &HexError) -> Text {
+    match error {
+        HexError::Digit(digit) => Text::new("detail.hex_digit").with("digit", format!("{digit:?}")),
+        HexError::Odd(digits) => Text::new("detail.hex_odd").with("digits", format!("{digits:?}")),
+    }
+}
+
 /// A file that is no recording.
 pub fn recording(error: &TraceFileError) -> Text {
     match error {
+        TraceFileError::Header => Text::new("detail.no_trace").with("header", TRACE_HEADER),
+        TraceFileError::Line { line } => Text::new("detail.trace_line").with("line", line),
         TraceFileError::Hex { line, source } => {
-            Text::new("detail.in_line").with("line", line).with_text("what", phrase(&source.to_string()))
+            Text::new("detail.in_line").with("line", line).with_text("what", hex(source))
         }
-        TraceFileError::Header | TraceFileError::Line { .. } => phrase(&error.to_string()),
     }
 }
 
@@ -201,12 +116,19 @@ pub fn recording(error: &TraceFileError) -> Text {
 pub fn logbook_problem(error: &LogbookError) -> Text {
     let problem = match &error.problem {
         LogbookProblem::Folder(error) => file(error),
-        problem => phrase(&problem.to_string()),
+        LogbookProblem::NoAccess => Text::new("logbook.access"),
+        LogbookProblem::WriteProtected => Text::new("logbook.protected"),
+        LogbookProblem::Locked => Text::new("logbook.locked"),
+        LogbookProblem::DiskFull => Text::new("logbook.full"),
+        LogbookProblem::Damaged { what } => Text::new("logbook.damaged").with("what", what),
+        LogbookProblem::Newer { found, known } => Text::new("logbook.newer").with("found", found).with("known", known),
+        LogbookProblem::NotOpen { entry } => Text::new("logbook.not_open").with("entry", entry),
+        LogbookProblem::Database { what, .. } => plain(what),
     };
     Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
 }
 
 /// A place in a text, and what is wrong there.
-pub(crate) fn syntax(line: usize, column: usize, what: &str) -> Text {
-    Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", phrase(what))
+pub(crate) fn syntax(line: usize, column: usize, what: Text) -> Text {
+    Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", what)
 }

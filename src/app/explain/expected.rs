@@ -20,7 +20,7 @@ pub fn expected(expected: &Expected) -> Text {
         Expected::Whole => Text::new("expected.whole"),
         Expected::Number32 => Text::new("expected.number_32"),
         Expected::Speed { most } => Text::new("expected.speed").with("most", most),
-        Expected::Revolutions { most } => Text::new("expected.revolutions").with("most", most),
+        Expected::RevolutionsAMinute { most } => Text::new("expected.revolutions").with("most", most),
         Expected::Seconds { low, high } => {
             Text::new("expected.seconds").with_digits("low", low).with_digits("high", high)
         }
@@ -56,6 +56,23 @@ pub fn expected(expected: &Expected) -> Text {
         Expected::Family => Text::new("expected.family"),
         Expected::ErrorBits(names) => Text::new("expected.error_bits").with("names", names.join(", ")),
         Expected::NoErrorBits => Text::new("expected.no_error_bits"),
+        Expected::Text => Text::new("expected.text"),
+        Expected::TextSuchAs(example) => Text::new("expected.text_such_as").with("example", format!("{example:?}")),
+        Expected::Byte => Text::new("expected.byte"),
+        Expected::Word => Text::new("expected.word"),
+        Expected::HexLines => Text::new("expected.hex_lines"),
+        Expected::Structure => Text::new("expected.structure"),
+        Expected::Names => Text::new("expected.names"),
+        Expected::List => Text::new("expected.list"),
+        Expected::Map => Text::new("expected.map").with("brace", "{"),
+        Expected::FourTenths => Text::new("expected.four_tenths"),
+        Expected::Banks => Text::new("expected.banks"),
+        Expected::Revolutions => Text::new("expected.revolutions_text"),
+        Expected::Fraction => Text::new("expected.fraction"),
+        Expected::Frame => Text::new("expected.frame"),
+        Expected::ParityBit => Text::new("expected.parity_bit"),
+        Expected::Repetition => Text::new("expected.repetition"),
+        Expected::Clocks => Text::new("expected.clocks"),
     }
 }
 
@@ -135,7 +152,7 @@ mod tests {
             Expected::Whole,
             Expected::Number32,
             Expected::Speed { most: 12_000 },
-            Expected::Revolutions { most: 1000 },
+            Expected::RevolutionsAMinute { most: 1000 },
             Expected::Seconds { low: Limit::thousandths(500), high: 60.into() },
             Expected::BitRate { low: 300, high: 4_000_000 },
             Expected::Periods { most: 7 },
@@ -167,6 +184,23 @@ mod tests {
             Expected::Family,
             Expected::ErrorBits(vec!["ERROR".to_owned()]),
             Expected::NoErrorBits,
+            Expected::Text,
+            Expected::TextSuchAs("0x24:0x10+3"),
+            Expected::Byte,
+            Expected::Word,
+            Expected::HexLines,
+            Expected::Structure,
+            Expected::Names,
+            Expected::List,
+            Expected::Map,
+            Expected::FourTenths,
+            Expected::Banks,
+            Expected::Revolutions,
+            Expected::Fraction,
+            Expected::Frame,
+            Expected::ParityBit,
+            Expected::Repetition,
+            Expected::Clocks,
         ]
     }
 

@@ -10,11 +10,11 @@ use std::path::Path;
 pub(crate) use detail::syntax;
 #[cfg(test)]
 pub(crate) use detail::tests::check as in_both_languages;
-pub use detail::{document, logbook_problem, phrase, phrase_with, recording, setting, url};
+pub use detail::{document, logbook_problem, recording, setting, url};
 pub use expected::expected;
 
-use super::Text;
 use super::action::OpenFailed;
+use super::{Kinds, Text};
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::{Document, ProfileError, SCHEMA};
 use crate::store::{FileError, FileProblem, LogbookError, StoreError};
@@ -93,13 +93,13 @@ pub fn store(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
         StoreError::File(error) => file(error),
-        // The device's own words say more.
-        StoreError::Refused(cause) => Text::new("store.refused").with_text("why", phrase(&cause.to_string())),
+        // The device's own words say more: this is for a kind that has none.
+        StoreError::Refused(cause) => Text::new("store.refused").with_text("why", plain(cause)),
     }
 }
 
-/// A profile in a file.
-pub fn profile(path: &Path, error: &ProfileError) -> Text {
+/// A profile in a file. `kinds` know why one of them refuses it; the command line, which speaks English, needs none.
+pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
     let path = path.display();
     match error {
         ProfileError::Schema { found, known } => {
@@ -111,7 +111,7 @@ pub fn profile(path: &Path, error: &ProfileError) -> Text {
         ProfileError::OtherKind { found, wanted } => {
             Text::new("profile.other_kind").with("path", path).with("found", found).with("wanted", wanted)
         }
-        error => Text::new("profile.invalid").with("path", path).with_text("why", document(error)),
+        error => Text::new("profile.invalid").with("path", path).with_text("why", document(error, kinds)),
     }
 }
 

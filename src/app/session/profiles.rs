@@ -68,8 +68,8 @@ impl SessionState {
         };
         let (document, may_lose, is_merged) = (Box::new(document), false, false);
         let saving = Saving { session: self.id, path, document, remarks, opened, may_lose, is_merged };
-        let formats = services.world.kinds.formats;
-        services.tasks.run("save", move || saving.run(formats));
+        let kinds = services.world.kinds;
+        services.tasks.run("save", move || saving.run(kinds));
     }
 
     /// Lists backups and writes of a device, as a task.

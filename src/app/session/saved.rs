@@ -98,7 +98,7 @@ pub trait Saved: WithMemory {
             self.restore(known.body, services).map_err(ReadError::Profile)
         });
         if let Err(error) = restored {
-            self.session().refuse(read_error(path, &error), services);
+            self.session().refuse(read_error(path, &error, services.world.kinds), services);
         }
     }
 

@@ -4,10 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use super::{Source, file_key};
-use crate::app::Text;
 use crate::app::action::{Action, Done, ReadError};
 use crate::app::diverged::Diverged;
 use crate::app::studio::SessionId;
+use crate::app::{Kinds, Text};
 use crate::profile::{Document, Formats};
 use crate::store::{FileError, FileProblem, read_file, write_text_over};
 
@@ -59,12 +59,13 @@ pub struct Saving {
 
 impl Saving {
     /// Writes the file, as a task, or tells why it is not written yet.
-    pub(in crate::app) fn run(mut self, formats: Formats) -> Action {
+    pub(in crate::app) fn run(mut self, kinds: Kinds) -> Action {
+        let formats = kinds.formats;
         let key = file_key(&self.path);
         if let Some(guard) = self.opened.clone().filter(|guard| guard.key == key) {
             match changed(&self.path, &guard.text, &self.document, formats) {
                 Ok(text) => self.opened = Some(Guard { key: key.clone(), text }),
-                Err(found) => return Action::Done(Done::Diverged(Box::new(Diverged::new(self, *found, formats)))),
+                Err(found) => return Action::Done(Done::Diverged(Box::new(Diverged::new(self, *found, kinds)))),
             }
         }
         let (text, lost) = match &self.opened {

@@ -1,10 +1,11 @@
 //! What is saved of a Novo encoder, compared and planned.
 
+use encoder_studio::expected::Expected;
 use encoder_studio::profile::{Comparison, Entries, Operation, Plan, Profile, ProfileError, Writer};
 
 use super::protocol::{ITEMS, KIND, Values, name_of};
 
-const WORD: &str = "a number from 0 to 65535";
+const WORD: Expected = Expected::between(0, 65_535);
 
 /// Who it is, and what it keeps.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use encoder_studio::cli::Simulated;
 use encoder_studio::expected::Quantity;
 use encoder_studio::parameter::{Maybe, Whole};
 use encoder_studio::parameters;
-use encoder_studio::sim::{ByteDevice, ConfigError, RPM, setting};
+use encoder_studio::sim::{ByteDevice, ConfigError, RPM, VirtualDevice, setting};
 use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::protocol::{FIRST, POSITION, Request, SERIAL, TURN, Values, reply};
@@ -30,7 +30,7 @@ pub(crate) struct Virtual {
 impl Virtual {
     /// As the query of a link says.
     pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let settings = setting::read("a virtual Novo encoder", pairs)?;
+        let settings = setting::read(VirtualDevice::EncoderOf("Novo"), pairs)?;
         Ok(Virtual { settings, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] })
     }
     fn word(&self, now: Moment, address: u8) -> u16 {

@@ -4,7 +4,7 @@ use super::adapter::Adapter;
 use super::attached::{Attachable, Attached};
 use super::config::{Config, Shaft, Shared};
 use crate::parameter::{Entry, Parameters};
-use crate::sim::ConfigError;
+use crate::sim::{ConfigError, VirtualDevice};
 
 /// The settings of an adapter with these devices: the adapter's and those of the devices with a few, by the alphabet, then
 /// those of the last device.
@@ -39,7 +39,7 @@ impl Adapter {
     pub fn from_pairs(pairs: &[(String, String)], devices: &[&dyn Attachable]) -> Result<Self, ConfigError> {
         let known = keys(devices);
         if let Some((key, _)) = pairs.iter().find(|(key, _)| !known.contains(&key.as_str())) {
-            return Err(ConfigError::unknown("a virtual adapter", key, &known));
+            return Err(ConfigError::unknown(VirtualDevice::Adapter, key, &known));
         }
         let (config, shared) = (Config::read(pairs)?, Shared::read(pairs)?);
         let shaft = if turns_itself(devices) { Shaft::read(pairs)? } else { Shaft::default() };

@@ -11,7 +11,7 @@ use serde_json::json;
 use super::args::{BissAction, DoOptions};
 use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
-use crate::app::explain;
+use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Do};
 use crate::cli::consent::{answer, ask, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
@@ -169,7 +169,7 @@ fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
 }
 
 fn profile(output: &Output, file: &Path) -> Result<BissProfile> {
-    load_to_write(output, file)?.into_profile().map_err(|error| failed(&explain::profile(file, &error)))
+    load_to_write(output, file)?.into_profile().map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))
 }
 
 fn place(text: &str) -> Result<PresetValue> {

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
-use crate::app::{Text, explain};
+use crate::app::{Kinds, Text, explain};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
@@ -63,8 +63,9 @@ fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile =
-        profile.into_profile::<BissProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let profile = profile
+        .into_profile::<BissProfile>()
+        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
     let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;

@@ -2,6 +2,7 @@
 
 mod compare;
 mod edit;
+mod entry_error;
 mod item;
 mod note;
 mod other_type;
@@ -16,6 +17,7 @@ pub use compare::compare;
 pub use edit::{
     MotorSource, MountingRun, Place, place, plan_edits, plan_filter, plan_mounting, plan_preset, procedure,
 };
+pub use entry_error::EntryError;
 pub use item::{ItemError, RegisterRange};
 pub use other_type::{OtherType, Width, other_type};
 pub use plan::{Base, BissPlan, Op, PresetParts, RegisterChange};

@@ -1,34 +1,34 @@
 //! The text of a BiSS profile: written for people, read from their hands. What is wrong names its entry.
 
 use super::{
-    Bank, BissProfile, DataImage, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity, Recorded,
+    Bank, BissProfile, DataImage, EntryError, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,
+    Recorded,
 };
 use crate::bits::hex;
 use crate::devices::biss::protocol::{self, DeviceMode, Filter, Firmware, PresetValue, ProfileId, WiegandResult};
+use crate::expected::Expected;
 use crate::profile::mounting::NEVER_BY_ITSELF;
-use crate::profile::ron_text::{BYTE, Entries, Writer, quoted};
+use crate::profile::ron_text::{Entries, Writer, quoted};
 use crate::profile::{Profile, ProfileError};
 
 /// Three registers hold a preset value.
-const PRESET_NUMBER: &str = "a number from 0 to 16777215";
-const FOUR_TENTHS: &str = "a list of four numbers from 0 to 255, in tenths of a volt";
+const PRESET_NUMBER: Expected = Expected::between(0, 16_777_215);
 
 impl Profile for BissProfile {
     const KIND: &'static str = protocol::KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let identity = read_identity(entries.structure("identity")?)?;
-        let filter = entries.optional("filter", BYTE)?.map(Filter::from_byte);
+        let filter = entries.optional("filter", Expected::Byte)?.map(Filter::from_byte);
         let preset = entries.optional_structure("preset")?.map(read_preset).transpose()?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
-        let mounting = MountingMark::read_all(entries, "a text such as \"0x24:0x10+3\"", read_marked)?;
+        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("0x24:0x10+3"), read_marked)?;
         let mut data: Vec<DataImage> = Vec::new();
         for entries in entries.required_structures("data")? {
             let path = entries.path_of("banks");
             let image = read_image(entries)?;
             if let Some(other) = data.iter().find(|other| other.first <= image.last && image.first <= other.last) {
-                let what = format!("bank 0x{:02X} stands twice", image.first.max(other.first));
-                return Err(ProfileError::Value { path, what });
+                return Err(ProfileError::refused(path, EntryError::Twice(image.first.max(other.first))));
             }
             data.push(image);
         }
@@ -150,24 +150,24 @@ fn printable(bytes: &[u8]) -> String {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let firmware = match entries.optional::<String>("firmware", "a text such as \"1.6.0\"")? {
+    let firmware = match entries.optional::<String>("firmware", Expected::TextSuchAs("1.6.0"))? {
         None => None,
-        Some(text) => Some(read_firmware(&text).ok_or_else(|| ProfileError::Value {
-            path: entries.path_of("firmware"),
-            what: format!("{text:?} is not of the form 1.6.0"),
-        })?),
+        Some(text) => Some(
+            read_firmware(&text)
+                .ok_or_else(|| ProfileError::refused(entries.path_of("firmware"), EntryError::Release(text)))?,
+        ),
     };
     let device_id = read_exactly(&mut entries, "device_id")?;
     let manufacturer = read_exactly(&mut entries, "manufacturer")?;
     Ok(ProfileIdentity {
-        serial_number: entries.required("serial_number", "a text")?,
-        profile_id: ProfileId::new(entries.required("profile_id", "a number from 0 to 65535 (0x0000 to 0xFFFF)")?),
+        serial_number: entries.required("serial_number", Expected::Text)?,
+        profile_id: ProfileId::new(entries.required("profile_id", Expected::Word)?),
         device_id,
         manufacturer,
         firmware,
-        description: entries.optional("description", "a text")?.unwrap_or_default(),
-        multiturn_bits: entries.optional("multiturn_bits", BYTE)?,
-        singleturn_bits: entries.optional("singleturn_bits", BYTE)?,
+        description: entries.optional("description", Expected::Text)?.unwrap_or_default(),
+        multiturn_bits: entries.optional("multiturn_bits", Expected::Byte)?,
+        singleturn_bits: entries.optional("singleturn_bits", Expected::Byte)?,
         unknown: entries.rest()?,
     })
 }
@@ -184,8 +184,8 @@ fn read_firmware(text: &str) -> Option<Firmware> {
 fn read_exactly<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; N], ProfileError> {
     let path = entries.path_of(name);
     let bytes = entries.bytes(name)?.ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
-    let count = bytes.len();
-    bytes.try_into().map_err(|_| ProfileError::Value { path, what: format!("{count} bytes where {N} belong") })
+    let length = EntryError::Length { got: bytes.len(), expected: N };
+    bytes.try_into().map_err(|_| ProfileError::refused(path, length))
 }
 
 fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
@@ -202,33 +202,32 @@ fn read_preset(mut entries: Entries) -> Result<PresetSetting, ProfileError> {
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     let mut result = |name| {
-        let tenths: Option<[u8; 4]> = entries.optional(name, FOUR_TENTHS)?;
+        let tenths: Option<[u8; 4]> = entries.optional(name, Expected::FourTenths)?;
         Ok(tenths.map(WiegandResult::parse))
     };
     Ok(Recorded {
         wiegand_last: result("wiegand_last")?,
         wiegand_production: result("wiegand_production")?,
         wiegand_saved: result("wiegand_saved")?,
-        calibration_status: entries.optional("calibration_status", BYTE)?,
-        device_mode: entries.optional("device_mode", BYTE)?.map(DeviceMode::new),
+        calibration_status: entries.optional("calibration_status", Expected::Byte)?,
+        device_mode: entries.optional("device_mode", Expected::Byte)?.map(DeviceMode::new),
         eds: entries.structures("eds")?.into_iter().map(read_bank).collect::<Result<_, _>>()?,
         unknown: entries.rest()?,
     })
 }
 
-fn read_marked(text: &str) -> Result<MountingItem, String> {
+fn read_marked(text: &str) -> Result<MountingItem, EntryError> {
     if text == MountingItem::CALIBRATION {
         return Ok(MountingItem::Calibration);
     }
-    let range = text.parse().map_err(|_| format!("{text:?} is neither calibration nor of the form 0x24:0x10+3"))?;
+    let range = text.parse().map_err(|_| EntryError::Marked(text.to_owned()))?;
     Ok(MountingItem::Registers(range))
 }
 
 fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
-    let (first, last): (u8, u8) = entries.required("banks", "the first and the last bank such as (0x24, 0x43)")?;
+    let (first, last): (u8, u8) = entries.required("banks", Expected::Banks)?;
     if first > last {
-        let what = format!("0x{first:02X} comes after 0x{last:02X}");
-        return Err(ProfileError::Value { path: entries.path_of("banks"), what });
+        return Err(ProfileError::refused(entries.path_of("banks"), EntryError::Order { first, last }));
     }
     let mut listed: Vec<ListedBank> = Vec::new();
     for entries in entries.structures("listed")? {
@@ -236,22 +235,21 @@ fn read_image(mut entries: Entries) -> Result<DataImage, ProfileError> {
         let own = read_bank(entries)?;
         let number = own.bank.number;
         if !(first..=last).contains(&number) {
-            let what = format!("0x{number:02X} is not within 0x{first:02X} to 0x{last:02X}");
-            return Err(ProfileError::Value { path, what });
+            return Err(ProfileError::refused(path, EntryError::Outside { bank: number, first, last }));
         }
         if listed.iter().any(|other| other.bank.number == number) {
-            return Err(ProfileError::Value { path, what: format!("bank 0x{number:02X} stands twice") });
+            return Err(ProfileError::refused(path, EntryError::Twice(number)));
         }
         listed.push(own);
     }
     listed.sort_by_key(|listed| listed.bank.number);
-    let name = entries.optional("name", "a text")?.unwrap_or_default();
-    let empty = entries.optional("empty", BYTE)?;
+    let name = entries.optional("name", Expected::Text)?.unwrap_or_default();
+    let empty = entries.optional("empty", Expected::Byte)?;
     Ok(DataImage { name, first, last, empty, listed, unknown: entries.rest()? })
 }
 
 fn read_bank(mut entries: Entries) -> Result<ListedBank, ProfileError> {
-    let number = entries.required("bank", BYTE)?;
+    let number = entries.required("bank", Expected::Byte)?;
     let bytes = read_exactly(&mut entries, "bytes")?;
     Ok(ListedBank { bank: Bank { number, bytes }, unknown: entries.rest()? })
 }

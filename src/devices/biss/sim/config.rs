@@ -10,7 +10,7 @@ use crate::devices::biss::protocol::{Filter, Firmware};
 use crate::expected::{Expected, Limit, Quantity};
 use crate::parameter::{Checked, SWITCH, Whole, Words, number};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, setting};
+use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
     /// What a virtual encoder shall be like. The default is one as delivered, with the newest firmware known, at rest,
@@ -22,7 +22,7 @@ parameters! {
         pub(super) serial_number: u32 = 0x0012_D687, "serial" => Checked(Expected::Number32, number::<u32>);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
         pub(super) reverses: bool = false, "motor" => Words(&[("steady", false), ("reverse", true)]);
-        pub(super) waver: f64 = 0.5, "waver" => Checked(Expected::Revolutions { most: 1000 }, |text| within(text, 0.0..=1000.0));
+        pub(super) waver: f64 = 0.5, "waver" => Checked(Expected::RevolutionsAMinute { most: 1000 }, |text| within(text, 0.0..=1000.0));
         pub(super) position: u64 = 0x1234 << 17 | 0x18000, "position" => Whole(Quantity::Position, 0..=(1 << 33) - 1);
         pub(super) temperature: i16 = 30, "temperature" => Whole(Quantity::WholeCelsius, -50..=205);
         pub(super) errors: u8 = 0, "errors" => Checked(Expected::ErrorRegister, number::<u8>);
@@ -48,7 +48,7 @@ impl Config {
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        setting::read("a virtual encoder", pairs)
+        setting::read(VirtualDevice::Encoder, pairs)
     }
 
     /// The faults of its line and its flash.

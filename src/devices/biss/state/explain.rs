@@ -2,6 +2,7 @@
 
 mod check;
 mod damage;
+mod entry;
 mod guide;
 #[cfg(test)]
 mod phrases;
@@ -11,6 +12,7 @@ mod write;
 use crate::devices::biss::state::TEXTS;
 pub use check::check;
 pub use damage::damage;
+pub use entry::entry;
 pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
 pub use plan::{other_type, plan};
 pub use write::{change, failure, op, preset, wear, weight, written};
@@ -173,9 +175,10 @@ pub fn remark(remark: &Remark) -> Vec<Text> {
 fn description(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<DescriptionError>() {
-        Some(DescriptionError { file, line, column, what }) => {
-            TEXTS.text("store.description").with("path", file).with_text("why", syntax(*line, *column, what))
-        }
+        Some(DescriptionError { file, line, column, what }) => TEXTS
+            .text("store.description")
+            .with("path", file)
+            .with_text("why", syntax(*line, *column, general::plain(what))),
         None => general::store(error),
     }
 }

@@ -3,15 +3,16 @@
 use std::sync::Arc;
 
 use super::{BissForm, Encoder};
-use crate::app::DeviceType;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Session};
 use crate::app::studio::SessionId;
+use crate::app::{DeviceType, Text};
 use crate::devices::biss::jobs::{check, descriptions};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::protocol::Descriptions;
+use crate::devices::biss::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::Document;
+use crate::profile::{Cause, Document};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -23,6 +24,10 @@ impl DeviceType for Encoder {
 
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
+    }
+
+    fn explain(cause: &Cause) -> Option<Text> {
+        explain::entry(cause)
     }
 
     fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {

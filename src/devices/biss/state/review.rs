@@ -1,5 +1,6 @@
 //! The review of a write into a BiSS encoder: what its plan needs, warns of and costs.
 
+use crate::app::explain::plain;
 use crate::app::review::{self, Manner, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
@@ -53,7 +54,11 @@ impl Reviewed for Biss {
         }
         warnings.extend(prepared.unsaved.map(words::profile_unsaved_in));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        warnings.extend(review::left_alone(TEXTS.text("biss_review.missing"), &prepared.missing, mounting));
+        warnings.extend(review::left_alone(
+            TEXTS.text("biss_review.missing"),
+            prepared.missing.iter().map(plain).collect(),
+            mounting,
+        ));
         warnings
     }
 

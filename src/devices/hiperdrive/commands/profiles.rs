@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
-use crate::app::explain;
+use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
@@ -71,7 +71,7 @@ fn absent(prepared: &Prepared) -> Vec<String> {
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
     let profile = profile
         .into_profile::<HiperdriveProfile>()
-        .map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
     let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;

@@ -3,6 +3,7 @@
 
 mod compare;
 mod edit;
+mod entry_error;
 mod error;
 mod image;
 mod item;
@@ -17,6 +18,7 @@ mod warning;
 
 pub use compare::compare;
 pub use edit::{Positions, plan_edits, plan_service, plan_set_position};
+pub use entry_error::EntryError;
 pub use error::{OtherType, PlanError};
 pub use image::Image;
 pub use item::{Item, ItemError};

@@ -3,16 +3,15 @@
 //! A drive's parameters stand by the numbers of drive 1 beside it. Who has no hub may write them beside those of the device,
 //! which are below 100; there a number of another drive is its own.
 
-use super::{HiperdriveProfile, Image, Item, Kept, MountingMark, ProfileDrive, ProfileIdentity};
+use super::{EntryError, HiperdriveProfile, Image, Item, Kept, MountingMark, ProfileDrive, ProfileIdentity};
 use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
+use crate::expected::Expected;
 use crate::profile::ron_text::{Entries, Writer, value_text};
 use crate::profile::{Profile, ProfileError};
 
-const TEXT: &str = "a text";
-const PLACE: &str = "a number from 1 to 8";
-const VARIANT: &str = "a number from 0 to 65535";
-const NUMBER: &str = "a whole number";
-const CATEGORY: &str = "\"HIPERDRIVE SINGLE\", \"HIPERDRIVE HUB-4\" or \"HIPERDRIVE HUB-8\"";
+const PLACE: Expected = Expected::between(1, 8);
+const VARIANT: Expected = Expected::between(0, 65_535);
+const CATEGORY: Expected = Expected::words(&["\"HIPERDRIVE SINGLE\"", "\"HIPERDRIVE HUB-4\"", "\"HIPERDRIVE HUB-8\""]);
 
 impl Profile for HiperdriveProfile {
     const KIND: &'static str = protocol::KIND;
@@ -22,7 +21,7 @@ impl Profile for HiperdriveProfile {
             Some(entries) => read_identity(entries)?,
             None => ProfileIdentity::default(),
         };
-        let mounting = MountingMark::read_all(entries, "a text such as \"198 drive 2\"", read_marked)?;
+        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("198 drive 2"), read_marked)?;
         let (mut image, mut unknown) = (Image::default(), Kept::default());
         read_parameters(entries, None, &mut image, &mut unknown)?;
         for mut entries in entries.structures("drives")? {
@@ -31,7 +30,7 @@ impl Profile for HiperdriveProfile {
             let number =
                 DriveNumber::new(place).ok_or_else(|| ProfileError::Shape { path: path.clone(), expected: PLACE })?;
             if identity.drives.iter().any(|drive| drive.number == number) {
-                return Err(ProfileError::Value { path, what: format!("drive {place} stands twice") });
+                return Err(ProfileError::refused(path, EntryError::DriveTwice(number)));
             }
             read_parameters(&mut entries, Some(number), &mut image, &mut unknown)?;
             identity.drives.push(read_drive(entries, number)?);
@@ -155,7 +154,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
     let topology = category
         .map(|category| Topology::of_category(&category).ok_or(ProfileError::Shape { path, expected: CATEGORY }));
     let topology = topology.transpose()?;
-    let mut text = |name: &str| entries.optional::<String>(name, TEXT).map(Option::unwrap_or_default);
+    let mut text = |name: &str| entries.optional::<String>(name, Expected::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
     let unknown = entries.rest()?;
@@ -164,16 +163,16 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
 
 fn read_drive(mut entries: Entries, number: DriveNumber) -> Result<ProfileDrive, ProfileError> {
     let variant = entries.optional("variant", VARIANT)?.map(Variant::new);
-    let mut text = |name: &str| entries.optional::<String>(name, TEXT).map(Option::unwrap_or_default);
+    let mut text = |name: &str| entries.optional::<String>(name, Expected::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);
     let (serial_number, version) = (text("serial_number")?, text("version")?);
     Ok(ProfileDrive { number, variant, name, article_number, serial_number, version, unknown: entries.rest()? })
 }
 
-fn read_marked(text: &str) -> Result<Item, String> {
-    let item = text.parse::<Item>().map_err(|error| error.to_string())?;
+fn read_marked(text: &str) -> Result<Item, EntryError> {
+    let item = text.parse::<Item>()?;
     if item.0.row().is_none_or(|row| !Image::holds(row)) {
-        return Err(format!("{item} is not kept, and belongs to no mounting"));
+        return Err(EntryError::NoMounting(item));
     }
     Ok(item)
 }
@@ -195,38 +194,34 @@ fn read_parameters(
         let Some((number, row)) = number.and_then(|number| Some((number, number.row()?))) else {
             if let ron::Value::Number(own) = &name {
                 let path = format!("{}.{}", entries.path_of("parameters"), value_text(&name));
-                return Err(ProfileError::Value { path, what: no_parameter(own, drive) });
+                return Err(ProfileError::refused(path, no_parameter(own, drive)));
             }
             entries.is_beyond(format!("{}.{}", entries.path_of("parameters"), value_text(&name)));
             unknown.0.entry(drive).or_default().push((name, value));
             continue;
         };
         let path = format!("{}.{}", entries.path_of("parameters"), row.number);
-        let wrong = |what: String| ProfileError::Value { path: path.clone(), what };
+        let wrong = |error: EntryError| ProfileError::refused(path.clone(), error);
         if !Image::holds(row) {
-            return Err(wrong(format!("{} is not kept by the device, and no part of a profile", row.name)));
+            return Err(wrong(EntryError::NotKept(Item(number))));
         }
-        let value: i64 = value.into_rust().map_err(|_| ProfileError::Shape { path: path.clone(), expected: NUMBER })?;
+        let value: i64 =
+            value.into_rust().map_err(|_| ProfileError::Shape { path: path.clone(), expected: Expected::Whole })?;
         // How many turns a number is depends on the drive that it is written into: the plan looks at that.
-        let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.to_string()))?;
+        let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.into()))?;
         if image.values.insert(number, value).is_some() {
-            return Err(wrong(format!("{} stands twice", Item(number))));
+            return Err(wrong(EntryError::Twice(Item(number))));
         }
     }
     Ok(())
 }
 
 /// Why a number stands for no parameter where it stands.
-fn no_parameter(number: &ron::value::Number, drive: Option<DriveNumber>) -> String {
-    let number = number.into_f64();
+fn no_parameter(number: &ron::value::Number, drive: Option<DriveNumber>) -> EntryError {
+    let number = number.into_f64().to_string();
     match drive {
-        None => format!("there is no parameter {number}"),
-        Some(drive) => {
-            let place = drive.get();
-            format!(
-                "there is no parameter {number} of a drive; those of drive {place} stand here by the numbers of drive 1, 100 to 199"
-            )
-        }
+        None => EntryError::NoParameter(number),
+        Some(drive) => EntryError::NoParameterOfDrive { number, drive },
     }
 }
 

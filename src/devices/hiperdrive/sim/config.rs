@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber
 use crate::expected::{Expected, Quantity};
 use crate::parameter::{ANY, Checked, Decimal, Maybe, Milliseconds, Refused, SWITCH, Whole, Words, number};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, SEED, setting};
+use crate::sim::{ConfigError, FAULTS, Faults, SEED, VirtualDevice, setting};
 
 parameters! {
     /// What a virtual adapter or hub and its drives shall be like. The default is an adapter with one drive HDA30A from the
@@ -67,7 +67,7 @@ impl Config {
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut config: Config = setting::read("a virtual HIPERDRIVE", pairs)?;
+        let mut config: Config = setting::read(VirtualDevice::Device("HIPERDRIVE"), pairs)?;
         config.plugged = config.drives.take().map(|drives| places(&drives, config.topology)).transpose()?;
         Ok(config)
     }

@@ -2,14 +2,18 @@
 //! ended.
 
 mod check;
+mod entry;
 mod error;
 mod motion;
 mod names;
+#[cfg(test)]
+mod phrases;
 #[cfg(test)]
 mod tests;
 mod write;
 
 pub use check::{check, source, switch};
+pub use entry::entry;
 pub use error::{damage, device, out_of_range, range, wrong_length};
 pub use motion::{LOST, ended, goal, lock, lost, phase, refusal, weight};
 pub use names::{ErrorWords, control_bit, error, parameter, state, status_bit, variant};

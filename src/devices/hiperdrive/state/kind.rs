@@ -2,15 +2,16 @@
 
 use super::staged::Staged;
 use super::{HiperdriveForm, Unit};
-use crate::app::DeviceType;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Session};
 use crate::app::studio::SessionId;
+use crate::app::{DeviceType, Text};
 use crate::devices::hiperdrive::jobs::check;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::devices::hiperdrive::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::Document;
+use crate::profile::{Cause, Document};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -22,6 +23,10 @@ impl DeviceType for Unit {
 
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
+    }
+
+    fn explain(cause: &Cause) -> Option<Text> {
+        explain::entry(cause)
     }
 
     fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {

@@ -4,6 +4,7 @@ use super::axis::words::millimetres;
 use super::network::PowerUp;
 use super::ruler::{Measure, Ruler};
 use super::words;
+use crate::app::explain::plain;
 use crate::app::number::decimals_of;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
@@ -55,7 +56,11 @@ impl Reviewed for Hiperdrive {
         }
         texts.extend(power_up(&prepared.plan));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        texts.extend(review::left_alone(TEXTS.text("hd_review.missing"), &prepared.missing, mounting));
+        texts.extend(review::left_alone(
+            TEXTS.text("hd_review.missing"),
+            prepared.missing.iter().map(plain).collect(),
+            mounting,
+        ));
         texts
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::write::{commit, operations, plan_text};
-use crate::app::explain;
+use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
@@ -74,8 +74,9 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile =
-        profile.into_profile::<HiperfaceProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let profile = profile
+        .into_profile::<HiperfaceProfile>()
+        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;
     }
@@ -108,7 +109,8 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
         ));
     }
     let redo = prepared.redo().iter().map(ToString::to_string).collect();
-    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    let missing = prepared.missing.iter().map(ToString::to_string).collect();
+    let left = Left { unchanged: prepared.unchanged, missing, redo };
     left.warn(output);
     if restore.dry_run {
         return show_dry_run(output, &shown(&prepared), &left);

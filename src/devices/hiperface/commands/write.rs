@@ -123,7 +123,7 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
     let mut lines = Lines::default();
     for op in &plan.ops {
         let (old, new) = change_words(op);
-        lines.add(op.item(), format!("{old}  →  {new}"));
+        lines.add(op.item().to_string(), format!("{old}  →  {new}"));
     }
     if let Some(wanted) = prepared.wanted_position {
         lines.add("wanted", format!("{wanted}; the value above keeps the phase to the sine signal (--exact does not)"));
@@ -149,7 +149,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
                     (Some(old), Some(new))
                 }
             };
-            json!({"item": op.item(), "old": old, "new": new})
+            json!({"item": op.item().to_string(), "old": old, "new": new})
         })
         .collect()
 }

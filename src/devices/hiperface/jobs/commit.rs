@@ -57,7 +57,7 @@ impl Planned for Prepared {
     }
 
     fn note(&self, op: &Op) -> String {
-        op.item()
+        op.item().to_string()
     }
 
     fn before_image(&self) -> String {

@@ -173,7 +173,7 @@ pub struct Prepared {
     /// Things that are as they should be already.
     pub unchanged: u64,
     /// Items that are left alone because one side does not have them or cannot read them.
-    pub missing: Vec<String>,
+    pub missing: Vec<FieldRange>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<FieldRange>,
     /// Values of the mounting of another device that are written: they have to be set up anew.
@@ -267,7 +267,7 @@ impl fmt::Display for Doing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Doing::Field(field) => write!(f, "field:{field}"),
-            Doing::Operation(op) => f.write_str(&op.item()),
+            Doing::Operation(op) => op.item().fmt(f),
             Doing::Attempt(attempt) => attempt.fmt(f),
         }
     }

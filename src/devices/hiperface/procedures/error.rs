@@ -1,5 +1,6 @@
 //! What can go wrong with an encoder, with the facts a person needs.
 
+use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{CodeNumber, Command, ReplyError, StatusCode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
@@ -105,21 +106,32 @@ pub enum Error {
     #[error("{item} has changed since the plan was made")]
     Changed {
         /// What changed.
-        item: String,
+        item: PlanItem,
     },
     /// What was read back is not what was written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {
         /// What was written.
-        item: String,
+        item: PlanItem,
         /// As it should be.
         expected: String,
         /// As it is.
-        got: String,
+        got: ReadBack,
     },
     /// The encoder answers, and not as the reference says; with what it did.
     #[error("{0}")]
     Unexpected(String),
+}
+
+/// What was read back after a write.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReadBack {
+    /// A number, or bytes.
+    #[error("{0}")]
+    Value(String),
+    /// A data field does not answer as one of the status that was written.
+    #[error("another status")]
+    AnotherStatus,
 }
 
 /// What was wrong with a reply.

@@ -18,7 +18,7 @@ mod survey;
 pub mod write;
 
 pub use crate::link::line::{Echo, LineQuality};
-pub use error::{Damage, Error};
+pub use error::{Damage, Error, ReadBack};
 pub use fields::{UnreadableField, read_all_fields, read_field, read_field_status, read_range, try_read_field};
 pub use identify::{Identity, identify, identity_of, read_address, read_extended_label, read_settings, read_status};
 pub use master::Master;

@@ -4,14 +4,14 @@
 pub use crate::profile::Written;
 
 use super::{
-    Error, Identity, Master, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status,
+    Error, Identity, Master, ReadBack, ensure_standstill, read_all_fields, read_counter, read_field, read_field_status,
     read_range,
 };
 use crate::bits::hex_compact;
 use crate::devices::hiperface::procedures::identify::{read_serial, read_type_label};
 use crate::devices::hiperface::procedures::master::Trouble;
 use crate::devices::hiperface::procedures::position::{distance, range_of};
-use crate::devices::hiperface::profile::{Base, FieldImage, HiperfacePlan, Item, Op, Scalar};
+use crate::devices::hiperface::profile::{Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, Scalar};
 use crate::devices::hiperface::protocol::{
     BROADCAST, CodeNumber, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request, StatusCode,
 };
@@ -55,14 +55,14 @@ impl Write for EncoderWrite<'_, '_> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
         if label.encoder_type != identity.label.encoder_type || read_serial(master)? != identity.serial {
-            return Err(Error::Changed { item: "the encoder itself".to_owned() });
+            return Err(Error::Changed { item: PlanItem::Encoder });
         }
         if read_memory(master)?.fields != plan.base.field_count {
-            return Err(Error::Changed { item: "number of data fields".to_owned() });
+            return Err(Error::Changed { item: PlanItem::FieldCount });
         }
         for field in &plan.base.fields {
             if read_field(master, field.number)? != *field {
-                return Err(Error::Changed { item: format!("field:{}", field.number) });
+                return Err(Error::Changed { item: PlanItem::Item(Item::Field(FieldRange::of(field.number))) });
             }
         }
         plan.base.scalars.iter().try_for_each(|scalar| confirm_scalar(master, *scalar, identity.geometry))
@@ -126,11 +126,11 @@ fn confirm_scalar(master: &mut Master<'_>, scalar: Scalar, geometry: Option<Geom
             if distance(now, then, range_of(geometry)) > 1 {
                 return Err(Error::Moving { readings: vec![then, now] });
             }
-            (true, "position".to_owned())
+            (true, PlanItem::Position)
         }
-        Scalar::Counter(then) => (read_counter(master)? == then, Item::Counter.to_string()),
-        Scalar::Settings(then) => (read_type_label(master)?.settings == then, Item::Settings.to_string()),
-        Scalar::Address(then) => (master.station().address == then, Item::Address.to_string()),
+        Scalar::Counter(then) => (read_counter(master)? == then, PlanItem::Item(Item::Counter)),
+        Scalar::Settings(then) => (read_type_label(master)?.settings == then, PlanItem::Item(Item::Settings)),
+        Scalar::Address(then) => (master.station().address == then, PlanItem::Item(Item::Address)),
     };
     if same { Ok(()) } else { Err(Error::Changed { item }) }
 }
@@ -272,7 +272,8 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
             Op::Define { field, to, .. } => {
                 let redefined = |op: &Op| matches!(op, Op::Define { field: other, .. } if other == field);
                 if !later.iter().any(redefined) && !has_status(master, *field, *to)? {
-                    return Err(mismatch(op, format!("{:02X}", to.byte()), "another status".to_owned()));
+                    let (item, expected) = (op.item(), format!("{:02X}", to.byte()));
+                    return Err(Error::NotVerified { item, expected, got: ReadBack::AnotherStatus });
                 }
                 verified += 1;
             }
@@ -325,7 +326,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
 }
 
 fn mismatch(op: &Op, expected: String, got: String) -> Error {
-    Error::NotVerified { item: op.item(), expected, got }
+    Error::NotVerified { item: op.item(), expected, got: ReadBack::Value(got) }
 }
 
 /// Checks that nobody answers at an address: two encoders at one address can never be told apart again.

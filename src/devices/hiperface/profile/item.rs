@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::devices::hiperface::protocol::CodeNumber;
+
 /// Something that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
@@ -29,6 +31,26 @@ pub struct FieldRange {
     pub start: usize,
     /// Number of bytes; `None`: to the end of the field.
     pub count: Option<usize>,
+}
+
+/// What a write confirms, changes and reads back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanItem {
+    /// Something that can be read by its name.
+    #[error("{0}")]
+    Item(Item),
+    /// Whether it is the encoder that was planned for.
+    #[error("the encoder itself")]
+    Encoder,
+    /// How many data fields there are.
+    #[error("number of data fields")]
+    FieldCount,
+    /// The position.
+    #[error("position")]
+    Position,
+    /// An access code.
+    #[error("code {0}")]
+    Code(CodeNumber),
 }
 
 /// Why a text names nothing.
@@ -70,6 +92,11 @@ impl fmt::Display for Item {
 }
 
 impl FieldRange {
+    /// A whole field.
+    pub fn of(field: u8) -> Self {
+        FieldRange { field, start: 0, count: None }
+    }
+
     /// A part of a field.
     pub fn new(field: u8, start: usize, count: usize) -> Self {
         FieldRange { field, start, count: Some(count) }

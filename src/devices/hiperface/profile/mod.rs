@@ -3,6 +3,7 @@
 mod commutation;
 mod compare;
 mod edit;
+mod entry_error;
 mod item;
 mod plan;
 mod record;
@@ -11,7 +12,8 @@ mod restore;
 pub use commutation::{CommutationRecord, Damaged};
 pub use compare::compare;
 pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store};
-pub use item::{FieldRange, Item, ItemError};
+pub use entry_error::EntryError;
+pub use item::{FieldRange, Item, ItemError, PlanItem};
 pub use plan::{Base, HiperfacePlan, Op, Scalar};
 pub use record::{FieldImage, HiperfaceProfile, Interface, MountingMark, ProfileIdentity, Recorded};
 pub use restore::{

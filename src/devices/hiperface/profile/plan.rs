@@ -1,5 +1,6 @@
 //! The operations that change an encoder's memory, and what they rest upon.
 
+use super::item::PlanItem;
 use super::{FieldImage, FieldRange, Item};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
 use crate::profile::{Operation, Plan};
@@ -108,18 +109,18 @@ impl Operation for Op {
 
 impl Op {
     /// The name of what it changes, as `read` takes it where it can be read.
-    pub fn item(&self) -> String {
-        match self {
-            Op::Define { field, .. } => Item::Status(*field).to_string(),
+    pub fn item(&self) -> PlanItem {
+        PlanItem::Item(match self {
+            Op::Define { field, .. } => Item::Status(*field),
             Op::Store { field, address, new, .. } => {
-                FieldRange::new(*field, usize::from(*address), new.len()).to_string()
+                Item::Field(FieldRange::new(*field, usize::from(*address), new.len()))
             }
-            Op::ChangeCode { number, .. } => format!("code {number}"),
-            Op::SetPosition { .. } => "position".to_owned(),
-            Op::SetAddress { .. } => Item::Address.to_string(),
-            Op::Configure { .. } => Item::Settings.to_string(),
-            Op::ClearCounter { .. } | Op::IncrementCounter { .. } => Item::Counter.to_string(),
-        }
+            Op::ChangeCode { number, .. } => return PlanItem::Code(*number),
+            Op::SetPosition { .. } => return PlanItem::Position,
+            Op::SetAddress { .. } => Item::Address,
+            Op::Configure { .. } => Item::Settings,
+            Op::ClearCounter { .. } | Op::IncrementCounter { .. } => Item::Counter,
+        })
     }
 
     /// Things it changes, counted as a comparison counts them: bytes of a field, or one.

@@ -1,9 +1,10 @@
 //! What is saved of a HIPERFACE encoder. An access code is never part of it.
 
-use super::{FieldRange, Item};
+use super::{EntryError, FieldRange, Item};
 use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
+use crate::expected::Expected;
 use crate::profile::mounting::NEVER_BY_ITSELF;
-use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer};
+use crate::profile::ron_text::{Entries, Unknown, Writer};
 use crate::profile::{Profile, ProfileError};
 
 /// A HIPERFACE encoder as it is saved.
@@ -140,14 +141,14 @@ impl Profile for HiperfaceProfile {
         let identity = read_identity(entries.structure("identity")?)?;
         let interface = read_interface(entries.structure("interface")?)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
-        let mounting = MountingMark::read_all(entries, "a text such as \"field:0@0+16\"", read_marked)?;
+        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("field:0@0+16"), read_marked)?;
         let mut fields: Vec<FieldImage> = Vec::new();
         let mut unknown_in_fields = Vec::new();
         for entries in entries.required_structures("fields")? {
             let path = entries.path_of("number");
             let (field, unknown) = read_field(entries)?;
             if fields.iter().any(|other| other.number == field.number) {
-                return Err(ProfileError::Value { path, what: format!("field {} stands twice", field.number) });
+                return Err(ProfileError::refused(path, EntryError::Twice(field.number)));
             }
             if !unknown.is_empty() {
                 unknown_in_fields.push((field.number, unknown));
@@ -215,13 +216,13 @@ fn write_field(writer: &mut Writer, field: &FieldImage, unknown: Option<&Unknown
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
     Ok(ProfileIdentity {
-        serial_number: entries.required("serial_number", "a text")?,
-        encoder_type: entries.required("encoder_type", BYTE)?,
-        encoder_name: entries.optional("encoder_name", "a text")?.unwrap_or_default(),
-        firmware_version: entries.optional("firmware_version", "a text")?.unwrap_or_default(),
-        firmware_date: entries.optional("firmware_date", "a text")?.unwrap_or_default(),
-        eeprom_bytes: entries.optional("eeprom_bytes", "a whole number")?.unwrap_or_default(),
-        options: entries.optional("options", BYTE)?.unwrap_or_default(),
+        serial_number: entries.required("serial_number", Expected::Text)?,
+        encoder_type: entries.required("encoder_type", Expected::Byte)?,
+        encoder_name: entries.optional("encoder_name", Expected::Text)?.unwrap_or_default(),
+        firmware_version: entries.optional("firmware_version", Expected::Text)?.unwrap_or_default(),
+        firmware_date: entries.optional("firmware_date", Expected::Text)?.unwrap_or_default(),
+        eeprom_bytes: entries.optional("eeprom_bytes", Expected::Whole)?.unwrap_or_default(),
+        options: entries.optional("options", Expected::Byte)?.unwrap_or_default(),
         extended_label: entries.bytes("extended_label")?,
         unknown: entries.rest()?,
     })
@@ -229,49 +230,44 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
 
 fn read_interface(mut entries: Entries) -> Result<Interface, ProfileError> {
     Ok(Interface {
-        address: entries.required("address", BYTE)?,
-        settings: LineSettings::from_byte(entries.required("settings", BYTE)?),
+        address: entries.required("address", Expected::Byte)?,
+        settings: LineSettings::from_byte(entries.required("settings", Expected::Byte)?),
         unknown: entries.rest()?,
     })
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
-        position: entries.optional("position", "a number from 0 to 4294967295")?,
-        counter: entries.optional("counter", "a number from 0 to 16777215")?,
+        position: entries.optional("position", Expected::between(0, 4_294_967_295))?,
+        counter: entries.optional("counter", Expected::between(0, 16_777_215))?,
         unknown: entries.rest()?,
     })
 }
 
-fn read_marked(text: &str) -> Result<FieldRange, String> {
+fn read_marked(text: &str) -> Result<FieldRange, EntryError> {
     match text.parse::<Item>() {
         Ok(Item::Field(range)) => Ok(range),
-        _ => Err(format!("{text:?} is not of the form field:N@ADDR+COUNT")),
+        _ => Err(EntryError::Marked(text.to_owned())),
     }
 }
 
 fn read_field(mut entries: Entries) -> Result<(FieldImage, Unknown), ProfileError> {
-    let number: u8 = entries.required("number", "a number from 0 to 254")?;
-    let status = DataFieldStatus::from_byte(entries.required("status", BYTE)?);
-    let wrong = |entries: &Entries, name: &str, what: String| ProfileError::Value { path: entries.path_of(name), what };
+    let number: u8 = entries.required("number", Expected::between(0, 254))?;
+    let status = DataFieldStatus::from_byte(entries.required("status", Expected::Byte)?);
+    let wrong = |entries: &Entries, name: &str, error| Err(ProfileError::refused(entries.path_of(name), error));
     if !status.exists() {
-        return Err(wrong(
-            &entries,
-            "status",
-            format!("{:02X}h is not the status of an existing field", status.byte()),
-        ));
+        return wrong(&entries, "status", EntryError::Status(status.byte()));
     }
     let bytes = entries.bytes("bytes")?;
-    let locked = entries.optional("locked", "true or false")?.unwrap_or(false);
+    let locked = entries.optional("locked", Expected::words(&["true", "false"]))?.unwrap_or(false);
     if bytes.is_some() == locked {
-        let what = if locked { "a locked field has none" } else { "missing; a field without them is locked: true" };
-        return Err(wrong(&entries, "bytes", what.to_owned()));
+        return wrong(&entries, "bytes", if locked { EntryError::Locked } else { EntryError::NotLocked });
     }
     if let Some(bytes) = &bytes
         && bytes.len() != status.size().bytes()
     {
-        let what = format!("{} bytes where the status says {}", bytes.len(), status.size().bytes());
-        return Err(wrong(&entries, "bytes", what));
+        let size = EntryError::Size { got: bytes.len(), expected: status.size().bytes() };
+        return wrong(&entries, "bytes", size);
     }
     Ok((FieldImage { number, status, bytes }, entries.rest()?))
 }

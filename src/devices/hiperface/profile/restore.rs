@@ -55,7 +55,7 @@ pub struct DeviceState {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restore {
     /// What every kind of device says of a restore.
-    pub common: crate::profile::Restore<HiperfacePlan, FieldRange>,
+    pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
     /// Data fields with bytes of unknown meaning that differ from another encoder's.
     pub unknown_fields: Vec<UnknownField>,
     /// Data fields that the write created which this undoes, and that are left: they have changed since, or are not the last.

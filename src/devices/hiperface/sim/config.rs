@@ -7,7 +7,7 @@ use crate::devices::hiperface::protocol::{AccessCode, DeviceAddress, EncoderType
 use crate::expected::{Expected, Quantity};
 use crate::parameter::{Checked, Maybe, Refused, SWITCH, Values, Whole, Words, number};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, setting};
+use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
     /// What a virtual line with encoders shall be like. The default is one SKM36 as delivered, at rest, without faults.
@@ -37,7 +37,7 @@ impl Config {
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let config: Config = setting::read("a virtual encoder", pairs)?;
+        let config: Config = setting::read(VirtualDevice::Encoder, pairs)?;
         config.check_together()?;
         Ok(config)
     }

@@ -6,6 +6,7 @@ mod command;
 mod damage;
 mod doing;
 mod frame;
+mod items;
 mod label;
 mod op;
 #[cfg(test)]
@@ -23,6 +24,7 @@ pub use command::command;
 pub use damage::damage;
 pub use doing::doing;
 pub use frame::frame;
+pub use items::{field_range, item, plan_item, read_back, refused};
 pub use label::{LabelRow, label};
 pub use op::op;
 pub use types::{open, store};
@@ -32,7 +34,7 @@ pub use words::{
 };
 
 use crate::app::Text;
-use crate::app::explain::{link, not_begun, phrase};
+use crate::app::explain::{link, not_begun};
 use crate::devices::hiperface::jobs::{ChangeKind, JobError, OtherType};
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
@@ -142,12 +144,12 @@ pub fn encoder(error: &Error) -> Text {
             out_of_field(*field, size.saturating_sub(1), *address, *count)
         }
         Error::CodeUnknown { field, number } => code_unknown(*field, number),
-        Error::Changed { item } => TEXTS.text("encoder.changed").with_text("item", phrase(item)),
+        Error::Changed { item } => TEXTS.text("encoder.changed").with_text("item", plan_item(item)),
         Error::NotVerified { item, expected, got } => TEXTS
             .text("encoder.not_verified")
-            .with_text("item", phrase(item))
+            .with_text("item", plan_item(item))
             .with("expected", expected)
-            .with_text("got", phrase(got)),
+            .with_text("got", read_back(got)),
         Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
     }
 }
@@ -156,7 +158,7 @@ pub fn encoder(error: &Error) -> Text {
 pub fn redo(redo: &Redo) -> Text {
     match redo {
         Redo::Commutation => TEXTS.text("redo.commutation"),
-        Redo::Value(range) => phrase(&range.to_string()),
+        Redo::Value(range) => field_range(range),
     }
 }
 

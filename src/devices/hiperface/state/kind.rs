@@ -4,13 +4,13 @@ use super::{Encoder, LinkForm};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Session};
 use crate::app::studio::SessionId;
-use crate::app::{DeviceType, Severity};
+use crate::app::{DeviceType, Severity, Text};
 use crate::devices::hiperface::jobs::{self, check, encoder_types};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
-use crate::profile::Document;
+use crate::profile::{Cause, Document};
 use crate::store::{Store, StoreError};
 use crate::worker::OpenError;
 
@@ -26,6 +26,10 @@ impl DeviceType for Encoder {
 
     fn may_have_other_master(url: &LinkUrl) -> bool {
         jobs::may_have_other_master(url)
+    }
+
+    fn explain(cause: &Cause) -> Option<Text> {
+        words::refused(cause)
     }
 
     fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {

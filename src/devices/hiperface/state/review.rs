@@ -1,7 +1,7 @@
 //! The review of a write into a HIPERFACE encoder: what its plan needs, warns of and costs.
 
+use crate::app::Text;
 use crate::app::review::{self, OpWords, Permit, Question, Reviewed};
-use crate::app::{Text, explain};
 use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
 use crate::devices::hiperface::procedures::write::Written;
 use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownField};
@@ -79,8 +79,9 @@ impl Reviewed for Hiperface {
             warnings
                 .push(TEXTS.text("review.other_position").with("wanted", wanted).with("set", set.unwrap_or(wanted)));
         }
-        let mounting = prepared.mounting_left.iter().map(|range| explain::phrase(&range.to_string())).collect();
-        warnings.extend(review::left_alone(TEXTS.text("review.missing"), &prepared.missing, mounting));
+        let missing = prepared.missing.iter().map(words::field_range).collect();
+        let mounting = prepared.mounting_left.iter().map(words::field_range).collect();
+        warnings.extend(review::left_alone(TEXTS.text("review.missing"), missing, mounting));
         if prepared.plan.ops.iter().any(|op| matches!(op, Op::IncrementCounter { .. })) {
             warnings.push(TEXTS.text("review.counter"));
         }

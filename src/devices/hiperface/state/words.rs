@@ -1,6 +1,6 @@
 //! Jobs in words.
 
-use crate::app::{Text, explain};
+use crate::app::Text;
 use crate::bits::hex;
 use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::state::TEXTS;
@@ -13,7 +13,7 @@ pub(super) fn job(job: &HiperfaceJob) -> Text {
         HiperfaceJob::Status => Text::new("job.status"),
         HiperfaceJob::Position(_) => Text::new("job.position"),
         HiperfaceJob::Rest => TEXTS.text("job.rest"),
-        HiperfaceJob::Read(item) => Text::new("job.read").with_text("item", explain::phrase(&item.to_string())),
+        HiperfaceJob::Read(item) => Text::new("job.read").with_text("item", words::item(item)),
         HiperfaceJob::Save(_) => Text::new("job.save"),
         HiperfaceJob::Check { .. } => Text::new("job.check"),
         HiperfaceJob::Reset => TEXTS.text("job.reset"),

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::Disturbs;
 use super::plan::{commit, prepare, shown};
 use super::run::{Runner, programs, survey};
-use crate::app::explain;
+use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
@@ -83,8 +83,9 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile =
-        profile.into_profile::<InterbusProfile>().map_err(|error| failed(&explain::profile(&restore.file, &error)))?;
+    let profile = profile
+        .into_profile::<InterbusProfile>()
+        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
     let options = restore_options(restore)?;
     if !restore.dry_run {
         require_consent(&restore.consent)?;

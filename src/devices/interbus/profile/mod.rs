@@ -2,6 +2,7 @@
 
 mod compare;
 mod edit;
+mod entry_error;
 mod error;
 mod image;
 mod item;
@@ -17,6 +18,7 @@ mod text;
 
 pub use compare::compare;
 pub use edit::{plan_default, plan_edits, plan_preset};
+pub use entry_error::EntryError;
 pub use error::{OtherType, PlanError};
 pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};

@@ -1,21 +1,20 @@
 //! The text of an INTERBUS profile: written for people, read from their hands. What is wrong names its entry.
 
 use super::{
-    Direction, Image, InterbusProfile, Item, ItemError, Kept, MountingMark, Names, Parameters, ProfileIdentity,
-    Recorded,
+    Direction, EntryError, Image, InterbusProfile, Item, ItemError, Kept, MountingMark, Names, Parameters,
+    ProfileIdentity, Recorded,
 };
 use crate::devices::interbus::protocol::{
     self, Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
 };
+use crate::expected::Expected;
 use crate::profile::mounting::NEVER_BY_ITSELF;
-use crate::profile::ron_text::{BYTE, Entries, Unknown, Writer, entries_text, quoted};
+use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
 use crate::profile::{Profile, ProfileError};
 
-const NUMBER: &str = "a number from 0 to 33554431";
-const WHOLE: &str = "a whole number";
-const TEXT: &str = "a text";
-const DIRECTION: &str = "cw or ccw";
-const SHIFT: &str = "a number from 0 to 25";
+const NUMBER: Expected = Expected::between(0, Value::MAX.get() as i128);
+const DIRECTION: Expected = Expected::words(&["cw", "ccw"]);
+const SHIFT: Expected = Expected::between(0, 25);
 
 impl Profile for InterbusProfile {
     const KIND: &'static str = protocol::KIND;
@@ -35,12 +34,11 @@ impl Profile for InterbusProfile {
             match image.program_mut(number) {
                 Some(place @ None) => *place = Some(program),
                 _ => {
-                    let what = format!("program {} stands twice", number.get());
-                    return Err(ProfileError::Value { path, what });
+                    return Err(ProfileError::refused(path, EntryError::ProgramTwice(number)));
                 }
             }
         }
-        let mounting = MountingMark::read_all(entries, "a text such as \"preset\"", read_marked)?;
+        let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("preset"), read_marked)?;
         let recorded = entries.optional_structure("recorded")?.map(read_recorded).transpose()?.unwrap_or_default();
         Ok(InterbusProfile { identity, image, names, mounting, recorded, unknown })
     }
@@ -156,7 +154,7 @@ fn name(writer: &mut Writer, name: &str) {
 }
 
 fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> {
-    let serial_number = entries.optional("serial_number", TEXT)?.unwrap_or_default();
+    let serial_number = entries.optional("serial_number", Expected::Text)?.unwrap_or_default();
     let flags = optional_value(&mut entries, "flags")?.map(Flags::new);
     Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest()? })
 }
@@ -179,26 +177,26 @@ fn read_program(
     unknown: &mut Kept,
 ) -> Result<(ProgramNumber, Program), ProfileError> {
     let path = entries.path_of("program");
-    let number: u32 = entries.required("program", WHOLE)?;
+    let number: u32 = entries.required("program", Expected::Whole)?;
     let at = u8::try_from(number)
         .ok()
         .and_then(ProgramNumber::new)
-        .ok_or_else(|| ProfileError::Value { path, what: ItemError::Program { number: number.into() }.to_string() })?;
-    names.set_program(at, entries.optional("name", TEXT)?.unwrap_or_default());
-    let mut program = Program { mask: entries.required("mask", BYTE)?, ..Program::default() };
+        .ok_or_else(|| ProfileError::refused(path, EntryError::Item(ItemError::Program { number: number.into() })))?;
+    names.set_program(at, entries.optional("name", Expected::Text)?.unwrap_or_default());
+    let mut program = Program { mask: entries.required("mask", Expected::Byte)?, ..Program::default() };
     for mut entries in entries.structures("cams")? {
         let path = entries.path_of("cam");
-        let number: u32 = entries.required("cam", WHOLE)?;
+        let number: u32 = entries.required("cam", Expected::Whole)?;
         let cam = u8::try_from(number).ok().and_then(CamNumber::new);
-        let wrong = |what: String| ProfileError::Value { path, what };
+        let wrong = |error: EntryError| ProfileError::refused(path, error);
         let Some(cam) = cam else {
-            return Err(wrong(ItemError::Cam { number: number.into() }.to_string()));
+            return Err(wrong(ItemError::Cam { number: number.into() }.into()));
         };
         if program.cam(cam).is_some() {
-            return Err(wrong(format!("cam {number} stands twice")));
+            return Err(wrong(EntryError::CamTwice(cam)));
         }
         program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
-        names.set_cam(at, cam, entries.optional("name", TEXT)?.unwrap_or_default());
+        names.set_cam(at, cam, entries.optional("name", Expected::Text)?.unwrap_or_default());
         keep(&mut unknown.cams, (at, cam), entries.rest()?);
     }
     keep(&mut unknown.programs, at, entries.rest()?);
@@ -211,21 +209,21 @@ fn keep<K: Ord>(kept: &mut std::collections::BTreeMap<K, Unknown>, place: K, unk
     }
 }
 
-fn read_marked(text: &str) -> Result<Item, String> {
+fn read_marked(text: &str) -> Result<Item, EntryError> {
     match text.parse::<Item>() {
         Ok(item) if item.is_writable() => Ok(item),
-        Ok(item) => Err(format!("{item} is measured, and belongs to no mounting")),
-        Err(error) => Err(error.to_string()),
+        Ok(item) => Err(EntryError::Measured(item)),
+        Err(error) => Err(error.into()),
     }
 }
 
 fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     Ok(Recorded {
-        software_version: entries.optional("software_version", WHOLE)?,
-        operating_minutes: entries.optional("operating_minutes", WHOLE)?,
-        temperature_tenths: entries.optional("temperature_tenths", WHOLE)?,
+        software_version: entries.optional("software_version", Expected::Whole)?,
+        operating_minutes: entries.optional("operating_minutes", Expected::Whole)?,
+        temperature_tenths: entries.optional("temperature_tenths", Expected::Whole)?,
         mode: optional_value(&mut entries, "startup_mode")?.map(StartupMode::parse),
-        preset_flag: entries.optional("preset_flag", WHOLE)?,
+        preset_flag: entries.optional("preset_flag", Expected::Whole)?,
         unknown: entries.rest()?,
     })
 }

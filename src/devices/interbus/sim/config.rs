@@ -10,7 +10,7 @@ use crate::devices::interbus::protocol::{
 use crate::expected::{Expected, Quantity};
 use crate::parameter::{ANY, Checked, Decimal, Maybe, Milliseconds, Refused, SWITCH, Values, Whole, Words, number};
 use crate::parameters;
-use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, setting};
+use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
     /// What a virtual gateway and the encoders behind it shall be like. The default is one K3 encoder as delivered, at rest,
@@ -73,7 +73,7 @@ impl Config {
     /// # Errors
     /// With a sentence that names the key and what is allowed.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
-        let mut config: Config = setting::read("a virtual INTERBUS encoder", pairs)?;
+        let mut config: Config = setting::read(VirtualDevice::EncoderOf("INTERBUS"), pairs)?;
         config.fill_memory()?;
         Ok(config)
     }

@@ -1,6 +1,7 @@
 //! An INTERBUS encoder in words: the errors of jobs with it, and what is said on the way.
 
 mod check;
+mod entry;
 mod gateway;
 mod item;
 #[cfg(test)]
@@ -9,6 +10,7 @@ mod write;
 
 use crate::devices::interbus::state::TEXTS;
 pub use check::check;
+pub use entry::entry;
 pub use gateway::{damage, exception};
 pub use item::{direction, parameter, read_out, startup};
 pub use write::{change, op, other_type, plan, wear, weight, written};

@@ -2,14 +2,15 @@
 
 use super::staged::Staged;
 use super::{Encoder, InterbusForm};
-use crate::app::DeviceType;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Session};
 use crate::app::studio::SessionId;
+use crate::app::{DeviceType, Text};
 use crate::devices::interbus::jobs::check;
 use crate::devices::interbus::profile::InterbusProfile;
+use crate::devices::interbus::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::Document;
+use crate::profile::{Cause, Document};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -21,6 +22,10 @@ impl DeviceType for Encoder {
 
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
+    }
+
+    fn explain(cause: &Cause) -> Option<Text> {
+        explain::entry(cause)
     }
 
     fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {

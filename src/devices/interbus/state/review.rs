@@ -1,5 +1,6 @@
 //! The review of a write into an INTERBUS encoder: what its plan needs, warns of and costs.
 
+use crate::app::explain::plain;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, Wear};
@@ -47,7 +48,11 @@ impl Reviewed for Interbus {
             warnings.push(TEXTS.text("ib_review.experimental"));
         }
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        warnings.extend(review::left_alone(TEXTS.text("ib_review.missing"), &prepared.missing, mounting));
+        warnings.extend(review::left_alone(
+            TEXTS.text("ib_review.missing"),
+            prepared.missing.iter().map(plain).collect(),
+            mounting,
+        ));
         warnings
     }
 

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::args::SsiLayout;
-use crate::app::explain;
+use crate::app::{Kinds, explain};
 use crate::cli::output::Output;
 use crate::cli::profiles::load;
 use crate::cli::runner::failed;
@@ -72,7 +72,7 @@ fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Re
 
 fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let path = Path::new(spec);
-    let told = |error| failed(&explain::profile(path, &error));
+    let told = |error| failed(&explain::profile(path, &error, Kinds::NONE));
     let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(told)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;

@@ -2,8 +2,10 @@
 //! no memory: a profile is never written into one, so that there is no plan and no backup.
 
 mod compare;
+mod entry_error;
 mod record;
 mod text;
 
 pub use compare::compare;
+pub use entry_error::EntryError;
 pub use record::{Kept, ReadingSettings, SsiProfile};

@@ -6,22 +6,19 @@ use std::str::FromStr;
 
 use ron::Value;
 
-use super::{Kept, ReadingSettings, SsiProfile};
+use super::{EntryError, Kept, ReadingSettings, SsiProfile};
 use crate::devices::ssi::protocol::{
     self, Code, Coded, Coding, Descriptor, Direction, ErrorBit, Fraction, Layout, Parity, Pattern, Range, Repeat, Word,
 };
+use crate::expected::Expected;
 use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
-use crate::profile::{Cause, Profile, ProfileError};
+use crate::profile::{Profile, ProfileError};
 
-const SMALL: &str = "a number from 0 to 255";
-const NUMBER: &str = "a whole number";
-const FLAG: &str = "true or false";
-const TEXT: &str = "a text";
-const CLOCK_HZ: &str = "a number from 1000 to 20000000";
-const PAUSE_US: &str = "a number from 1 to 65535";
-const METRES: &str = "a number from 0 to 65535";
-const REVOLUTIONS: &str = "a whole number, or a text such as \"25/2\"";
-const WORD: &str = "ones, or a number with the bits of a whole frame";
+const SMALL: Expected = Expected::between(0, 255);
+const FLAG: Expected = Expected::words(&["true", "false"]);
+const CLOCK_HZ: Expected = Expected::between(1000, 20_000_000);
+const PAUSE_US: Expected = Expected::between(1, 65_535);
+const METRES: Expected = Expected::between(0, 65_535);
 /// The word for a frame of ones alone.
 const ONES: &str = "ones";
 
@@ -29,22 +26,19 @@ impl Profile for SsiProfile {
     const KIND: &'static str = protocol::KIND;
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
-        let name = entries.optional("name", TEXT)?.unwrap_or_default();
+        let name = entries.optional("name", Expected::Text)?.unwrap_or_default();
         // Keys have small letters; a person may write the type's name.
-        let family = entries.optional("family", TEXT)?.map(|key: String| key.to_ascii_lowercase());
+        let family = entries.optional("family", Expected::Text)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = Kept::default();
         let path = entries.path_of("frame");
         let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
-        let layout = Layout::new(descriptor.clone()).map_err(|error| {
-            let arguments = error.phrases();
-            ProfileError::Refused { path, cause: Cause::new(error).with_arguments(arguments) }
-        })?;
+        let refused = |error| ProfileError::refused(path, EntryError::Layout(error));
+        let layout = Layout::new(descriptor.clone()).map_err(refused)?;
         let direction = word(entries, "direction")?.unwrap_or_default();
-        let preset = entries.optional("preset", NUMBER)?.unwrap_or(0);
+        let preset = entries.optional("preset", Expected::Whole)?.unwrap_or(0);
         let last = layout.coding().last();
         if preset > last {
-            let what = format!("{preset} is not within 0 to {last}");
-            return Err(ProfileError::Value { path: entries.path_of("preset"), what });
+            return Err(ProfileError::refused(entries.path_of("preset"), EntryError::Preset { preset, last }));
         }
         let reading = match entries.optional_structure("reading")? {
             Some(entries) => read_reading(entries, &mut unknown)?,
@@ -257,11 +251,11 @@ fn read_frame(mut entries: Entries, unknown: &mut Kept) -> Result<Descriptor, Pr
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
     let multiturn: Option<u8> = entries.optional("multiturn", SMALL)?;
     let singleturn: Option<u8> = entries.optional("singleturn", SMALL)?;
-    let steps: Option<u32> = entries.optional("steps", NUMBER)?;
-    let turns: Option<u32> = entries.optional("turns", NUMBER)?;
+    let steps: Option<u32> = entries.optional("steps", Expected::Whole)?;
+    let turns: Option<u32> = entries.optional("turns", Expected::Whole)?;
     let revolutions = read_revolutions(entries)?;
     let bits: Option<u8> = entries.optional("bits", SMALL)?;
-    let step_nanometres: Option<u32> = entries.optional("step_nanometres", NUMBER)?;
+    let step_nanometres: Option<u32> = entries.optional("step_nanometres", Expected::Whole)?;
     let given = [
         ("singleturn", singleturn.is_some()),
         ("multiturn", multiturn.is_some()),
@@ -272,14 +266,11 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
         ("step_nanometres", step_nanometres.is_some()),
     ];
     // What else is given belongs to what says which positions there are.
-    let only = |own: &str, others: &[&str]| {
+    let only = |own: &'static str, others: &[&str]| {
         let other = given.iter().find(|(name, is_given)| *is_given && *name != own && !others.contains(name));
         match other {
             None => Ok(()),
-            Some((name, _)) => {
-                let what = format!("not together with {own}");
-                Err(ProfileError::Value { path: entries.path_of(name), what })
-            }
+            Some((name, _)) => Err(ProfileError::refused(entries.path_of(name), EntryError::NotWith(own))),
         }
     };
     match (singleturn, steps, bits) {
@@ -302,26 +293,23 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
             let missing = || ProfileError::Missing { path: entries.path_of("step_nanometres") };
             Ok(Range::Length { bits, step_nanometres: step_nanometres.ok_or_else(missing)? })
         }
-        (None, None, None) => {
-            let what = "singleturn, steps or bits has to say which positions there are".to_owned();
-            Err(ProfileError::Value { path: entries.path().to_owned(), what })
-        }
+        (None, None, None) => Err(ProfileError::refused(entries.path().to_owned(), EntryError::NoPositions)),
     }
 }
 
 fn read_revolutions(entries: &mut Entries) -> Result<Option<Fraction>, ProfileError> {
     let path = entries.path_of("revolutions");
-    let Some(value) = entries.optional::<Value>("revolutions", REVOLUTIONS)? else { return Ok(None) };
+    let Some(value) = entries.optional::<Value>("revolutions", Expected::Revolutions)? else { return Ok(None) };
     let revolutions = match value {
         Value::String(text) => text.parse().ok(),
         value => value.into_rust().ok().map(|numerator| Fraction { numerator, denominator: 1 }),
     };
-    revolutions.map(Some).ok_or(ProfileError::Shape { path, expected: REVOLUTIONS })
+    revolutions.map(Some).ok_or(ProfileError::Shape { path, expected: Expected::Revolutions })
 }
 
 fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError> {
     let bit = ErrorBit {
-        name: entries.required("name", TEXT)?,
+        name: entries.required("name", Expected::Text)?,
         clock: entries.required("clock", SMALL)?,
         meaning: required_word(&mut entries, "meaning")?,
         active_low: entries.optional("active_low", FLAG)?.unwrap_or(false),
@@ -331,13 +319,13 @@ fn read_error(mut entries: Entries) -> Result<(ErrorBit, Unknown), ProfileError>
 }
 
 fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError> {
-    let wrong = |path| ProfileError::Shape { path, expected: WORD };
+    let wrong = |path| ProfileError::Shape { path, expected: Expected::Frame };
     let path = entries.path_of("word");
-    let word = match entries.required::<Value>("word", WORD)? {
+    let word = match entries.required::<Value>("word", Expected::Frame)? {
         Value::String(word) if word == ONES => Word::Ones,
         value => Word::Bits(value.into_rust().map_err(|_| wrong(path))?),
     };
-    let name = entries.required("name", TEXT)?;
+    let name = entries.required("name", Expected::Text)?;
     Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
 }
 
@@ -358,13 +346,13 @@ fn read_reading(mut entries: Entries, unknown: &mut Kept) -> Result<ReadingSetti
 }
 
 /// A text that is one of some words.
-fn word<T: FromStr<Err = &'static str>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
+fn word<T: FromStr<Err = Expected>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.path_of(name);
-    let Some(word) = entries.optional::<String>(name, TEXT)? else { return Ok(None) };
+    let Some(word) = entries.optional::<String>(name, Expected::Text)? else { return Ok(None) };
     word.parse().map(Some).map_err(|expected| ProfileError::Shape { path, expected })
 }
 
-fn required_word<T: FromStr<Err = &'static str>>(entries: &mut Entries, name: &str) -> Result<T, ProfileError> {
+fn required_word<T: FromStr<Err = Expected>>(entries: &mut Entries, name: &str) -> Result<T, ProfileError> {
     word(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
 }
 

@@ -12,7 +12,7 @@ mod table;
 mod tests;
 
 pub use c::c99;
-pub use linuxcnc::{FormatError, from_linuxcnc, to_linuxcnc};
+pub use linuxcnc::{FormatError, NoFormat, from_linuxcnc, to_linuxcnc};
 pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
 pub use svg::{frame_svg, timing_svg};

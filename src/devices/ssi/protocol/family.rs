@@ -3,12 +3,16 @@
 //! make of it: [`Settings`].
 
 mod sends;
+mod setting_name;
 mod settings;
 #[cfg(test)]
 mod tests;
 mod text;
 
+pub use setting_name::SettingName;
 pub use settings::{Advice, Resolved, Settings, SettingsError};
+
+use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
@@ -60,6 +64,9 @@ pub struct Family {
     /// What else an engineer should know, a sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
+    /// Source and notes in German, by the English words.
+    #[serde(default)]
+    pub german: BTreeMap<String, String>,
 }
 
 /// Limits of steps that are no power of two.
@@ -153,7 +160,24 @@ pub struct FamilyError {
     /// Column, counted from 1.
     pub column: usize,
     /// What is wrong there.
-    pub what: String,
+    pub what: FamilyProblem,
+}
+
+/// Why a family cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FamilyProblem {
+    /// Not the RON expected, as the parser says it.
+    #[error("{0}")]
+    Parser(String),
+    /// A key that cannot stand on the command line.
+    #[error("the key {0:?} must be of small letters, digits, - and _")]
+    Key(String),
+    /// German for what is neither the source nor a note.
+    #[error("german: {0:?} is neither the source nor a note")]
+    German(String),
+    /// A frame as delivered that cannot work.
+    #[error("as delivered: {0}")]
+    Delivered(SettingsError),
 }
 
 /// All families known.
@@ -168,22 +192,31 @@ impl Family {
     /// and a family whose frame as delivered cannot work.
     pub fn parse(file: &str, text: &str) -> Result<Self, FamilyError> {
         let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, what };
-        let family: Family = ron::from_str(text)
-            .map_err(|wrong| error(wrong.span.start.line, wrong.span.start.col, wrong.code.to_string()))?;
+        let family: Family = ron::from_str(text).map_err(|wrong| {
+            error(wrong.span.start.line, wrong.span.start.col, FamilyProblem::Parser(wrong.code.to_string()))
+        })?;
         let at = |entry| place(text, entry);
         let fits = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || matches!(letter, '-' | '_');
         if family.key.is_empty() || !family.key.chars().all(fits) {
             let (line, column) = at("key:");
-            let what = format!("the key {:?} must be of small letters, digits, - and _", family.key);
-            return Err(error(line, column, what));
+            return Err(error(line, column, FamilyProblem::Key(family.key)));
+        }
+        if let Some(english) = family.german.keys().find(|own| **own != family.source && !family.notes.contains(own)) {
+            let (line, column) = at("german:");
+            return Err(error(line, column, FamilyProblem::German(english.clone())));
         }
         match Settings::default().resolve(&family) {
             Ok(_) => Ok(family),
             Err(wrong) => {
                 let (line, column) = at("frames:");
-                Err(error(line, column, format!("as delivered: {wrong}")))
+                Err(error(line, column, FamilyProblem::Delivered(wrong)))
             }
         }
+    }
+
+    /// Its source or a note in German; in English where the file has no German for it.
+    pub fn german<'f>(&'f self, english: &'f str) -> &'f str {
+        self.german.get(english).map_or(english, String::as_str)
     }
 
     /// The code as delivered.

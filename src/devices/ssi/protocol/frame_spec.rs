@@ -5,6 +5,7 @@ use super::code::Code;
 use super::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
 use super::range::{Fraction, Range};
 use super::spec::{Setting, SpecError};
+use crate::expected::Expected;
 
 /// What a frame in one word begins with.
 const KEY: &str = "frame";
@@ -116,13 +117,13 @@ fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Descriptor, SpecErr
             "between" => frame.between = setting.small()?,
             "shift" => frame.shift_right = setting.switch()?,
             "inverted" => frame.inverted = setting.switch()?,
-            "parity" => frame.parity = Some(parity(value).ok_or_else(|| wrong("even@CLOCK or odd@CLOCK"))?),
-            "repeat" => frame.repeat = Some(repeat(value).ok_or_else(|| wrong("BITS+ZEROS, as 25+1"))?),
+            "parity" => frame.parity = Some(parity(value).ok_or_else(|| wrong(Expected::ParityBit))?),
+            "repeat" => frame.repeat = Some(repeat(value).ok_or_else(|| wrong(Expected::Repetition))?),
             _ => {
                 let (_, called, active_low) =
                     LISTS.iter().find(|(list, ..)| *list == setting.name).ok_or_else(|| setting.unknown())?;
                 for clock in value.split('+') {
-                    let clock = clock.parse().map_err(|_| wrong("clocks, as 1+26"))?;
+                    let clock = clock.parse().map_err(|_| wrong(Expected::Clocks))?;
                     frame.errors.push(ErrorBit {
                         name: format!("{called}{clock}"),
                         clock,

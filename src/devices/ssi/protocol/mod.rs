@@ -24,17 +24,18 @@ pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
 pub use explain::{Cell, Finding, Role};
 pub use export::{
-    FormatError, bit_table, c99, frame_svg, from_linuxcnc, settings_sheet, structured_text, timing_svg, to_linuxcnc,
+    FormatError, NoFormat, bit_table, c99, frame_svg, from_linuxcnc, settings_sheet, structured_text, timing_svg,
+    to_linuxcnc,
 };
 pub use family::{
-    Advice, Align, ErrorPlace, Families, Family, FamilyError, Frame, Resolved, Settings, SettingsError, Signal,
-    StepLimits,
+    Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, Resolved, SettingName, Settings,
+    SettingsError, Signal, StepLimits,
 };
 pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
-pub use layout::{Flags, Layout, LayoutError, Reading};
+pub use layout::{AsAWhole, Flags, Layout, LayoutError, Reading, Several, Taker};
 pub use range::{Direction, Fraction, Place, Range, RangeError};
 pub use spec::SpecError;
 pub use tally::{Noted, Tally};

@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::code::{bits_of, ones};
+use crate::expected::Expected;
 
 /// Positions from 0 to a last one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -247,12 +248,12 @@ impl fmt::Display for Fraction {
 }
 
 impl FromStr for Fraction {
-    type Err = &'static str;
+    type Err = Expected;
 
     /// The error says what may stand there.
-    fn from_str(text: &str) -> Result<Self, &'static str> {
+    fn from_str(text: &str) -> Result<Self, Expected> {
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
-        let part = |text: &str| text.trim().parse().map_err(|_| "a number or a fraction such as 25/2");
+        let part = |text: &str| text.trim().parse().map_err(|_| Expected::Fraction);
         Ok(Fraction { numerator: part(above)?, denominator: part(below)? })
     }
 }

@@ -1,5 +1,7 @@
 //! Layouts in one word, `KEY,name=value,…`: what a family's settings and a free frame have in common.
 
+use crate::expected::Expected;
+
 /// Why a text is no layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
@@ -25,7 +27,7 @@ pub enum SpecError {
         /// Of which name.
         name: String,
         /// What it may be.
-        expected: &'static str,
+        expected: Expected,
         /// What it is.
         value: String,
     },
@@ -64,23 +66,23 @@ impl<'t> Setting<'t> {
     }
 
     pub(super) fn small(self) -> Result<u8, SpecError> {
-        self.value.parse().map_err(|_| self.wrong("a number from 0 to 255"))
+        self.value.parse().map_err(|_| self.wrong(Expected::between(0, 255)))
     }
 
     pub(super) fn number(self) -> Result<u32, SpecError> {
-        self.value.parse().map_err(|_| self.wrong("a whole number"))
+        self.value.parse().map_err(|_| self.wrong(Expected::Whole))
     }
 
     pub(super) fn switch(self) -> Result<bool, SpecError> {
         match self.value {
             "0" => Ok(false),
             "1" => Ok(true),
-            _ => Err(self.wrong("0 or 1")),
+            _ => Err(self.wrong(Expected::words(&["0", "1"]))),
         }
     }
 
     /// The value is none of what may stand there.
-    pub(super) fn wrong(self, expected: &'static str) -> SpecError {
+    pub(super) fn wrong(self, expected: Expected) -> SpecError {
         SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
     }
 

@@ -17,7 +17,7 @@ use crate::devices::ssi::state::TEXTS;
 
 pub use check::check;
 pub use family::{note, store};
-pub use refused::{format, frame_text, layout, settings};
+pub use refused::{entry, format, frame_text, layout, settings};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {

@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 use super::design::Designer;
 use super::families::families;
 use super::{Encoder, SsiForm};
-use crate::app::DeviceType;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, ProfileFile, Session};
 use crate::app::studio::SessionId;
+use crate::app::{DeviceType, Text};
 use crate::devices::ssi::jobs::check;
 use crate::devices::ssi::profile::SsiProfile;
+use crate::devices::ssi::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::Document;
+use crate::profile::{Cause, Document};
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -24,6 +25,10 @@ impl DeviceType for Encoder {
 
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
+    }
+
+    fn explain(cause: &Cause) -> Option<Text> {
+        explain::entry(cause)
     }
 
     fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {

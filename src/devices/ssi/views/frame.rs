@@ -165,7 +165,7 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
             });
         }
         Some(family) => {
-            paragraph(ui, skin.caption(skin.words(&words::note(&family.source))));
+            paragraph(ui, skin.caption(skin.words(&words::note(family, &family.source))));
         }
         None => paragraph(ui, skin.caption(say(skin, "ssi_layout.free_words"))),
     }

@@ -44,9 +44,9 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
             ui.add_space(skin.space.between);
             ui.label(skin.heading(&family.name));
             for note in &family.notes {
-                paragraph(ui, skin.caption(skin.words(&words::note(note))));
+                paragraph(ui, skin.caption(skin.words(&words::note(family, note))));
             }
-            paragraph(ui, skin.caption(skin.words(&words::note(&family.source))));
+            paragraph(ui, skin.caption(skin.words(&words::note(family, &family.source))));
         }
     });
 }

@@ -3,10 +3,14 @@
 use std::time::Duration;
 
 use crate::app::explain::{document, in_both_languages, url};
+use crate::app::{DeviceType, Kinds};
 use crate::devices::biss::procedures::{Station, Way};
 use crate::devices::biss::profile::BissProfile;
+use crate::devices::biss::state::Encoder;
 use crate::link::Query;
-use crate::profile::{Document, Profile};
+use crate::profile::{Document, Formats, Profile};
+
+const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn a_wrong_link_is_told_in_both_languages() {
@@ -39,6 +43,6 @@ fn a_wrong_profile_is_told_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = Document::parse(&good.replacen(from, to, 1), BissProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error), &error);
+        in_both_languages(&document(&error, KINDS), &error);
     }
 }

@@ -19,7 +19,7 @@ pub(super) struct Planner<'a> {
     pub(super) with_mounting: bool,
     pub(super) ops: Vec<Op>,
     pub(super) unchanged: u64,
-    pub(super) missing: Vec<String>,
+    pub(super) missing: Vec<FieldRange>,
     pub(super) mounting_left: Vec<FieldRange>,
     pub(super) mounting_written: Vec<FieldRange>,
     pub(super) touched: Vec<u8>,
@@ -166,7 +166,7 @@ impl Planner<'_> {
         let first = if target.bytes.is_some() { writable } else { target.status };
         if target.bytes.is_none() && !self.left.contains(&target.number) {
             // It is created because others may follow it; what was in it nobody knows.
-            self.missing.push(FieldRange { field: target.number, start: 0, count: None }.to_string());
+            self.missing.push(FieldRange::of(target.number));
         }
         self.ops.push(Op::Define { field: target.number, from: None, to: first });
         if let Some(bytes) = &target.bytes {
@@ -183,7 +183,7 @@ impl Planner<'_> {
         // A field that one side cannot read is left alone.
         let (Some(old), Some(new)) = (&now.bytes, &target.bytes) else {
             if now != target {
-                self.missing.push(FieldRange { field: now.number, start: 0, count: None }.to_string());
+                self.missing.push(FieldRange::of(now.number));
             }
             return;
         };
@@ -251,10 +251,10 @@ impl Planner<'_> {
         self.ops.push(Op::Store { field, address, status, old, new: new.to_vec() });
     }
 
-    pub(super) fn finish(mut self) -> crate::profile::Restore<HiperfacePlan, FieldRange> {
+    pub(super) fn finish(mut self) -> crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange> {
         for now in &self.device.fields {
             if self.target_of(now.number).is_none() && !self.left.contains(&now.number) {
-                self.missing.push(FieldRange { field: now.number, start: 0, count: None }.to_string());
+                self.missing.push(FieldRange::of(now.number));
             }
         }
         let fields = self.device.fields.iter().filter(|field| self.touched.contains(&field.number)).cloned().collect();

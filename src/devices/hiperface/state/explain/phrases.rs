@@ -2,13 +2,19 @@
 
 use std::time::Duration;
 
-use crate::app::Language::{English, German};
-use crate::app::explain::{document, in_both_languages, phrase, setting, url};
-use crate::devices::hiperface::procedures::Station;
-use crate::devices::hiperface::profile::HiperfaceProfile;
+use crate::app::Language::German;
+use crate::app::explain::{document, in_both_languages, setting, url};
+use crate::app::{DeviceType, Kinds};
+use crate::devices::hiperface::procedures::{ReadBack, Station};
+use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, PlanItem};
+use crate::devices::hiperface::protocol::CodeNumber;
 use crate::devices::hiperface::sim::Config;
+use crate::devices::hiperface::state::Encoder;
+use crate::devices::hiperface::state::explain::{plan_item, read_back};
 use crate::link::Query;
-use crate::profile::{Document, Profile};
+use crate::profile::{Document, Formats, Profile};
+
+const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn a_wrong_link_is_told_in_both_languages() {
@@ -84,22 +90,29 @@ fn a_wrong_profile_is_told_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = Document::parse(&good.replacen(from, to, 1), HiperfaceProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error), &error);
+        in_both_languages(&document(&error, KINDS), &error);
     }
 }
 
 #[test]
-fn what_can_be_read_is_named_in_both_languages() {
+fn what_a_write_checks_is_named_in_both_languages() {
+    let range = |start, count| PlanItem::Item(Item::Field(FieldRange { field: 1, start, count }));
     let cases = [
-        ("field:1@3+2", "Datenfeld 1 ab 3 (2 Bytes)"),
-        ("field:255@16", "Datenfeld 255 ab 16"),
-        ("field:0", "Datenfeld 0"),
-        ("status:2", "Status von Datenfeld 2"),
-        ("analogue:0x48", "Analogkanal 0x48"),
-        ("code 2", "Zugriffsschlüssel 2"),
-        ("settings", "Schnittstelleneinstellung"),
+        (range(3, Some(2)), "Datenfeld 1 ab 3 (2 Bytes)"),
+        (range(16, None), "Datenfeld 1 ab 16"),
+        (range(0, None), "Datenfeld 1"),
+        (PlanItem::Item(Item::Status(2)), "Status von Datenfeld 2"),
+        (PlanItem::Item(Item::Analogue(0x48)), "Analogkanal 0x48"),
+        (PlanItem::Item(Item::Counter), "Zähler"),
+        (PlanItem::Item(Item::Address), "Adresse"),
+        (PlanItem::Item(Item::Settings), "Schnittstelleneinstellung"),
+        (PlanItem::Code(CodeNumber::new(2).unwrap()), "Zugriffsschlüssel 2"),
+        (PlanItem::Encoder, "Der Geber selbst"),
+        (PlanItem::FieldCount, "Anzahl der Datenfelder"),
     ];
-    for (words, german) in cases {
-        assert_eq!((phrase(words).words(English), phrase(words).words(German)), (words.to_owned(), german.to_owned()));
+    for (item, german) in cases {
+        in_both_languages(&plan_item(&item), &item);
+        assert_eq!(plan_item(&item).words(German), german);
     }
+    in_both_languages(&read_back(&ReadBack::AnotherStatus), &ReadBack::AnotherStatus);
 }

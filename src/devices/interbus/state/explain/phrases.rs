@@ -1,8 +1,12 @@
 //! What the lower layers of the device say, in both languages.
 
 use crate::app::explain::{document, in_both_languages};
+use crate::app::{DeviceType, Kinds};
 use crate::devices::interbus::profile::InterbusProfile;
-use crate::profile::{Document, Profile};
+use crate::devices::interbus::state::Encoder;
+use crate::profile::{Document, Formats, Profile};
+
+const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn a_wrong_profile_is_told_in_both_languages() {
@@ -29,6 +33,6 @@ fn a_wrong_profile_is_told_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = Document::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error), &error);
+        in_both_languages(&document(&error, KINDS), &error);
     }
 }

@@ -7,12 +7,32 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::Range;
 
+/// What LinuxCNC cannot decode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoFormat {
+    /// Gray over more than the position.
+    #[error("a Gray code that goes over zeros or error bits")]
+    GrayOver,
+    /// Gray excess.
+    #[error("gray excess")]
+    GrayExcess,
+    /// BCD.
+    #[error("BCD")]
+    Bcd,
+    /// Turns apart from steps.
+    #[error("zeros between turns and steps")]
+    Between,
+    /// Exchanged wires.
+    #[error("exchanged data wires")]
+    Inverted,
+}
+
 /// Why a frame has no format string, or a format string is no frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
     /// LinuxCNC cannot decode that.
     #[error("LinuxCNC cannot decode {0}")]
-    Cannot(&'static str),
+    Cannot(NoFormat),
     /// Not `name%bits` and a letter.
     #[error("\"{0}\" is not NAME%BITS and one of p b u s f e, with g before for Gray")]
     Form(String),
@@ -42,15 +62,15 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let modifier = match layout.coding().code() {
         Code::Binary if descriptor.coded == Coded::Position => "",
         Code::Gray => "g",
-        Code::Binary => return Err(FormatError::Cannot("a Gray code that goes over zeros or error bits")),
-        Code::GrayExcess => return Err(FormatError::Cannot("gray excess")),
-        Code::Bcd => return Err(FormatError::Cannot("BCD")),
+        Code::Binary => return Err(FormatError::Cannot(NoFormat::GrayOver)),
+        Code::GrayExcess => return Err(FormatError::Cannot(NoFormat::GrayExcess)),
+        Code::Bcd => return Err(FormatError::Cannot(NoFormat::Bcd)),
     };
     if descriptor.between > 0 {
-        return Err(FormatError::Cannot("zeros between turns and steps"));
+        return Err(FormatError::Cannot(NoFormat::Between));
     }
     if descriptor.inverted {
-        return Err(FormatError::Cannot("exchanged data wires"));
+        return Err(FormatError::Cannot(NoFormat::Inverted));
     }
     let mut fields: Vec<(Field, u8)> = Vec::new();
     for role in layout.roles().into_iter().rev() {

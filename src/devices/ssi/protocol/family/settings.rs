@@ -1,6 +1,6 @@
 //! What a family's settings make of its frame: resolution, code, alignment, error bits, clocks.
 
-use super::{Align, ErrorPlace, Family, Frame};
+use super::{Align, ErrorPlace, Family, Frame, SettingName};
 use crate::devices::ssi::protocol::code::{Code, CodeError, Coding};
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit};
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
@@ -79,18 +79,18 @@ pub enum SettingsError {
         /// Its name.
         family: String,
         /// What it does not have.
-        field: &'static str,
+        field: SettingName,
     },
     /// Two that say the same in other ways.
     #[error("{0} and {1} exclude one another")]
-    Both(&'static str, &'static str),
+    Both(SettingName, SettingName),
     /// A number out of its limits.
     #[error("{family}: {field} must be from {least} to {most}, not {value}")]
     Limit {
         /// The family's name.
         family: String,
         /// What is limited.
-        field: &'static str,
+        field: SettingName,
         /// Lowest value.
         least: u64,
         /// Highest value.
@@ -149,12 +149,12 @@ impl Settings {
     pub fn resolve(&self, family: &Family) -> Result<Resolved, SettingsError> {
         let range = self.range(family)?;
         let preset = self.preset.unwrap_or(0);
-        limit(family, "preset", (0, range.last()?), preset)?;
+        limit(family, SettingName::Preset, (0, range.last()?), preset)?;
         let code = self.code.unwrap_or_else(|| family.code());
         let bits = Coding::new(code, range.last()?)?.bits();
         let frame = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());
         let Some(frame) = frame else {
-            return Err(SettingsError::None { family: family.name.clone(), field: "frame" });
+            return Err(SettingsError::None { family: family.name.clone(), field: SettingName::Frame });
         };
         let fitting = |align: &Align| lead(*align, &range, bits).is_some_and(|lead| fits(frame, lead, bits));
         let align = self.align.or_else(|| family.align.iter().copied().find(fitting)).unwrap_or(Align::Left);
@@ -166,7 +166,7 @@ impl Settings {
         // Right-aligned to clock 25 *is* right-aligned to 24 and shifted (reference section 6, trap 3).
         let shift_right = self.shift && align != Align::Right25;
         if shift_right && !family.shift {
-            return Err(SettingsError::None { family: family.name.clone(), field: "shifting to the right" });
+            return Err(SettingsError::None { family: family.name.clone(), field: SettingName::ShiftRight });
         }
         let area = frame.area.unwrap_or(bits);
         let place = self.errors.or(frame.place.first().copied()).unwrap_or(ErrorPlace::None);
@@ -222,67 +222,67 @@ impl Settings {
             limit(field, (least.into(), most.into()), value.into()).map(|()| value)
         };
         if let Some(steps) = self.steps {
-            let Some(limits) = family.steps else { return Err(none("number of steps that is not a power of two")) };
+            let Some(limits) = family.steps else { return Err(none(SettingName::AnySteps)) };
             let others = [
-                (self.multiturn.is_some(), "mt"),
-                (self.singleturn.is_some(), "st"),
-                (self.step_nanometres.is_some(), "step"),
+                (self.multiturn.is_some(), SettingName::Mt),
+                (self.singleturn.is_some(), SettingName::St),
+                (self.step_nanometres.is_some(), SettingName::Step),
             ];
             if let Some((_, other)) = others.into_iter().find(|(given, _)| *given) {
-                return Err(SettingsError::Both("steps", other));
+                return Err(SettingsError::Both(SettingName::Steps, other));
             }
             if self.revolutions.is_some() && self.turns.is_some() {
-                return Err(SettingsError::Both("revolutions", "turns"));
+                return Err(SettingsError::Both(SettingName::Revolutions, SettingName::Turns));
             }
             if family.multiturn.is_none() && self.turns.is_some_and(|turns| turns > 1) {
-                return Err(none("turns"));
+                return Err(none(SettingName::Turns));
             }
-            limit("steps", (2, limits.total.into()), steps.into())?;
+            limit(SettingName::Steps, (2, limits.total.into()), steps.into())?;
             return match (self.revolutions, self.turns) {
                 (Some(revolutions), _) => {
-                    let Some((above, below)) = limits.revolutions else { return Err(none("round axis")) };
-                    limit("revolutions above the line", (1, above.into()), revolutions.numerator.into())?;
-                    limit("revolutions below the line", (1, below.into()), revolutions.denominator.into())?;
+                    let Some((above, below)) = limits.revolutions else { return Err(none(SettingName::RoundAxis)) };
+                    limit(SettingName::RevolutionsAbove, (1, above.into()), revolutions.numerator.into())?;
+                    limit(SettingName::RevolutionsBelow, (1, below.into()), revolutions.denominator.into())?;
                     let most = u64::from(limits.per_turn) * u64::from(revolutions.numerator);
                     let most = most / u64::from(revolutions.denominator);
-                    limit("steps over so many revolutions", (2, most), steps.into())?;
+                    limit(SettingName::StepsAround, (2, most), steps.into())?;
                     Ok(Range::RoundAxis { steps, revolutions })
                 }
                 (None, turns) => {
-                    limit("steps per turn", (2, limits.per_turn.into()), steps.into())?;
+                    limit(SettingName::StepsPerTurn, (2, limits.per_turn.into()), steps.into())?;
                     let turns = turns.unwrap_or(1);
-                    limit("steps altogether", (2, limits.total.into()), u64::from(steps) * u64::from(turns))?;
+                    limit(SettingName::StepsAltogether, (2, limits.total.into()), u64::from(steps) * u64::from(turns))?;
                     Ok(Range::Steps { per_turn: steps, turns })
                 }
             };
         }
         if self.turns.is_some() || self.revolutions.is_some() {
-            return Err(none("number of turns without steps"));
+            return Err(none(SettingName::TurnsWithoutSteps));
         }
         if let Some(step) = family.step_nanometres {
             if self.multiturn.is_some() {
-                return Err(none("multiturn"));
+                return Err(none(SettingName::Multiturn));
             }
-            let bits = within("bits", family.singleturn, self.singleturn.unwrap_or(family.singleturn.1))?;
+            let bits = within(SettingName::Bits, family.singleturn, self.singleturn.unwrap_or(family.singleturn.1))?;
             return Ok(Range::Length { bits, step_nanometres: self.step_nanometres.unwrap_or(step) });
         }
         if self.step_nanometres.is_some() {
-            return Err(none("length of a step"));
+            return Err(none(SettingName::StepLength));
         }
         let multiturn = match (self.multiturn, family.multiturn) {
-            (Some(_), None) => return Err(none("multiturn")),
+            (Some(_), None) => return Err(none(SettingName::Multiturn)),
             (None, None) => 0,
-            (asked, Some(limits)) => within("multiturn bits", limits, asked.unwrap_or(limits.1))?,
+            (asked, Some(limits)) => within(SettingName::MultiturnBits, limits, asked.unwrap_or(limits.1))?,
         };
         let (least, delivered, most) = family.singleturn;
         let left = family.together.map_or(most, |together| together.saturating_sub(multiturn)).min(most);
         let asked = self.singleturn.unwrap_or(delivered.min(left));
-        let singleturn = within("singleturn bits", (least, delivered, left), asked)?;
+        let singleturn = within(SettingName::SingleturnBits, (least, delivered, left), asked)?;
         Ok(Range::Bits { multiturn, singleturn })
     }
 }
 
-fn limit(family: &Family, field: &'static str, (least, most): (u64, u64), value: u64) -> Result<(), SettingsError> {
+fn limit(family: &Family, field: SettingName, (least, most): (u64, u64), value: u64) -> Result<(), SettingsError> {
     if (least..=most).contains(&value) {
         Ok(())
     } else {

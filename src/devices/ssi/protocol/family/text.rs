@@ -8,6 +8,7 @@ use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Coded, Meaning};
 use crate::devices::ssi::protocol::range::Direction;
 use crate::devices::ssi::protocol::spec::{Setting, SpecError};
+use crate::expected::Expected;
 
 const NAMES: &[&str] = &[
     "code",
@@ -83,7 +84,7 @@ impl Settings {
             "err" => self.errors = Some(value.parse().map_err(wrong)?),
             "step" => self.step_nanometres = Some(setting.number()?),
             "direction" => self.direction = Some(value.parse().map_err(wrong)?),
-            "preset" => self.preset = Some(value.parse().map_err(|_| wrong("a whole number"))?),
+            "preset" => self.preset = Some(value.parse().map_err(|_| wrong(Expected::Whole))?),
             _ => return Err(setting.unknown()),
         }
         Ok(())
@@ -143,7 +144,7 @@ impl Words for ErrorPlace {
 
 /// Text for a value and back; the error says what may stand there.
 macro_rules! in_words {
-    ($($type:ty: $expected:literal,)*) => {$(
+    ($($type:ty: $expected:expr,)*) => {$(
         impl fmt::Display for $type {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str(self.word())
@@ -151,22 +152,22 @@ macro_rules! in_words {
         }
 
         impl FromStr for $type {
-            type Err = &'static str;
+            type Err = Expected;
 
-            fn from_str(word: &str) -> Result<Self, &'static str> {
-                Self::named(word).ok_or($expected)
+            fn from_str(word: &str) -> Result<Self, Expected> {
+                Self::named(word).ok_or(Expected::words(&$expected))
             }
         }
     )*};
 }
 
 in_words! {
-    Code: "binary, gray, gray-excess or bcd",
-    Coded: "position, padded or errors",
-    Direction: "cw or ccw",
-    Meaning: "invalid or warning",
-    Align: "left, right24, right25, tree12_13 or tree13_12",
-    ErrorPlace: "none, fix or following",
+    Code: ["binary", "gray", "gray-excess", "bcd"],
+    Coded: ["position", "padded", "errors"],
+    Direction: ["cw", "ccw"],
+    Meaning: ["invalid", "warning"],
+    Align: ["left", "right24", "right25", "tree12_13", "tree13_12"],
+    ErrorPlace: ["none", "fix", "following"],
 }
 
 #[cfg(test)]

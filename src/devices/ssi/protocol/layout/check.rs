@@ -46,15 +46,15 @@ pub enum LayoutError {
         /// Which clock.
         clock: u8,
         /// What is there.
-        first: String,
+        first: Taker,
         /// What is to be there too.
-        second: String,
+        second: Taker,
     },
     /// A bit behind the last clock.
     #[error("{name} is on clock {clock}, which {clocks} clocks do not reach")]
     Behind {
         /// Which bit.
-        name: String,
+        name: Taker,
         /// Where it is.
         clock: u8,
         /// Clocks of the frame.
@@ -63,8 +63,8 @@ pub enum LayoutError {
     /// More error bits or patterns than there is room for.
     #[error("at most {limit} {what}, not {count}")]
     Many {
-        /// `error bits` or `patterns`.
-        what: &'static str,
+        /// Of what.
+        what: Several,
         /// Most of them.
         limit: usize,
         /// How many there are.
@@ -77,13 +77,13 @@ pub enum LayoutError {
     #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
     Inside {
         /// Which bit.
-        name: String,
+        name: Taker,
         /// Where it is.
         clock: u8,
         /// Clocks of the area.
         area: u8,
-        /// `coded` or `shifted`.
-        done: &'static str,
+        /// What is done with them.
+        done: AsAWhole,
     },
     /// The lowest bit is lost, and the code does not bear it.
     #[error("shifting right pushes the lowest bit out, and without it a word of this code is not a position")]
@@ -106,22 +106,46 @@ pub enum LayoutError {
     },
 }
 
-impl LayoutError {
-    /// Arguments of its words that are phrases themselves.
-    pub fn phrases(&self) -> Vec<(&'static str, String)> {
-        match self {
-            LayoutError::Overlap { first, second, .. } => vec![("first", first.clone()), ("second", second.clone())],
-            LayoutError::Behind { name, .. } => vec![("name", name.clone())],
-            LayoutError::Many { what, .. } => vec![("what", (*what).to_owned())],
-            _ => Vec::new(),
-        }
-    }
+/// What asks for a clock.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Taker {
+    /// The position.
+    #[error("the position")]
+    Position,
+    /// The parity bit.
+    #[error("the parity bit")]
+    Parity,
+    /// An error bit, by its name.
+    #[error("{0}")]
+    Error(String),
+}
+
+/// What a frame has several of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Several {
+    /// Error bits.
+    #[error("error bits")]
+    ErrorBits,
+    /// Patterns.
+    #[error("patterns")]
+    Patterns,
+}
+
+/// What is done with a number of clocks together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AsAWhole {
+    /// They are one code word.
+    #[error("coded")]
+    Coded,
+    /// They are shifted to the right.
+    #[error("shifted")]
+    Shifted,
 }
 
 /// The clocks of a word and who has taken them.
 struct Clocks {
     clocks: u8,
-    taken: Vec<(u8, String)>,
+    taken: Vec<(u8, Taker)>,
 }
 
 pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
@@ -155,17 +179,22 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     let mut taken = Clocks { clocks: word, taken: Vec::new() };
     let position = placed(&parts, ones(coding.bits()));
     for clock in (1..=word).filter(|clock| position >> (word - clock) & 1 == 1) {
-        taken.take(clock, "the position")?;
+        taken.take(clock, Taker::Position)?;
     }
     for bit in &descriptor.errors {
-        taken.take(bit.clock, &bit.name)?;
+        taken.take(bit.clock, Taker::Error(bit.name.clone()))?;
         let done = match descriptor.coded {
-            Coded::Area => Some("coded"),
-            _ if descriptor.shift_right => Some("shifted"),
+            Coded::Area => Some(AsAWhole::Coded),
+            _ if descriptor.shift_right => Some(AsAWhole::Shifted),
             _ => None,
         };
         if let Some(done) = done.filter(|_| bit.clock <= descriptor.area) {
-            return Err(LayoutError::Inside { name: bit.name.clone(), clock: bit.clock, area: descriptor.area, done });
+            return Err(LayoutError::Inside {
+                name: Taker::Error(bit.name.clone()),
+                clock: bit.clock,
+                area: descriptor.area,
+                done,
+            });
         }
     }
     let coded_clocks = match descriptor.coded {
@@ -174,15 +203,14 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         Coded::AreaAndErrors => descriptor.errors.iter().map(|bit| bit.clock).max().unwrap_or(0).max(descriptor.area),
     };
     if let Some(Parity { clock, .. }) = descriptor.parity {
-        let name = "the parity bit";
-        taken.take(clock, name)?;
+        taken.take(clock, Taker::Parity)?;
         // It is made of what is sent, when all that is done.
-        let inside = |done, area| Err(LayoutError::Inside { name: name.to_owned(), clock, area, done });
+        let inside = |done, area| Err(LayoutError::Inside { name: Taker::Parity, clock, area, done });
         if clock <= coded_clocks {
-            return inside("coded", coded_clocks);
+            return inside(AsAWhole::Coded, coded_clocks);
         }
         if descriptor.shift_right && clock <= descriptor.area {
-            return inside("shifted", descriptor.area);
+            return inside(AsAWhole::Shifted, descriptor.area);
         }
     }
     let in_word = |clock: u8| 1_u64 << (word - clock);
@@ -193,8 +221,8 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         (bit, ones(word) & !(bit | (bit - 1)))
     });
     let used = errors.iter().fold(position | parity.0, |used, bit| used | bit);
-    many("error bits", 8, descriptor.errors.len())?;
-    many("patterns", 4, descriptor.patterns.len())?;
+    many(Several::ErrorBits, 8, descriptor.errors.len())?;
+    many(Several::Patterns, 4, descriptor.patterns.len())?;
     let patterns = descriptor.patterns.iter().map(|pattern| match pattern.word {
         Word::Ones => Ok(ones(clocks)),
         Word::Bits(word) if word > ones(clocks) => Err(LayoutError::Pattern { word, clocks }),
@@ -251,7 +279,7 @@ fn placed(parts: &[Part; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }
 
-fn many(what: &'static str, limit: usize, count: usize) -> Result<(), LayoutError> {
+fn many(what: Several, limit: usize, count: usize) -> Result<(), LayoutError> {
     if count > limit { Err(LayoutError::Many { what, limit, count }) } else { Ok(()) }
 }
 
@@ -265,14 +293,14 @@ fn invalid(descriptor: &Descriptor) -> Flags {
 }
 
 impl Clocks {
-    fn take(&mut self, clock: u8, name: &str) -> Result<(), LayoutError> {
+    fn take(&mut self, clock: u8, name: Taker) -> Result<(), LayoutError> {
         if clock == 0 || clock > self.clocks {
-            return Err(LayoutError::Behind { name: name.to_owned(), clock, clocks: self.clocks });
+            return Err(LayoutError::Behind { name, clock, clocks: self.clocks });
         }
         if let Some((_, first)) = self.taken.iter().find(|(at, _)| *at == clock) {
-            return Err(LayoutError::Overlap { clock, first: first.clone(), second: name.to_owned() });
+            return Err(LayoutError::Overlap { clock, first: first.clone(), second: name });
         }
-        self.taken.push((clock, name.to_owned()));
+        self.taken.push((clock, name));
         Ok(())
     }
 }

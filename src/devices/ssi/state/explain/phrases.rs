@@ -4,12 +4,16 @@ use std::time::Duration;
 
 use crate::app::Language::German;
 use crate::app::explain::{document, in_both_languages, url};
+use crate::app::{DeviceType, Kinds};
 use crate::devices::ssi::procedures::Station;
 use crate::devices::ssi::profile::SsiProfile;
-use crate::devices::ssi::protocol::LayoutError;
+use crate::devices::ssi::protocol::{LayoutError, Several, Taker};
+use crate::devices::ssi::state::Encoder;
 use crate::devices::ssi::state::explain::layout;
 use crate::link::Query;
-use crate::profile::{Document, Profile};
+use crate::profile::{Document, Formats, Profile};
+
+const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
 fn a_wrong_link_is_told_in_both_languages() {
@@ -60,7 +64,7 @@ fn a_wrong_profile_is_told_in_both_languages() {
     ];
     for (from, to) in cases {
         let error = Document::parse(&good.replacen(from, to, 1), SsiProfile::FORMATS).unwrap_err();
-        in_both_languages(&document(&error), &error);
+        in_both_languages(&document(&error, KINDS), &error);
     }
 }
 
@@ -68,14 +72,14 @@ fn a_wrong_profile_is_told_in_both_languages() {
 fn phrases_within_a_phrase_are_told_in_german_too() {
     let cases = [
         (
-            LayoutError::Overlap { clock: 14, first: "the position".to_owned(), second: "ERROR".to_owned() },
+            LayoutError::Overlap { clock: 14, first: Taker::Position, second: Taker::Error("ERROR".to_owned()) },
             "Takt 14 wird von der Position und von ERROR beansprucht",
         ),
         (
-            LayoutError::Behind { name: "the parity bit".to_owned(), clock: 30, clocks: 15 },
+            LayoutError::Behind { name: Taker::Parity, clock: 30, clocks: 15 },
             "dem Paritätsbit steht auf Takt 30, den 15 Takte nicht erreichen",
         ),
-        (LayoutError::Many { what: "patterns", limit: 32, count: 33 }, "höchstens 32 Muster, nicht 33"),
+        (LayoutError::Many { what: Several::Patterns, limit: 32, count: 33 }, "höchstens 32 Muster, nicht 33"),
     ];
     for (error, german) in cases {
         let words = layout(&error).words(German);

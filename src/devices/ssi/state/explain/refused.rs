@@ -1,28 +1,38 @@
 //! Why a layout cannot be: what the frame, its family or a format string says, in both languages.
 
 use crate::app::Text;
-use crate::app::explain::{phrase, phrase_with, plain};
-use crate::devices::ssi::protocol::{FormatError, FrameTextError, LayoutError, SettingsError};
+use crate::app::explain::plain;
+use crate::devices::ssi::profile::EntryError;
+use crate::devices::ssi::protocol::{
+    AsAWhole, CodeError, FormatError, FrameTextError, LayoutError, NoFormat, RangeError, SettingName, SettingsError,
+    Several, Taker,
+};
 use crate::devices::ssi::state::TEXTS;
+use crate::profile::Cause;
 
 /// A frame that cannot work.
 pub fn layout(error: &LayoutError) -> Text {
-    refused(phrase_with(&error.to_string(), &error.phrases()))
+    refused(layout_reason(error))
 }
 
 /// Settings that a family does not have.
 pub fn settings(error: &SettingsError) -> Text {
-    let why = match error {
+    refused(settings_reason(error))
+}
+
+/// What a family does not have: the part of a sentence that says it.
+pub(super) fn settings_reason(error: &SettingsError) -> Text {
+    match error {
         SettingsError::None { family, field } => {
-            TEXTS.text("ssi.lacks").with("family", family).with_text("field", field_name(field))
+            TEXTS.text("ssi.lacks").with("family", family).with_text("field", field_name(*field))
         }
         SettingsError::Both(one, other) => {
-            TEXTS.text("ssi.both").with_text("one", field_name(one)).with_text("other", field_name(other))
+            TEXTS.text("ssi.both").with_text("one", field_name(*one)).with_text("other", field_name(*other))
         }
         SettingsError::Limit { family, field, least, most, value } => TEXTS
             .text("ssi.limit")
             .with("family", family)
-            .with_text("field", field_name(field))
+            .with_text("field", field_name(*field))
             .with("least", least)
             .with("most", most)
             .with("value", value),
@@ -38,19 +48,32 @@ pub fn settings(error: &SettingsError) -> Text {
         SettingsError::Clocks { family, most, clocks } => {
             TEXTS.text("ssi.clocks_refused").with("family", family).with("most", most).with("clocks", clocks)
         }
-        SettingsError::Layout(error) => return layout(error),
-        other => phrase(&other.to_string()),
-    };
-    refused(why)
+        SettingsError::Layout(error) => layout_reason(error),
+        SettingsError::Range(error) => range_reason(error),
+        SettingsError::Code(error) => code_reason(error),
+    }
 }
 
 /// A format string of LinuxCNC that is no frame, or a frame that has none.
 pub fn format(error: &FormatError) -> Text {
-    match error {
-        FormatError::Cannot(what) => TEXTS.text("ssi.lc_cannot").with_text("what", phrase(what)),
-        FormatError::Layout(error) => layout(error),
-        other => refused(phrase(&other.to_string())),
-    }
+    let why = match error {
+        FormatError::Cannot(what) => {
+            let what = match what {
+                NoFormat::GrayOver => TEXTS.text("ssi_lc.gray_over"),
+                NoFormat::GrayExcess | NoFormat::Bcd => plain(what),
+                NoFormat::Between => TEXTS.text("ssi_lc.between"),
+                NoFormat::Inverted => TEXTS.text("ssi_lc.inverted"),
+            };
+            return TEXTS.text("ssi.lc_cannot").with_text("what", what);
+        }
+        FormatError::Form(text) => TEXTS.text("ssi_lc.form").with("text", text),
+        FormatError::Kind(kind) => TEXTS.text("ssi_lc.kind").with("kind", kind),
+        FormatError::Two(one, other) => TEXTS.text("ssi_lc.two").with("one", one).with("other", other),
+        FormatError::None => TEXTS.text("ssi_lc.none"),
+        FormatError::Long => TEXTS.text("ssi_lc.long"),
+        FormatError::Layout(error) => layout_reason(error),
+    };
+    refused(why)
 }
 
 /// Why a text is no frame.
@@ -68,28 +91,113 @@ fn refused(why: Text) -> Text {
 }
 
 /// What a family's description calls a setting.
-fn field_name(field: &str) -> Text {
-    let id = match field {
-        "mt" | "multiturn" => "ssi_field.multiturn",
-        "multiturn bits" => "ssi_field.multiturn_bits",
-        "st" => "ssi_field.singleturn",
-        "singleturn bits" => "ssi_field.singleturn_bits",
-        "bits" => "ssi_field.bits",
-        "steps" => "ssi_field.steps",
-        "steps per turn" => "ssi_field.steps_per_turn",
-        "steps altogether" => "ssi_field.steps_altogether",
-        "steps over so many revolutions" => "ssi_field.steps_around",
-        "turns" | "number of turns without steps" => "ssi_field.turns",
-        "revolutions" => "ssi_field.revolutions",
-        "revolutions above the line" => "ssi_field.revolutions_above",
-        "revolutions below the line" => "ssi_field.revolutions_below",
-        "round axis" => "ssi_field.round_axis",
-        "number of steps that is not a power of two" => "ssi_field.any_steps",
-        "shifting to the right" => "ssi_field.shift",
-        "step" | "length of a step" => "ssi_field.step",
-        "preset" => "ssi_field.preset",
-        "frame" => "ssi_field.frame",
-        other => return plain(other),
-    };
-    TEXTS.text(id)
+fn field_name(field: SettingName) -> Text {
+    TEXTS.text(match field {
+        SettingName::Frame => "ssi_field.frame",
+        SettingName::ShiftRight => "ssi_field.shift",
+        SettingName::AnySteps => "ssi_field.any_steps",
+        SettingName::Mt => "ssi_field.multiturn",
+        SettingName::Multiturn => "ssi_field.multiturn",
+        SettingName::MultiturnBits => "ssi_field.multiturn_bits",
+        SettingName::St => "ssi_field.singleturn",
+        SettingName::SingleturnBits => "ssi_field.singleturn_bits",
+        SettingName::Bits => "ssi_field.bits",
+        SettingName::Steps => "ssi_field.steps",
+        SettingName::StepsPerTurn => "ssi_field.steps_per_turn",
+        SettingName::StepsAltogether => "ssi_field.steps_altogether",
+        SettingName::StepsAround => "ssi_field.steps_around",
+        SettingName::Turns => "ssi_field.turns",
+        SettingName::TurnsWithoutSteps => "ssi_field.turns",
+        SettingName::Revolutions => "ssi_field.revolutions",
+        SettingName::RevolutionsAbove => "ssi_field.revolutions_above",
+        SettingName::RevolutionsBelow => "ssi_field.revolutions_below",
+        SettingName::RoundAxis => "ssi_field.round_axis",
+        SettingName::Step => "ssi_field.step",
+        SettingName::StepLength => "ssi_field.step",
+        SettingName::Preset => "ssi_field.preset",
+    })
+}
+
+/// Why a frame cannot work: the part of a sentence that says it.
+pub(super) fn layout_reason(error: &LayoutError) -> Text {
+    match error {
+        LayoutError::Clocks(clocks) => TEXTS.text("ssi_reason.clocks").with("clocks", clocks),
+        LayoutError::Range(error) => range_reason(error),
+        LayoutError::Code(error) => code_reason(error),
+        LayoutError::Area { area, clocks } => TEXTS.text("ssi_reason.area").with("area", area).with("clocks", clocks),
+        LayoutError::Wide { bits, lead, needed, area } => TEXTS
+            .text("ssi_reason.wide")
+            .with("bits", bits)
+            .with("lead", lead)
+            .with("needed", needed)
+            .with("area", area),
+        LayoutError::Between => TEXTS.text("ssi_reason.between"),
+        LayoutError::Overlap { clock, first, second } => TEXTS
+            .text("ssi_reason.overlap")
+            .with("clock", clock)
+            .with_text("first", taker(first))
+            .with_text("second", taker(second)),
+        LayoutError::Behind { name, clock, clocks } => {
+            TEXTS.text("ssi_reason.behind").with_text("name", taker(name)).with("clock", clock).with("clocks", clocks)
+        }
+        LayoutError::Many { what, limit, count } => {
+            let what = TEXTS.text(match what {
+                Several::ErrorBits => "ssi_reason.error_bits",
+                Several::Patterns => "ssi_reason.patterns",
+            });
+            TEXTS.text("ssi_reason.many").with("limit", limit).with_text("what", what).with("count", count)
+        }
+        LayoutError::NotGray => TEXTS.text("ssi_reason.not_gray"),
+        LayoutError::Inside { name, clock, area, done } => {
+            let id = match done {
+                AsAWhole::Coded => "ssi_reason.inside_coded",
+                AsAWhole::Shifted => "ssi_reason.inside_shifted",
+            };
+            TEXTS.text(id).with_text("name", taker(name)).with("clock", clock).with("area", area)
+        }
+        LayoutError::Lost => TEXTS.text("ssi_reason.lost"),
+        LayoutError::Repeat { needed, clocks } => {
+            TEXTS.text("ssi_reason.repeat").with("needed", needed).with("clocks", clocks)
+        }
+        LayoutError::Pattern { word, clocks } => {
+            TEXTS.text("ssi_reason.pattern_bits").with("word", format!("{word:X}")).with("clocks", clocks)
+        }
+    }
+}
+
+fn range_reason(error: &RangeError) -> Text {
+    match error {
+        RangeError::Wide { field, bits, limit } => {
+            TEXTS.text("ssi_reason.field_bits").with("field", field).with("limit", limit).with("bits", bits)
+        }
+        RangeError::Empty => TEXTS.text("ssi_reason.single"),
+        RangeError::Fraction(above, below) => {
+            TEXTS.text("ssi_reason.revolutions").with("above", above).with("below", below)
+        }
+    }
+}
+
+fn code_reason(error: &CodeError) -> Text {
+    match error {
+        CodeError::Odd(steps) => TEXTS.text("ssi_reason.odd").with("steps", steps),
+        CodeError::Digits(digits) => TEXTS.text("ssi_reason.digits").with("digits", digits),
+    }
+}
+
+fn taker(taker: &Taker) -> Text {
+    match taker {
+        Taker::Position => TEXTS.text("ssi_reason.position"),
+        Taker::Parity => TEXTS.text("ssi_reason.parity"),
+        Taker::Error(name) => plain(name),
+    }
+}
+
+/// Why a profile is refused.
+pub fn entry(cause: &Cause) -> Option<Text> {
+    Some(match cause.get()? {
+        EntryError::Layout(error) => layout_reason(error),
+        EntryError::Preset { preset, last } => TEXTS.text("ssi_entry.preset").with("preset", preset).with("last", last),
+        EntryError::NotWith(other) => TEXTS.text("ssi_entry.not_with").with("other", other),
+        EntryError::NoPositions => TEXTS.text("ssi_entry.no_positions"),
+    })
 }

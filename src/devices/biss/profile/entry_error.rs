@@ -1,0 +1,41 @@
+//! Why a BiSS profile is refused.
+
+/// Why an entry of a profile cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EntryError {
+    /// A bank that stands in the list already.
+    #[error("bank 0x{0:02X} stands twice")]
+    Twice(u8),
+    /// Banks that end before they begin.
+    #[error("0x{first:02X} comes after 0x{last:02X}")]
+    Order {
+        /// The first.
+        first: u8,
+        /// The last.
+        last: u8,
+    },
+    /// A bank that is none of the area's.
+    #[error("0x{bank:02X} is not within 0x{first:02X} to 0x{last:02X}")]
+    Outside {
+        /// Which.
+        bank: u8,
+        /// The area's first.
+        first: u8,
+        /// The area's last.
+        last: u8,
+    },
+    /// Another number of bytes than there has to be.
+    #[error("{got} bytes where {expected} belong")]
+    Length {
+        /// How many there are.
+        got: usize,
+        /// How many there have to be.
+        expected: usize,
+    },
+    /// No release of a firmware.
+    #[error("{0:?} is not of the form 1.6.0")]
+    Release(String),
+    /// What is marked is nothing.
+    #[error("{0:?} is neither calibration nor of the form 0x24:0x10+3")]
+    Marked(String),
+}

@@ -1,0 +1,41 @@
+//! Why a HIPERDRIVE profile is refused.
+
+use super::item::{Item, ItemError};
+use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange};
+
+/// Why an entry of a profile cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EntryError {
+    /// A drive that stands in the list already.
+    #[error("drive {} stands twice", .0.get())]
+    DriveTwice(DriveNumber),
+    /// A parameter that has a value already.
+    #[error("{0} stands twice")]
+    Twice(Item),
+    /// What is marked is no parameter.
+    #[error(transparent)]
+    Marked(#[from] ItemError),
+    /// What is marked is no setting.
+    #[error("{0} is not kept, and belongs to no mounting")]
+    NoMounting(Item),
+    /// A parameter that is no setting.
+    #[error("{name} is not kept by the device, and no part of a profile", name = .0.name())]
+    NotKept(Item),
+    /// The device has no such parameter.
+    #[error("there is no parameter {0}")]
+    NoParameter(String),
+    /// Drives have no such parameter.
+    #[error(
+        "there is no parameter {number} of a drive; those of drive {drive} stand here by the numbers of drive 1, 100 to 199",
+        drive = .drive.get()
+    )]
+    NoParameterOfDrive {
+        /// As it is written.
+        number: String,
+        /// The drive among whose parameters it stands.
+        drive: DriveNumber,
+    },
+    /// A number that the parameter cannot be.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+}

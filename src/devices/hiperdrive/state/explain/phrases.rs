@@ -1,0 +1,64 @@
+//! What the lower layers of the device say, in both languages.
+
+use std::time::Duration;
+
+use crate::app::Language::German;
+use crate::app::explain::{document, in_both_languages, setting, url};
+use crate::app::{DeviceType, Kinds};
+use crate::devices::hiperdrive::procedures::Station;
+use crate::devices::hiperdrive::profile::HiperdriveProfile;
+use crate::devices::hiperdrive::sim::Config;
+use crate::devices::hiperdrive::state::Unit;
+use crate::link::Query;
+use crate::profile::{Document, Formats, Profile};
+
+const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Unit::KIND], &[]);
+
+#[test]
+fn a_wrong_link_is_told_in_both_languages() {
+    for text in ["rpi=1", "timeout=1", "order=middle", "udp=0"] {
+        let query: Query = text.parse().unwrap();
+        let error = Station::from_query(&query, None, Duration::ZERO).unwrap_err();
+        in_both_languages(&url(&error), &error);
+    }
+}
+
+#[test]
+fn a_wrong_setting_of_a_virtual_drive_is_told_in_both_languages() {
+    for text in ["sed=1", "s3=10", "switch=100", "hub=2", "variant=x", "drives=1,1", "speed=1", "load=x", "name=ä"] {
+        let query: Query = text.parse().unwrap();
+        let error = Config::from_pairs(query.pairs()).unwrap_err();
+        in_both_languages(&setting(&error), &error);
+    }
+}
+
+#[test]
+fn a_wrong_profile_is_told_in_both_languages() {
+    let good = r#"(schema: 1, device: "hiperdrive", identity: (category: "HIPERDRIVE HUB-4"),
+        drives: [(number: 1, parameters: {158: 5}), (number: 2)], mounting: [(item: "198")])"#;
+    assert!(Document::parse(good, HiperdriveProfile::FORMATS).is_ok());
+    let cases = [
+        ("HUB-4", "HUB-5"),
+        ("number: 2", "number: 9"),
+        ("number: 2", "number: 1"),
+        ("{158: 5}", "[158]"),
+        ("{158: 5}", "{158: \"x\"}"),
+        ("\"198\"", "\"drive\""),
+        ("\"198\"", "\"9\""),
+        ("\"198\"", "\"198 drive 9\""),
+        ("\"198\"", "\"100\""),
+    ];
+    for (from, to) in cases {
+        let error = Document::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
+        in_both_languages(&document(&error, KINDS), &error);
+    }
+    // The window calls a parameter by its own name.
+    for (from, to, german) in [
+        ("drives: [", "parameters: {9: 5}, drives: [", "vom Gerät nicht gespeichert"),
+        ("{158: 5}", "{186: 300}", "300"),
+    ] {
+        let error = Document::parse(&good.replacen(from, to, 1), HiperdriveProfile::FORMATS).unwrap_err();
+        let words = document(&error, KINDS).words(German);
+        assert!(words.contains(german) && !words.contains(" not ") && !words.contains(" must "), "{words}");
+    }
+}

@@ -1,0 +1,29 @@
+//! Why a HIPERFACE profile is refused.
+
+/// Why an entry of a profile cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EntryError {
+    /// A data field that stands in the list already.
+    #[error("field {0} stands twice")]
+    Twice(u8),
+    /// A status byte without a field.
+    #[error("{0:02X}h is not the status of an existing field")]
+    Status(u8),
+    /// Bytes of a field that nobody could read.
+    #[error("a locked field has none")]
+    Locked,
+    /// No bytes of a field that could be read.
+    #[error("missing; a field without them is locked: true")]
+    NotLocked,
+    /// Another number of bytes than the field has.
+    #[error("{got} bytes where the status says {expected}")]
+    Size {
+        /// How many there are.
+        got: usize,
+        /// How many the field has.
+        expected: usize,
+    },
+    /// What is marked is no part of a field.
+    #[error("{0:?} is not of the form field:N@ADDR+COUNT")]
+    Marked(String),
+}

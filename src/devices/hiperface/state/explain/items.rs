@@ -1,0 +1,62 @@
+//! What things in an encoder are called, and why an entry of a profile is refused.
+
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::devices::hiperface::procedures::ReadBack;
+use crate::devices::hiperface::profile::{EntryError, FieldRange, Item, PlanItem};
+use crate::devices::hiperface::state::TEXTS;
+use crate::profile::Cause;
+
+/// Something that can be read.
+pub fn item(item: &Item) -> Text {
+    match item {
+        Item::Field(range) => field_range(range),
+        Item::Status(field) => TEXTS.text("hf_item.status").with("field", field),
+        Item::Analogue(channel) => TEXTS.text("hf_item.analogue").with("channel", format!("0x{channel:02X}")),
+        Item::Counter => TEXTS.text("hf_item.counter"),
+        Item::Address => TEXTS.text("hf_item.address"),
+        Item::Settings => TEXTS.text("hf_item.settings"),
+    }
+}
+
+/// A data field or a part of it.
+pub fn field_range(range: &FieldRange) -> Text {
+    let id = match range {
+        FieldRange { count: Some(_), .. } => "hf_item.range",
+        FieldRange { start: 0, count: None, .. } => "hf_item.field",
+        FieldRange { count: None, .. } => "hf_item.rest",
+    };
+    let text = TEXTS.text(id).with("field", range.field).with("first", range.start);
+    text.with("count", range.count.unwrap_or_default())
+}
+
+/// What a write confirms, changes and reads back.
+pub fn plan_item(own: &PlanItem) -> Text {
+    match own {
+        PlanItem::Item(own) => item(own),
+        PlanItem::Encoder => TEXTS.text("hf_item.encoder"),
+        PlanItem::FieldCount => TEXTS.text("hf_item.field_count"),
+        PlanItem::Position => TEXTS.text("hf_item.position"),
+        PlanItem::Code(number) => TEXTS.text("hf_item.code").with("number", number),
+    }
+}
+
+/// What was read back after a write.
+pub fn read_back(read: &ReadBack) -> Text {
+    match read {
+        ReadBack::Value(value) => plain(value),
+        ReadBack::AnotherStatus => TEXTS.text("hf_item.another_status"),
+    }
+}
+
+/// Why a profile is refused.
+pub fn refused(cause: &Cause) -> Option<Text> {
+    Some(match cause.get()? {
+        EntryError::Twice(field) => TEXTS.text("hf_entry.twice").with("field", field),
+        EntryError::Status(status) => TEXTS.text("hf_entry.status").with("status", format!("{status:02X}h")),
+        EntryError::Locked => TEXTS.text("hf_entry.locked"),
+        EntryError::NotLocked => TEXTS.text("hf_entry.not_locked"),
+        EntryError::Size { got, expected } => TEXTS.text("hf_entry.size").with("got", got).with("expected", expected),
+        EntryError::Marked(text) => TEXTS.text("hf_entry.marked").with("text", format!("{text:?}")),
+    })
+}

@@ -1,0 +1,21 @@
+//! Why an INTERBUS profile is refused.
+
+use super::item::{Item, ItemError};
+use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
+
+/// Why an entry of a profile cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EntryError {
+    /// A program that stands in the list already.
+    #[error("program {} stands twice", .0.get())]
+    ProgramTwice(ProgramNumber),
+    /// A cam that stands in its program already.
+    #[error("cam {} stands twice", .0.get())]
+    CamTwice(CamNumber),
+    /// No program, no cam, or what is marked is nothing.
+    #[error(transparent)]
+    Item(#[from] ItemError),
+    /// What is marked is no setting.
+    #[error("{0} is measured, and belongs to no mounting")]
+    Measured(Item),
+}

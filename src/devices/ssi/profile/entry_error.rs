@@ -1,0 +1,25 @@
+//! Why an SSI profile is refused.
+
+use crate::devices::ssi::protocol::LayoutError;
+
+/// Why an entry of a profile cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EntryError {
+    /// A frame that cannot work.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
+    /// A position that the frame does not have.
+    #[error("{preset} is not within 0 to {last}")]
+    Preset {
+        /// As it is written.
+        preset: u64,
+        /// The last position.
+        last: u64,
+    },
+    /// Entries that exclude one another.
+    #[error("not together with {0}")]
+    NotWith(&'static str),
+    /// Nothing says which positions there are.
+    #[error("singleturn, steps or bits has to say which positions there are")]
+    NoPositions,
+}
