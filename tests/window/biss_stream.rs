@@ -87,7 +87,7 @@ fn the_window_shows_a_stream_without_loss() {
     screen.act(action);
     screen.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
     let began = Instant::now();
-    for page in crate::tabs::program().tabs.page_words(crate::tabs::BISS) {
+    for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::BISS) {
         screen.click(page);
     }
     screen.until("three seconds pass", |_| began.elapsed() > Duration::from_secs(3));

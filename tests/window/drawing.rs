@@ -110,7 +110,7 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
         screen.act(Action::ShowTab(tab));
         for focused in [true, false] {
             screen.harness.input_mut().focused = focused;
-            for page in crate::tabs::program().tabs.page_words(tab) {
+            for page in encoder_studio::kinds::program().tabs.page_words(tab) {
                 if screen.has_button(page) {
                     screen.click(page);
                 }
@@ -141,7 +141,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
         }
         for focused in [true, false] {
             screen.harness.input_mut().focused = focused;
-            for page in crate::tabs::program().tabs.page_words(tab) {
+            for page in encoder_studio::kinds::program().tabs.page_words(tab) {
                 screen.click(page);
                 settle(&mut screen);
                 assert_eq!(pictures(&mut screen), 0, "{tab:?}, {page}, {focused}");

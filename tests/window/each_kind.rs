@@ -4,7 +4,7 @@
 use crate::tabs::Tabs as _;
 use std::path::Path;
 
-use crate::tabs::program;
+use crate::tabs::with_novo;
 use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::connect::{Action as Connect, Connect as Dialog};
 use encoder_studio::app::review::{Permit, Stage};
@@ -56,7 +56,7 @@ const CASES: [Case; 5] = [
 impl Case {
     /// Its encoder is connected and read.
     fn desk(&self) -> Desk {
-        let mut desk = Desk::fresh("");
+        let mut desk = Desk::with_novo();
         self.connect(&mut desk);
         desk
     }
@@ -191,7 +191,7 @@ impl Case {
 }
 
 fn compared(one: &Body, other: &Body) -> Comparison {
-    program().commands.device(one.kind()).unwrap().compare(one, other).unwrap()
+    with_novo().commands.device(one.kind()).unwrap().compare(one, other).unwrap()
 }
 
 fn shown(studio: &Studio) -> Option<&AnyDevice> {
@@ -535,7 +535,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
                     let texts = told(&desk.studio, "session.saved_as_read").unwrap();
                     assert!(texts.iter().any(|text| text.id() == "session.saved_without"), "{texts:?}");
                     let read = |path: &Path| {
-                        Document::parse(&std::fs::read_to_string(path).unwrap(), program().studio.formats).unwrap()
+                        Document::parse(&std::fs::read_to_string(path).unwrap(), with_novo().studio.formats).unwrap()
                     };
                     let lost = read(&path);
                     assert!(lost.note.is_some_and(|note| note.contains("did not answer")));

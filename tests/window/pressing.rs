@@ -66,7 +66,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
             screen.act(Action::device(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
-        for page in crate::tabs::program().tabs.page_words(tab) {
+        for page in encoder_studio::kinds::program().tabs.page_words(tab) {
             screen.click(page);
             let before = widgets(&screen);
             screen.act(Action::NoThread("told".to_owned()));

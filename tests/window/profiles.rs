@@ -4,13 +4,13 @@ use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::fs;
 
-use crate::tabs::program;
 use encoder_studio::app::diverged::Resolve;
 use encoder_studio::app::review::{Permit, Sheet, Stage};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, PendingEdits, Severity, Studio};
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
+use encoder_studio::kinds::program;
 use encoder_studio::profile::Document;
 use encoder_studio::store::read_text;
 

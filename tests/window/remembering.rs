@@ -63,7 +63,7 @@ fn broken_settings_are_told_and_left_until_something_changes() {
         let words = desk.studio.services.log.standing().unwrap().texts[0].words(Language::English);
         assert!(words.contains(&path.display().to_string()) && words.contains(&aside.display().to_string()), "{words}");
         let language = if broken.starts_with(b"(") { Language::German } else { Language::English };
-        let mut expected = Settings::of(crate::tabs::program().studio);
+        let mut expected = Settings::of(encoder_studio::kinds::program().studio);
         expected.language = language;
         assert_eq!(desk.studio.settings, expected);
         assert_eq!(fs::read(&path).unwrap(), broken);
@@ -92,7 +92,7 @@ fn settings_that_cannot_be_read_are_left() {
 fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
-    let mut settings = Settings::of(crate::tabs::program().studio);
+    let mut settings = Settings::of(encoder_studio::kinds::program().studio);
     (settings.theme, settings.size) = (Theme::Light, Some((1500, 900)));
     settings.use_link(crate::tabs::HIPERFACE, "tcp:host:1");
     fs::create_dir_all(path.parent().unwrap()).unwrap();

@@ -4,13 +4,13 @@ use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use std::time::{Duration, Instant};
 
-use crate::tabs::program;
 use egui::{Key, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::{Action, Language, Look, Studio, Tab, Text};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder};
+use encoder_studio::kinds::program;
 use encoder_studio::link::LinkUrl;
 use encoder_studio::ui::{Window, install_fonts};
 

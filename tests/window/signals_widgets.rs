@@ -24,7 +24,7 @@ impl Screen {
             for theme in [Theme::Dark, Theme::Light] {
                 self.act(Action::SetLanguage(language));
                 self.act(Action::SetTheme(theme));
-                for page in crate::tabs::program().tabs.page_words(crate::tabs::SIGNALS) {
+                for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::SIGNALS) {
                     self.click(page);
                     self.check_language();
                 }

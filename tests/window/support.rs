@@ -9,7 +9,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::tabs::program;
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Patience, Recording, ReviewAction, Severity, Studio, World, connect};
@@ -23,6 +22,7 @@ use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder, Review, ReviewState};
 use encoder_studio::devices::interbus::jobs as interbus;
+use encoder_studio::kinds::{Program, program};
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
 use encoder_studio::store::{Folders, Store};
 use encoder_studio::worker::Session;
@@ -46,6 +46,8 @@ pub(crate) struct Outside {
     pub(crate) patience: Patience,
     /// Who answers when all in the network are asked.
     pub(crate) found: Vec<Found>,
+    /// What kinds of devices there are.
+    pub(crate) program: Program,
 }
 
 /// The port at which the encoder stands that `begin` finds; `sim:` leads to it too.
@@ -89,7 +91,15 @@ impl Outside {
             wires.insert(server.to_owned(), wires[port].clone());
         }
         let (wakes, opens, patience) = (Arc::default(), Arc::default(), Patience::default());
-        Outside { folder: tempfile::tempdir().unwrap(), wires, wakes, opens, patience, found: Vec::new() }
+        Outside {
+            folder: tempfile::tempdir().unwrap(),
+            wires,
+            wakes,
+            opens,
+            patience,
+            found: Vec::new(),
+            program: program(),
+        }
     }
 
     pub(crate) fn store(&self) -> Store {
@@ -161,7 +171,7 @@ impl Outside {
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
             folders: Folders::at(&self.path("work"), &self.path("home")),
-            ..World::real(self.store(), program().studio)
+            ..World::real(self.store(), self.program.studio)
         }
     }
 
@@ -191,6 +201,12 @@ impl Desk {
     /// A studio that has not begun.
     pub(crate) fn fresh(query: &str) -> Self {
         let outside = Outside::new(query);
+        Desk { studio: outside.studio(), outside }
+    }
+
+    /// The same, with the kind that the tests bring along.
+    pub(crate) fn with_novo() -> Self {
+        let outside = Outside { program: crate::tabs::with_novo(), ..Outside::new("") };
         Desk { studio: outside.studio(), outside }
     }
 

@@ -24,7 +24,7 @@ pub(crate) const SIGNALS: Tab = Tab::named("Signals");
 pub(crate) const NOVEL: Tab = Tab::named("Novo");
 
 /// The program with a kind from outside behind its own.
-pub(crate) fn program() -> Program {
+pub(crate) fn with_novo() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[signals::TAB], &[], &[]))
 }

@@ -9,11 +9,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use crate::tabs::program;
 use encoder_studio::app::{Action, Language, Settings, Studio, Theme, World};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure, Motor};
+use encoder_studio::kinds::program;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
 

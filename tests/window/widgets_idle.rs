@@ -21,7 +21,7 @@ fn next_picture(screen: &Screen) -> Duration {
 #[test]
 fn a_window_with_nothing_to_show_asks_for_no_picture() {
     let mut screen = Screen::begun(SIZE);
-    for page in crate::tabs::program().tabs.page_words(crate::tabs::HIPERFACE) {
+    for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE) {
         screen.click(page);
         for _ in 0..30 {
             screen.harness.step();

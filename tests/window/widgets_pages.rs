@@ -27,7 +27,7 @@ fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
         for theme in [Theme::Dark, Theme::Light] {
             screen.act(Action::SetLanguage(language));
             screen.act(Action::SetTheme(theme));
-            for page in crate::tabs::program().tabs.page_words(screen.studio().settings.tab) {
+            for page in encoder_studio::kinds::program().tabs.page_words(screen.studio().settings.tab) {
                 screen.click(page);
                 screen.check_language();
                 for id in ALWAYS {
@@ -276,7 +276,7 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
 #[test]
 fn f1_helps_and_escape_closes_it() {
     let mut screen = Screen::begun(SMALL);
-    for (page, help) in crate::tabs::program().tabs.page_words(crate::tabs::HIPERFACE).into_iter().zip([
+    for (page, help) in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE).into_iter().zip([
         "help.encoder",
         "help.memory",
         "help.values",
@@ -299,7 +299,7 @@ fn f1_helps_and_escape_closes_it() {
 #[test]
 fn the_language_and_the_theme_are_a_click_away() {
     let mut screen = Screen::begun(LARGE);
-    let pages = crate::tabs::program().tabs.page_words(crate::tabs::HIPERFACE);
+    let pages = encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE);
     let english: Vec<String> = pages.iter().map(|page| screen.say(page)).collect();
     screen.click("shell.language");
     assert_eq!(screen.studio().settings.language, Language::German);

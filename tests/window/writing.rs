@@ -1,7 +1,6 @@
 //! Edit, review, write, see the read-back; and nothing is written without that.
 
 use crate::tabs::Tabs as _;
-use crate::tabs::program;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Listed;
 use encoder_studio::app::{Action, Done, Language, PendingEdits, Severity, Text};
@@ -10,6 +9,7 @@ use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
 use encoder_studio::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState, forms, rules};
+use encoder_studio::kinds::program;
 use encoder_studio::profile::Document;
 use encoder_studio::store::{DeviceKey, Outcome, read_text};
 
