@@ -1,4 +1,4 @@
-//! Parameters of a link and settings of a virtual device: a key with its value each. A struct made by [`parameters!`] declares
+//! Parameters of a link and settings of a virtual device: a key with its value each. A struct made by `parameters!` declares
 //! each of them in one line; that is parsed, checked, printed and offered in a form from there. What values there are is a
 //! type of [`Values`].
 
@@ -41,7 +41,7 @@ pub struct Entry {
     pub is_decimal: bool,
 }
 
-/// Parameters that stand together, made by [`parameters!`]. The default is what counts where they say nothing.
+/// Parameters that stand together, made by `parameters!`. The default is what counts where they say nothing.
 pub trait Parameters: Default {
     /// Why one of them is refused.
     type Error;
