@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::args::Position;
 use super::runner::{Ended, Runner, Runs};
 use super::{Done, Result};
+use crate::worker::EndedEarly as _;
 
 /// Runs `job` again and again, and lets `show` print what came of it; it says whether that was a line, or that it is over.
 pub fn readings<D: Runs>(
@@ -31,7 +32,7 @@ pub fn readings<D: Runs>(
         first = false;
         let came = match runner.try_run(job()) {
             Ok(output) => Ok(output),
-            Err(Ended::Job(error)) if endless && D::is_cancelled(&error) => return Ok(Done::Well),
+            Err(Ended::Job(error)) if endless && error.is_cancelled() => return Ok(Done::Well),
             Err(Ended::Job(error)) => Err(error),
             Err(ended) => return Err(ended.into_failure()),
         };

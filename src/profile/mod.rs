@@ -34,5 +34,5 @@ pub use rewrite::{Changed, divergence};
 pub use ron_text::{Entries, Unknown, Writer};
 pub use source::{Carried, Change, Step};
 pub(crate) use write::InterruptedWrite;
-pub use write::{Confirmed, Interrupted, OperationError, Write};
+pub use write::{Confirmed, DeviceError, Interrupted, OperationError, Write};
 pub use written::{WriteRecord, Written};

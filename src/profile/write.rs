@@ -87,6 +87,29 @@ pub trait OperationError: fmt::Display {
     fn is_only_cancelled(&self) -> bool;
 }
 
+/// What goes wrong with a device or on the way to it.
+pub trait DeviceError: fmt::Display {
+    /// The user cancelled it, and nothing else went wrong.
+    fn is_only_cancelled(&self) -> bool;
+
+    /// The user cancelled it, whatever went wrong after that.
+    fn is_cancelled(&self) -> bool {
+        self.is_only_cancelled()
+    }
+}
+
+impl<E: DeviceError> OperationError for E {
+    type Device = E;
+
+    fn device(&self) -> Option<&E> {
+        Some(self)
+    }
+
+    fn is_only_cancelled(&self) -> bool {
+        DeviceError::is_only_cancelled(self)
+    }
+}
+
 /// A plan that a person consented to and whose base still holds. Without one no operation can be carried out.
 pub struct Confirmed<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,

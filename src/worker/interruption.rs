@@ -3,7 +3,23 @@
 use std::path::PathBuf;
 
 use super::NotBegun;
-use crate::profile::{Interrupted, OperationError, WriteRecord};
+use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
+
+/// Why a job ended early, of whatever kind of device.
+pub trait EndedEarly {
+    /// The user wished it.
+    fn is_cancelled(&self) -> bool;
+
+    /// Returns the operations that were carried out before; `None` where no write was begun.
+    fn done(&self) -> Option<usize> {
+        None
+    }
+
+    /// Something was written before it ended.
+    fn has_begun(&self) -> bool {
+        self.done().is_some()
+    }
+}
 
 /// Why a job ended early, of a device with errors `E`, errors of planning `P`, writes that end early as an [`Interrupted`] `I`,
 /// and changes of kind `K`.
@@ -41,12 +57,27 @@ impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P
             JobError::Plan(_) | JobError::NotBegun(_) => None,
         }
     }
+}
 
-    /// Operations that were carried out; `None` where nothing was begun.
-    pub fn done(&self) -> Option<usize> {
+impl<P, Op, E, Done, Left, K> EndedEarly for JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K>
+where
+    E: OperationError<Device: DeviceError>,
+    Done: WriteRecord,
+{
+    fn is_cancelled(&self) -> bool {
+        self.device().is_some_and(DeviceError::is_cancelled)
+    }
+
+    fn done(&self) -> Option<usize> {
         match self {
             JobError::Interrupted { interrupted, .. } => Some(interrupted.done.ops()),
             JobError::Device(_) | JobError::Plan(_) | JobError::NotBegun(_) => None,
         }
+    }
+}
+
+impl<E: DeviceError, P, I, K> From<E> for JobError<E, P, I, K> {
+    fn from(error: E) -> Self {
+        JobError::Device(error)
     }
 }

@@ -1,11 +1,17 @@
 //! A device that exists in tests alone: it has nothing to say.
 
-use super::{Desk, Device, Tell, Watched};
+use super::{Desk, Device, EndedEarly, Tell, Watched};
 use crate::link::LinkError;
 
 /// The device, which is never asked.
 #[derive(Debug)]
 pub(super) struct Invented;
+
+impl EndedEarly for () {
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
 
 impl Device for Invented {
     type Job = ();
@@ -26,10 +32,6 @@ impl Device for Invented {
 
     fn watch(&mut self, _: &mut Desk, (): &()) -> Result<Watched<()>, ()> {
         Err(())
-    }
-
-    fn is_cancelled((): &()) -> bool {
-        false
     }
 
     fn check(&mut self) -> Result<(), LinkError> {

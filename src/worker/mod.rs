@@ -28,7 +28,7 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
 pub use commit::{Committed, NotBegun, check_wear, is_uncounted};
-pub use interruption::JobError;
+pub use interruption::{EndedEarly, JobError};
 pub use live::Stopper;
 pub use open::OpenError;
 pub use ring::Ring;
@@ -47,7 +47,7 @@ pub trait Device: Send + 'static {
     /// What a job gives.
     type Output: Send + fmt::Debug;
     /// Why a job ends early.
-    type Error: Send + fmt::Debug;
+    type Error: EndedEarly + Send + fmt::Debug;
     /// What the device says on the way, whatever it is asked.
     type Remark: Send + fmt::Debug;
     /// What is taken again and again while it is polled; what belongs to a watched value says so.
@@ -83,9 +83,6 @@ pub trait Device: Send + 'static {
     /// # Errors
     /// When it does not answer: polling ends. A refusal is an answer.
     fn watch(&mut self, desk: &mut Desk, what: &Self::Watch) -> Result<Watched<Self::Sample>, Self::Error>;
-
-    /// The error is the user's wish.
-    fn is_cancelled(error: &Self::Error) -> bool;
 
     /// Takes what the device said since the last time.
     fn take_remark(&mut self) -> Option<Self::Remark> {

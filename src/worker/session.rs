@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Device, Event, JobId, Tell, Watched};
+use super::{Device, EndedEarly as _, Event, JobId, Tell, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
@@ -99,7 +99,7 @@ impl<D: Device> Session<D> {
         }
         match result {
             Ok(output) => Event::Finished(id, Box::new(output)),
-            Err(error) if D::is_cancelled(&error) => Event::Cancelled(id, Box::new(error)),
+            Err(error) if error.is_cancelled() => Event::Cancelled(id, Box::new(error)),
             Err(error) => Event::Failed(id, Box::new(error)),
         }
     }

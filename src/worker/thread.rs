@@ -9,7 +9,7 @@ use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 use super::agenda::{Agenda, Due};
 use super::live::{Live, Watches};
 use super::outbox::Outbox;
-use super::{Device, Event, JobId, Ring, Session, Watched};
+use super::{Device, EndedEarly as _, Event, JobId, Ring, Session, Watched};
 use crate::link::Cancel;
 
 /// How often it tries again to send what the full channel did not take.
@@ -145,7 +145,7 @@ impl<D: Device> Bench<D> {
         };
         match taken {
             Ok(sample) => self.samples.push(sample),
-            Err(error) if D::is_cancelled(&error) => return false,
+            Err(error) if error.is_cancelled() => return false,
             Err(error) => {
                 self.live.poll_failed(wish);
                 while let Some(remark) = self.session.take_remark() {

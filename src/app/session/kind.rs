@@ -63,16 +63,6 @@ pub trait Kind: Device + Sized {
     /// The wire itself failed, so that nothing more can be asked over it: why.
     fn loss(error: &Self::Error) -> Option<Text>;
 
-    /// Operations that were carried out before a write ended; `None` where none was begun.
-    fn done(_error: &Self::Error) -> Option<usize> {
-        None
-    }
-
-    /// Something was written before it ended.
-    fn has_begun(error: &Self::Error) -> bool {
-        Self::done(error).is_some()
-    }
-
     /// What an event of a session that was let go says about the end of its job.
     fn last_words(event: &Event<Self>) -> Option<LastWords> {
         let (job, end, (severity, texts)) = match event {

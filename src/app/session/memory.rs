@@ -7,7 +7,7 @@ use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
 use crate::worker::commit::Planned as _;
-use crate::worker::{self, Device};
+use crate::worker::{self, Device, EndedEarly as _};
 
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 type Error<T> = <<T as OnDesk>::Device as Device>::Error;
@@ -245,7 +245,7 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
             // How far it came is not known.
             (Cut::Lost, ..) => (true, 0),
             (Cut::Failed(error) | Cut::Cancelled(error), ..) => {
-                let done = Self::Device::done(error);
+                let done = error.done();
                 if done.is_some() {
                     self.reads_again();
                 }

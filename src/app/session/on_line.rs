@@ -6,7 +6,7 @@ use crate::app::line::Line;
 use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
 use crate::link::TraceEntry;
-use crate::worker::{Device, Event, JobId};
+use crate::worker::{Device, EndedEarly as _, Event, JobId};
 
 type Job<T> = <<T as OnDesk>::Device as Device>::Job;
 type Output<T> = <<T as OnDesk>::Device as Device>::Output;
@@ -142,7 +142,7 @@ pub trait OnLine: OnDesk {
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         services.job_ends(self.session().id, id, JobEnd::Cancelled);
         self.session_mut().save_to = None;
-        let (texts, begun) = (Self::Device::why(error), Self::Device::has_begun(error));
+        let (texts, begun) = (Self::Device::why(error), error.has_begun());
         let stands_there = self.cut_off(Cut::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
         self.session().say(severity, texts, stands_there, services);
@@ -165,7 +165,7 @@ pub trait OnLine: OnDesk {
             None => {
                 self.session_mut().answers();
                 self.session().say(Severity::Error, texts, stands_there, services);
-                if Self::Device::has_begun(error) {
+                if error.has_begun() {
                     self.submit(Self::Device::survey(), services);
                 }
             }

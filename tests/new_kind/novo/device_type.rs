@@ -58,9 +58,6 @@ impl Kind for Novo {
         let Some(Error::Link(error)) = error.device() else { return None };
         Some(explain::link(error))
     }
-    fn done(error: &JobError) -> Option<usize> {
-        error.done()
-    }
 }
 
 impl DeviceType for Encoder {

@@ -79,12 +79,6 @@ pub(crate) enum Error {
 
 pub(crate) type JobError = worker::JobError<Error, Infallible, Interrupted<Op, Error, Written, ()>, ()>;
 
-impl From<Error> for JobError {
-    fn from(error: Error) -> Self {
-        JobError::Device(error)
-    }
-}
-
 /// Where a link leads, as far as that can be told without opening it.
 pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {
     match url.scheme {
@@ -177,9 +171,6 @@ impl Device for Novo {
     }
     fn watch(&mut self, _: &mut Desk, what: &Infallible) -> Result<Watched<Sample>, JobError> {
         match *what {}
-    }
-    fn is_cancelled(error: &JobError) -> bool {
-        error.device() == Some(&Error::Cancelled)
     }
     fn check(&mut self) -> Result<(), LinkError> {
         self.0.check()

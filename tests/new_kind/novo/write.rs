@@ -1,6 +1,6 @@
 //! How a plan is written into a Novo encoder.
 
-use encoder_studio::profile::{Body, Confirmed, OperationError, Write, Written};
+use encoder_studio::profile::{Body, Confirmed, DeviceError, Write, Written};
 use encoder_studio::store::DeviceKey;
 use encoder_studio::worker::Desk;
 use encoder_studio::worker::commit::{Planned, backup_of};
@@ -39,12 +39,7 @@ impl Write for NovoWrite<'_> {
     fn left(&mut self, _: &Error) {}
 }
 
-impl OperationError for Error {
-    type Device = Self;
-
-    fn device(&self) -> Option<&Self> {
-        Some(self)
-    }
+impl DeviceError for Error {
     fn is_only_cancelled(&self) -> bool {
         *self == Error::Cancelled
     }

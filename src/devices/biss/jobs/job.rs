@@ -258,12 +258,6 @@ pub enum BissOutput {
 /// Why a job ended early.
 pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
 
-impl From<Error> for JobError {
-    fn from(error: Error) -> Self {
-        JobError::Device(error)
-    }
-}
-
 impl From<PlanError> for JobError {
     fn from(error: PlanError) -> Self {
         JobError::Plan(error)

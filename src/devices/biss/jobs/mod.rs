@@ -204,10 +204,6 @@ impl Device for Biss {
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
     }
 
-    fn is_cancelled(error: &JobError) -> bool {
-        error.device() == Some(&Error::Cancelled)
-    }
-
     fn take_remark(&mut self) -> Option<Remark> {
         if !self.broken.is_empty() {
             return Some(Remark::Descriptions(std::mem::take(&mut self.broken)));

@@ -7,6 +7,7 @@ use crate::buses::ubicom::protocol::ReplyError;
 use crate::devices::biss::protocol::{DeviceMode, FrameError, Identity, RegisterAddress};
 use crate::link::LinkError;
 use crate::link::line::LineError;
+use crate::profile::DeviceError;
 
 /// What was asked of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -227,6 +228,12 @@ impl From<Failure> for Error {
             Failure::Adapter(error) => Error::Adapter(error),
             Failure::Line(error) => error.into(),
         }
+    }
+}
+
+impl DeviceError for Error {
+    fn is_only_cancelled(&self) -> bool {
+        *self == Error::Cancelled
     }
 }
 

@@ -60,10 +60,6 @@ impl Kind for Biss {
     fn loss(error: &JobError) -> Option<Text> {
         explained::loss(error)
     }
-
-    fn done(error: &JobError) -> Option<usize> {
-        error.done()
-    }
 }
 
 impl Encoder {

@@ -7,7 +7,7 @@ use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{Review, ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Cut, Kind, Known, Saved, WithMemory, without_edits};
+use crate::app::session::{Agreed, Cut, Known, Saved, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{
     Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key,
@@ -21,6 +21,7 @@ use crate::devices::biss::protocol::RegisterAddress;
 use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::store::DeviceKey;
+use crate::worker::EndedEarly;
 
 /// How long a shaft that has to stand, with nobody asked to stop it, is waited for.
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
@@ -61,7 +62,7 @@ impl Encoder {
         if !self.guide.as_ref().is_some_and(Guide::is_running) {
             return false;
         }
-        if error.is_some_and(Biss::has_begun) {
+        if error.is_some_and(EndedEarly::has_begun) {
             self.reads_again();
         }
         let Some(guide) = &mut self.guide else { return false };

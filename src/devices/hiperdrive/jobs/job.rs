@@ -205,12 +205,6 @@ pub enum HiperdriveOutput {
 /// Why a job ended early.
 pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
 
-impl From<Error> for JobError {
-    fn from(error: Error) -> Self {
-        JobError::Device(error)
-    }
-}
-
 impl From<PlanError> for JobError {
     fn from(error: PlanError) -> Self {
         JobError::Plan(error)

@@ -28,7 +28,7 @@ use session_watch::WatchedWire;
 
 use crate::devices::hiperdrive::procedures::check::check as check_device;
 use crate::devices::hiperdrive::procedures::{
-    Error, Master, Reading, Station, identify, network, position, read_status, save, survey,
+    Master, Reading, Station, identify, network, position, read_status, save, survey,
 };
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
@@ -167,10 +167,6 @@ impl Device for Hiperdrive {
 
     fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Reading>, JobError> {
         match *what {}
-    }
-
-    fn is_cancelled(error: &JobError) -> bool {
-        error.device().is_some_and(Error::is_cancelled)
     }
 
     fn take_remark(&mut self) -> Option<Remark> {

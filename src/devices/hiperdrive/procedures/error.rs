@@ -9,7 +9,7 @@ use crate::buses::ethernet_ip::protocol::{
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, Topology, ValueError};
 use crate::link::LinkError;
 use crate::link::line::LineError;
-use crate::profile::OperationError;
+use crate::profile::DeviceError;
 
 /// What a device was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -341,13 +341,7 @@ impl From<LinkError> for Error {
     }
 }
 
-impl OperationError for Error {
-    type Device = Self;
-
-    fn device(&self) -> Option<&Self> {
-        Some(self)
-    }
-
+impl DeviceError for Error {
     fn is_only_cancelled(&self) -> bool {
         *self == Error::Cancelled
     }

@@ -82,10 +82,6 @@ impl Kind for Hiperdrive {
     fn loss(error: &JobError) -> Option<Text> {
         words::loss(error)
     }
-
-    fn done(error: &JobError) -> Option<usize> {
-        error.done()
-    }
 }
 
 impl Unit {

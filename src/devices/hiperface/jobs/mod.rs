@@ -159,10 +159,6 @@ impl Device for Hiperface {
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
     }
 
-    fn is_cancelled(error: &JobError) -> bool {
-        error.device() == Some(&Error::Cancelled)
-    }
-
     fn take_remark(&mut self) -> Option<Remark> {
         let codes = Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes);
         codes.or_else(|| self.unheard())

@@ -4,7 +4,7 @@ use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{CodeNumber, Command, ReplyError, StatusCode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
-use crate::profile::OperationError;
+use crate::profile::DeviceError;
 
 /// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -170,13 +170,7 @@ impl From<LineError> for Error {
     }
 }
 
-impl OperationError for Error {
-    type Device = Self;
-
-    fn device(&self) -> Option<&Self> {
-        Some(self)
-    }
-
+impl DeviceError for Error {
     fn is_only_cancelled(&self) -> bool {
         *self == Error::Cancelled
     }

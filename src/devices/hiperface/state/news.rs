@@ -18,7 +18,7 @@ use crate::devices::hiperface::state::explain as explained;
 use crate::link::{LinkUrl, TraceEntry};
 use crate::profile::Body;
 use crate::store::Store;
-use crate::worker::{JobId, OpenError, Session};
+use crate::worker::{EndedEarly as _, JobId, OpenError, Session};
 
 impl Kind for Hiperface {
     const KIND: &'static str = KIND;
@@ -64,10 +64,6 @@ impl Kind for Hiperface {
 
     fn loss(error: &JobError) -> Option<Text> {
         explained::loss(error)
-    }
-
-    fn done(error: &JobError) -> Option<usize> {
-        error.done()
     }
 }
 
@@ -310,7 +306,7 @@ impl OnLine for Encoder {
             None if silent => self.session.fall_silent(texts, services),
             None => {
                 self.session.say(Severity::Error, texts, is_shown || stands_there, services);
-                if Hiperface::has_begun(error) {
+                if error.has_begun() {
                     self.submit(HiperfaceJob::Survey, services);
                 }
             }

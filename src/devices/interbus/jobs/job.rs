@@ -234,12 +234,6 @@ pub enum InterbusOutput {
 /// Why a job ended early.
 pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
 
-impl From<Error> for JobError {
-    fn from(error: Error) -> Self {
-        JobError::Device(error)
-    }
-}
-
 impl From<PlanError> for JobError {
     fn from(error: PlanError) -> Self {
         JobError::Plan(error)

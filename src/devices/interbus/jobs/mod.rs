@@ -142,10 +142,6 @@ impl Device for Interbus {
         match *what {}
     }
 
-    fn is_cancelled(error: &JobError) -> bool {
-        error.device().is_some_and(Error::is_cancelled)
-    }
-
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check()
     }

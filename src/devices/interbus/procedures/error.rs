@@ -6,7 +6,7 @@ use super::Standing;
 use crate::devices::interbus::protocol::{Command, ErrorWord, GearError, Refused, Reply, StartupMode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
-use crate::profile::OperationError;
+use crate::profile::DeviceError;
 
 /// What was asked of a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -351,15 +351,13 @@ impl From<LineError> for Error {
     }
 }
 
-impl OperationError for Error {
-    type Device = Self;
-
-    fn device(&self) -> Option<&Self> {
-        Some(self)
-    }
-
+impl DeviceError for Error {
     fn is_only_cancelled(&self) -> bool {
         *self == Error::Cancelled
+    }
+
+    fn is_cancelled(&self) -> bool {
+        Error::is_cancelled(self)
     }
 }
 

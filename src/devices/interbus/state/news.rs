@@ -60,10 +60,6 @@ impl Kind for Interbus {
     fn loss(error: &JobError) -> Option<Text> {
         words::loss(error)
     }
-
-    fn done(error: &JobError) -> Option<usize> {
-        error.done()
-    }
 }
 
 impl Encoder {

@@ -17,7 +17,7 @@ use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::worker::{Desk, Device, EndedEarly, Progress, Session, Tell, Watched};
 
 /// An SSI encoder behind its adapter.
 pub struct Ssi {
@@ -61,6 +61,12 @@ pub struct Doing;
 
 /// Why a job ended early.
 pub type JobError = Error;
+
+impl EndedEarly for Error {
+    fn is_cancelled(&self) -> bool {
+        *self == Error::Cancelled
+    }
+}
 
 /// Words that are wished as close as this come as a stream.
 const STREAMED: Duration = Duration::from_millis(2);
@@ -159,10 +165,6 @@ impl Device for Ssi {
 
     fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Words>, JobError> {
         match *what {}
-    }
-
-    fn is_cancelled(error: &JobError) -> bool {
-        *error == Error::Cancelled
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
