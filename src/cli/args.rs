@@ -61,8 +61,9 @@ impl Common {
     }
 }
 
+/// A command that is the same word for every kind of device.
 #[derive(Subcommand)]
-pub(super) enum Command {
+pub enum Command {
     /// Serial ports on this machine.
     Ports,
     /// The devices that answer.
@@ -94,9 +95,11 @@ pub(super) enum Command {
 }
 
 #[derive(Args)]
-pub(super) struct Device {
+pub struct Device {
     /// The kind of device.
     pub(super) device: String,
+    #[command(flatten)]
+    pub(super) own: OwnOptions,
 }
 
 #[derive(Args)]
@@ -165,7 +168,7 @@ pub struct Save {
 }
 
 #[derive(Args)]
-pub(super) struct Diff {
+pub struct Diff {
     /// A profile.
     pub(super) left: PathBuf,
     /// Another profile; without it, --link.
@@ -173,7 +176,7 @@ pub(super) struct Diff {
 }
 
 #[derive(Args)]
-pub(super) struct Verify {
+pub struct Verify {
     /// The profile.
     pub file: PathBuf,
 }

@@ -4,12 +4,12 @@
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, FromArgMatches, ValueEnum};
 
-use super::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
+use super::args::{Command, Common, Decode, Restore, Simulate};
 use super::output::Output;
 use super::simulate::Simulated;
 use super::{Failure, Result};
 use crate::app::{Given, Text};
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 /// The commands that a kind of device may take part in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +79,7 @@ impl CommandId {
     }
 }
 
-/// A kind of device on the command line. A command that it does not implement is refused as wrong usage.
+/// A kind of device on the command line. A command that it does not have is refused as wrong usage.
 pub trait DeviceCommands: Sync {
     /// The kind as it is written on the command line and in profiles.
     fn name(&self) -> &'static str;
@@ -146,69 +146,18 @@ pub trait DeviceCommands: Sync {
         false
     }
 
-    /// Looks for devices on the line or in the network.
-    fn find(&self, _common: &Common, _output: &Output, _find: &Find) -> Result {
-        lacking(CommandId::Find, self.name())
-    }
-
-    /// Says which device answers.
-    fn identify(&self, _common: &Common, _output: &Output) -> Result {
-        lacking(CommandId::Identify, self.name())
-    }
-
-    /// Says what the device reports of itself.
-    fn status(&self, _common: &Common, _output: &Output, _status: &Status) -> Result {
-        lacking(CommandId::Status, self.name())
-    }
-
-    /// Reads the position, once or all the time.
-    fn position(&self, _common: &Common, _output: &Output, _position: &Position) -> Result {
-        lacking(CommandId::Position, self.name())
-    }
-
-    /// Reads the memory, or a part of it.
-    fn read(&self, _common: &Common, _output: &Output, _read: &Read) -> Result {
-        lacking(CommandId::Read, self.name())
-    }
-
-    /// Saves what the device holds as a profile.
-    fn save(&self, _common: &Common, _output: &Output, _save: &Save) -> Result {
-        lacking(CommandId::Save, self.name())
-    }
-
-    /// Writes values, after a review and consent.
-    fn write(&self, _common: &Common, _output: &Output, _write: &Write) -> Result {
-        lacking(CommandId::Write, self.name())
-    }
-
-    /// Does what `do` names.
-    fn act(&self, _common: &Common, _output: &Output, _act: &Do) -> Result {
-        lacking(CommandId::Do, self.name())
-    }
-
-    /// Explains captured bytes.
-    fn decode(&self, _output: &Output, _decode: &Decode) -> Result {
-        lacking(CommandId::Decode, self.name())
-    }
+    /// Runs a command that names this kind: find, identify, status, position, read, save, write, do, decode. `None` where it
+    /// does not have that.
+    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result>;
 
     /// Writes a profile into the device, after a review and consent.
-    fn restore(&self, _common: &Common, _output: &Output, _restore: &Restore, _profile: Body) -> Result {
-        lacking(CommandId::Restore, self.name())
-    }
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result;
 
     /// Builds the virtual device that is to be served.
-    fn simulated(&self, _output: &Output, _simulate: &Simulate) -> Result<Box<dyn Simulated>> {
-        lacking(CommandId::Simulate, self.name())
-    }
+    fn simulated(&self, output: &Output, simulate: &Simulate) -> Result<Box<dyn Simulated>>;
 
     /// Reads the device for a comparison: all of it, or at least what a profile says something about.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;
-
-    /// Compares two profiles.
-    ///
-    /// # Errors
-    /// One of them is of another kind.
-    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError>;
 
     /// What is to be known of a profile, whatever is done with it.
     fn remark(&self, _profile: &Body) -> Option<Text> {
@@ -219,11 +168,6 @@ pub trait DeviceCommands: Sync {
     fn other_device(&self, _profile: &Body, _device: &Body) -> Option<String> {
         None
     }
-}
-
-/// Refuses a command that a kind of device does not have.
-fn lacking<T>(command: CommandId, kind: &str) -> Result<T> {
-    Err(Failure::Usage(format!("{} is not for {kind} devices", command.name())))
 }
 
 /// A command that a kind of device, or a part of the program beside the devices, has for itself.

@@ -19,15 +19,15 @@ pub(crate) mod simulate;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use args::{Arguments, Called, Command};
+use args::{Arguments, Called};
 
-pub use args::{Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
+pub use args::{Command, Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProtocolDecoder};
 pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
 pub use patience::Pace;
 pub use positions::readings;
-pub use profiles::{Left, keep, restore_options, show_dry_run, show_restored};
+pub use profiles::{Left, keep, restore_options, to_restore, write_restore};
 pub use runner::{Ended, Runner, Runs, failed, unexpected};
 pub use simulate::{Simulated, settings};
 
@@ -141,65 +141,44 @@ fn end(result: Result) -> u8 {
 
 fn call(common: &Common, called: Called, output: &Output) -> Result {
     match called {
-        Called::Shared(command) => dispatch(common, command, output),
+        Called::Shared(command) => dispatch(common, &command, output),
         Called::Own(command, matches) => command.run(common, output, &matches),
     }
 }
 
-fn dispatch(common: &Common, command: Command, output: &Output) -> Result {
-    let device = |name: &str| output.commands().device(name);
-    let no_foreign = |id: CommandId, name: &str, own: &OwnOptions| match output.commands().foreign_option(id, name, own)
-    {
-        Some(why) => Err(Failure::Usage(why)),
-        None => Ok(()),
+fn dispatch(common: &Common, command: &Command, output: &Output) -> Result {
+    let (id, chosen, own) = match command {
+        Command::Ports => return ports::ports(output),
+        Command::Diff(diff) => return profiles::diff(common, output, diff),
+        Command::Verify(verify) => return profiles::verify(common, output, &verify.file),
+        Command::Restore(restore) => return profiles::restore(common, output, restore),
+        Command::Find(find) => (CommandId::Find, &find.device, &find.own),
+        Command::Identify(identify) => (CommandId::Identify, &identify.device, &identify.own),
+        Command::Status(status) => (CommandId::Status, &status.device, &status.own),
+        Command::Position(position) => (CommandId::Position, &position.device, &position.own),
+        Command::Read(read) => (CommandId::Read, &read.device, &read.own),
+        Command::Save(save) => (CommandId::Save, &save.device, &save.own),
+        Command::Write(write) => (CommandId::Write, &write.device, &write.own),
+        Command::Do(act) => (CommandId::Do, &act.device, &act.own),
+        Command::Decode(decode) => (CommandId::Decode, &decode.protocol, &decode.own),
+        Command::Simulate(simulate) => (CommandId::Simulate, &simulate.device, &simulate.own),
     };
-    match command {
-        Command::Ports => ports::ports(output),
-        Command::Find(find) => {
-            no_foreign(CommandId::Find, &find.device, &find.own)?;
-            device(&find.device)?.find(common, output, &find)
-        }
-        Command::Identify(on) => device(&on.device)?.identify(common, output),
-        Command::Status(status) => {
-            no_foreign(CommandId::Status, &status.device, &status.own)?;
-            device(&status.device)?.status(common, output, &status)
-        }
-        Command::Position(position) => {
-            no_foreign(CommandId::Position, &position.device, &position.own)?;
-            device(&position.device)?.position(common, output, &position)
-        }
-        Command::Read(read) => {
-            no_foreign(CommandId::Read, &read.device, &read.own)?;
-            device(&read.device)?.read(common, output, &read)
-        }
-        Command::Save(save) => {
-            no_foreign(CommandId::Save, &save.device, &save.own)?;
+    if let Some(why) = output.commands().foreign_option(id, chosen, own) {
+        return Err(Failure::Usage(why));
+    }
+    let run = || {
+        let lacking = || Err(usage(&format!("{} is not for {chosen} devices", id.name())));
+        output.commands().device(chosen)?.run(common, output, command).unwrap_or_else(lacking)
+    };
+    match (command, output.commands().protocol(chosen)) {
+        (Command::Simulate(simulate), _) => simulate::simulate(output, simulate),
+        (Command::Decode(decode), Some(protocol)) => protocol.decode(output, decode),
+        (Command::Save(save), _) => {
             let replaces = consent::replaces(&save.file, save.force)?;
-            let done = device(&save.device)?.save(common, output, &save)?;
+            let done = run()?;
             replaces.said(output);
             Ok(done)
         }
-        Command::Write(write) => {
-            no_foreign(CommandId::Write, &write.device, &write.own)?;
-            device(&write.device)?.write(common, output, &write)
-        }
-        Command::Do(act) => {
-            no_foreign(CommandId::Do, &act.device, &act.own)?;
-            device(&act.device)?.act(common, output, &act)
-        }
-        Command::Decode(decode) => {
-            no_foreign(CommandId::Decode, &decode.protocol, &decode.own)?;
-            match output.commands().protocol(&decode.protocol) {
-                Some(protocol) => protocol.decode(output, &decode),
-                None => device(&decode.protocol)?.decode(output, &decode),
-            }
-        }
-        Command::Simulate(simulate) => {
-            no_foreign(CommandId::Simulate, &simulate.device, &simulate.own)?;
-            simulate::simulate(output, &simulate)
-        }
-        Command::Diff(diff) => profiles::diff(common, output, &diff),
-        Command::Verify(verify) => profiles::verify(common, output, &verify.file),
-        Command::Restore(restore) => profiles::restore(common, output, &restore),
+        _ => run(),
     }
 }

@@ -1,18 +1,20 @@
 //! Commands about profiles, whatever the kind of device: it stands in the file. `diff` and `verify` are here; what a save
 //! and a restore have in common, too.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use jiff::Timestamp;
 use serde_json::{Value as Json, json};
 
 use super::args::{Common, Diff, Restore};
+use super::consent::require_consent;
 use super::output::{Lines, Output, say};
 use super::plan::{NOTHING, Shown, Spent};
 use super::runner::failed;
 use super::{Done, Failure, Result};
 use crate::app::{Kinds, explain, review};
-use crate::profile::{Body, Comparison, Document, RestoreOptions};
+use crate::profile::{Body, Comparison, Document, Profile, RestoreOptions};
 use crate::store::{read_text, write_atomically};
 
 /// Reads a profile of any kind, to look at it or to compare it.
@@ -62,8 +64,7 @@ pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
         Some(path) => (load(output, path)?, path.as_path()),
         None => (kind.present(common, output, None)?, Path::new("the device")),
     };
-    let comparison =
-        kind.compare(&left, &right).map_err(|error| failed(&explain::profile(name, &error, Kinds::NONE)))?;
+    let comparison = left.compare(&right).map_err(|error| failed(&explain::profile(name, &error, Kinds::NONE)))?;
     let missing = comparison.missing();
     show_comparison(output, &comparison, comparison.differences.is_empty() && missing.is_empty())
 }
@@ -76,8 +77,7 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     if let Some(words) = kind.other_device(&profile, &device) {
         output.remark(&words);
     }
-    let comparison =
-        kind.compare(&profile, &device).map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))?;
+    let comparison = profile.compare(&device).map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))?;
     // What only the device has is not the profile's business.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
@@ -86,6 +86,35 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Result {
     let profile = load_to_write(output, &restore.file)?;
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
+}
+
+/// Returns the profile that is to be restored: refused before anything is opened where there can be no consent.
+pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
+    if !restore.dry_run {
+        require_consent(&restore.consent)?;
+    }
+    profile.into_profile().map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))
+}
+
+/// Says which values of another device's mounting are left as they are.
+pub(crate) fn say_mounting_left(output: &Output, items: &[impl Display]) {
+    for item in items {
+        output.remark(&format!(
+            "{item} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
+        ));
+    }
+}
+
+/// Writes a plan that restores a profile, or shows it only.
+pub fn write_restore(
+    output: &Output,
+    restore: &Restore,
+    plan: &Shown,
+    left: &Left,
+    write: impl FnOnce() -> Result<Spent>,
+) -> Result {
+    left.warn(output);
+    if restore.dry_run { show_dry_run(output, plan, left) } else { show_restored(output, &write()?, left) }
 }
 
 /// What the command line allows of a restore, for devices without data fields.
@@ -142,7 +171,7 @@ pub struct Left {
 
 impl Left {
     /// Says what has to be set up anew.
-    pub(crate) fn warn(&self, output: &Output) {
+    fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
         if let Some(text) = review::redo(items) {
             output.remark(&text.terminal());
@@ -151,7 +180,7 @@ impl Left {
 }
 
 /// Prints what a restore would do.
-pub fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
+fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
     let json = json!({
         "dry_run": true,
         "operations": plan.operations,
@@ -168,7 +197,7 @@ pub fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
 }
 
 /// Prints what a restore has done.
-pub fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
+fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
     let json = json!({
         "written": spent.written,
         "unchanged": left.unchanged,

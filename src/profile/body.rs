@@ -5,8 +5,8 @@ use std::any::Any;
 use std::fmt;
 use std::marker::PhantomData;
 
-use super::ProfileError;
 use super::ron_text::{Entries, Writer};
+use super::{Comparison, ProfileError};
 
 /// The profile of one kind of device, as the device implements it.
 pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
@@ -27,6 +27,9 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
 
     /// Writes its entries into the document.
     fn write(&self, writer: &mut Writer);
+
+    /// Compares it with another one.
+    fn compare(&self, other: &Self) -> Comparison;
 }
 
 /// How the profiles of one kind of device are read.
@@ -54,6 +57,9 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
 
     /// It says the same as another one.
     fn equals(&self, other: &dyn ProfileBody) -> bool;
+
+    /// Compares it with another one; `None` where that is of another kind of device.
+    fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison>;
 }
 
 impl<P: Profile> ProfileBody for P {
@@ -72,6 +78,11 @@ impl<P: Profile> ProfileBody for P {
     fn equals(&self, other: &dyn ProfileBody) -> bool {
         let other: &dyn Any = other;
         other.downcast_ref::<P>() == Some(self)
+    }
+
+    fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison> {
+        let other: &dyn Any = other;
+        other.downcast_ref::<P>().map(|other| self.compare(other))
     }
 }
 
@@ -111,6 +122,14 @@ impl Body {
     /// Writes its entries into the document.
     pub(super) fn emit(&self, writer: &mut Writer) {
         self.0.emit(writer);
+    }
+
+    /// Compares it with another one.
+    ///
+    /// # Errors
+    /// [`ProfileError::OtherKind`].
+    pub fn compare(&self, other: &Body) -> Result<Comparison, ProfileError> {
+        self.0.compared(other.0.as_ref()).ok_or_else(|| other.is_not(self.kind()))
     }
 
     /// It is of another kind of device than the one asked for.

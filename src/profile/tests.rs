@@ -34,6 +34,12 @@ impl Profile for Lamp {
         }
         writer.close(']');
     }
+
+    fn compare(&self, other: &Self) -> Comparison {
+        let mut comparison = Comparison::default();
+        comparison.add("colour".to_owned(), Some(&self.colour), Some(&other.colour));
+        comparison
+    }
 }
 
 /// A fan, of which nothing is known but that it is one.
@@ -48,6 +54,10 @@ impl Profile for Fan {
     }
 
     fn write(&self, _: &mut Writer) {}
+
+    fn compare(&self, _: &Self) -> Comparison {
+        Comparison::default()
+    }
 }
 
 const FORMATS: Formats = Formats::new(&[Lamp::FORMAT, Fan::FORMAT]);
@@ -157,4 +167,14 @@ fn a_cause_reads_like_the_error_of_the_device_and_keeps_its_type() {
     assert_ne!(cause, Cause::new(TooMany(4)));
     let error = ProfileError::Refused { path: "lamps".to_owned(), cause };
     assert_eq!(error.to_string(), "lamps: 3 lamps are too many");
+}
+
+#[test]
+fn profiles_of_one_kind_are_compared() {
+    let comparison = lamp("red").compare(&lamp("blue")).unwrap();
+    assert_eq!((comparison.compared, comparison.differences.len()), (1, 1));
+    assert!(matches!(
+        lamp("red").compare(&Body::new(Fan)),
+        Err(ProfileError::OtherKind { found: "fan", wanted: "lamp" })
+    ));
 }

@@ -191,7 +191,7 @@ impl Case {
 }
 
 fn compared(one: &Body, other: &Body) -> Comparison {
-    with_novo().commands.device(one.kind()).unwrap().compare(one, other).unwrap()
+    one.compare(other).unwrap()
 }
 
 fn shown(studio: &Studio) -> Option<&AnyDevice> {

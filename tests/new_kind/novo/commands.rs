@@ -4,16 +4,16 @@ use std::convert::Infallible;
 
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
-    Common, DeviceCommands, Done, Ended, Failure, Left, Output, Position, Restore, Result, Runs, Save, Simulate,
-    Simulated, agreed, check_wear, keep, plan, readings, require_consent, restore_options, settings, show_dry_run,
-    show_restored, unexpected,
+    Command, Common, DeviceCommands, Done, Ended, Failure, Left, Output, Position, Restore, Result, Runs, Save,
+    Simulate, Simulated, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore, unexpected,
+    write_restore,
 };
-use encoder_studio::profile::{Body, Comparison, Operation, ProfileError};
+use encoder_studio::profile::{Body, Operation};
 use encoder_studio::worker::Session;
 use serde_json::json;
 
 use super::jobs::{Change, Job, JobError, LIFE, Novo, Output as Came, Prepared};
-use super::profile::{NovoProfile, compare};
+use super::profile::NovoProfile;
 use super::protocol::{ITEMS, KIND, name_of};
 use super::sim::Virtual;
 
@@ -42,37 +42,17 @@ impl DeviceCommands for NovoCommands {
     fn about(&self) -> &'static str {
         "Novo encoder"
     }
-    fn identify(&self, common: &Common, output: &Output) -> Result {
-        let NovoProfile { serial, .. } = survey(&mut Runner::open(common)?)?;
-        output.show(&json!({ "serial": serial }), &format!("serial number  {serial}\n"))?;
-        Ok(Done::Well)
-    }
-    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
-        let mut runner = Runner::open(common)?;
-        if position.csv {
-            output.print("position\n")?;
-        }
-        let read = |came: std::result::Result<Came, Box<JobError>>| match came {
-            Ok(Came::Position((_, position))) => {
-                output.show(&json!({ "position": position }), &format!("{position}\n"))?;
-                Ok(true)
-            }
-            Ok(other) => Err(unexpected(&other)),
-            Err(error) => Err(Ended::<Novo>::Job(error).into_failure()),
-        };
-        readings(&mut runner, position, || Job::Position, |_, came| read(came))
-    }
-    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
-        keep(&save.file, self.present(common, output, None)?)?;
-        output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
-        Ok(Done::Well)
+    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+        Some(match command {
+            Command::Identify(_) => identify(common, output),
+            Command::Position(wanted) => position(common, output, wanted),
+            Command::Save(wanted) => save(common, output, wanted),
+            _ => return None,
+        })
     }
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
         let options = restore_options(restore)?;
-        if !restore.dry_run {
-            require_consent(&restore.consent)?;
-        }
-        let NovoProfile { serial, values } = profile.into_profile().map_err(|error| failed(&error))?;
+        let NovoProfile { serial, values } = to_restore(restore, profile)?;
         let mut runner = Runner::open(common)?;
         let change = Change { restored: Some(serial), values, options };
         let prepared = match runner.run(Job::Prepare(change))? {
@@ -82,15 +62,14 @@ impl DeviceCommands for NovoCommands {
         let shown = shown(&prepared);
         let unchanged = (ITEMS.len() - prepared.plan.ops.len()) as u64;
         let left = Left { unchanged, missing: Vec::new(), redo: Vec::new() };
-        if restore.dry_run {
-            return show_dry_run(output, &shown, &left);
-        }
-        check_wear::<Novo>(&restore.consent, &prepared)?;
-        let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
-        match runner.run(Job::Commit(Box::new(agreed)))? {
-            Came::Committed(done) => show_restored(output, &plan::Spent::of(output, *done), &left),
-            other => Err(unexpected(&other)),
-        }
+        write_restore(output, restore, &shown, &left, || {
+            check_wear::<Novo>(&restore.consent, &prepared)?;
+            let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
+            match runner.run(Job::Commit(Box::new(agreed)))? {
+                Came::Committed(done) => Ok(plan::Spent::of(output, *done)),
+                other => Err(unexpected(&other)),
+            }
+        })
     }
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
         let device = Virtual::from_pairs(&settings(output, arguments)?);
@@ -99,9 +78,34 @@ impl DeviceCommands for NovoCommands {
     fn present(&self, common: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {
         survey(&mut Runner::open(common)?).map(Body::new)
     }
-    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-        Ok(compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
+}
+
+fn identify(common: &Common, output: &Output) -> Result {
+    let NovoProfile { serial, .. } = survey(&mut Runner::open(common)?)?;
+    output.show(&json!({ "serial": serial }), &format!("serial number  {serial}\n"))?;
+    Ok(Done::Well)
+}
+
+fn position(common: &Common, output: &Output, position: &Position) -> Result {
+    let mut runner = Runner::open(common)?;
+    if position.csv {
+        output.print("position\n")?;
     }
+    let read = |came: std::result::Result<Came, Box<JobError>>| match came {
+        Ok(Came::Position((_, position))) => {
+            output.show(&json!({ "position": position }), &format!("{position}\n"))?;
+            Ok(true)
+        }
+        Ok(other) => Err(unexpected(&other)),
+        Err(error) => Err(Ended::<Novo>::Job(error).into_failure()),
+    };
+    readings(&mut runner, position, || Job::Position, |_, came| read(came))
+}
+
+fn save(common: &Common, output: &Output, save: &Save) -> Result {
+    keep(&save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
+    output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
+    Ok(Done::Well)
 }
 
 fn survey(runner: &mut Runner) -> Result<NovoProfile> {
@@ -109,10 +113,6 @@ fn survey(runner: &mut Runner) -> Result<NovoProfile> {
         Came::Surveyed(read) => Ok(read),
         other => Err(unexpected(&other)),
     }
-}
-
-fn failed(error: &ProfileError) -> Failure {
-    Failure::Failed(vec![error.to_string()])
 }
 
 fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::Shown {

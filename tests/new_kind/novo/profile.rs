@@ -31,6 +31,13 @@ impl Profile for NovoProfile {
             writer.entry(item, &value.to_string(), "");
         }
     }
+    fn compare(&self, other: &Self) -> Comparison {
+        let mut comparison = Comparison::default();
+        for (item, (own, other)) in ITEMS.into_iter().zip(self.values.into_iter().zip(other.values)) {
+            comparison.add(item.to_owned(), Some(own), Some(other));
+        }
+        comparison
+    }
 }
 
 /// An item becomes another value.
@@ -60,12 +67,4 @@ pub(crate) fn plan(now: &NovoProfile, wanted: &Values) -> NovoPlan {
     let pairs = now.values.into_iter().zip(*wanted).enumerate().filter(|(_, (from, to))| from != to);
     let ops = pairs.map(|(item, (from, to))| Op { item, from, to }).collect();
     Plan { base: (now.serial, now.values), ops }
-}
-
-pub(crate) fn compare(left: &NovoProfile, right: &NovoProfile) -> Comparison {
-    let mut comparison = Comparison::default();
-    for (item, (left, right)) in ITEMS.into_iter().zip(left.values.into_iter().zip(right.values)) {
-        comparison.add(item.to_owned(), Some(left), Some(right));
-    }
-    comparison
 }

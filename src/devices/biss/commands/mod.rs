@@ -19,7 +19,7 @@ use self::args::{BissAction, DoOptions};
 use crate::app::Text;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol as ubicom;
-use crate::cli::args::{Common, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::args::{Command, Common, Restore, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
@@ -28,7 +28,7 @@ use crate::devices::biss::profile::{ItemError, RegisterRange};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::sim;
 use crate::kinds::at_adapter;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
@@ -86,36 +86,18 @@ impl DeviceCommands for BissCommands {
         values_of::<BissAction>().into_iter().filter(is_combined).collect()
     }
 
-    fn identify(&self, common: &Common, output: &Output) -> Result {
-        inspect::identify(common, output)
-    }
-
-    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
-        inspect::status(common, output)
-    }
-
-    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
-        inspect::position(common, output, position)
-    }
-
-    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
-        inspect::read(common, output, &read.item)
-    }
-
-    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
-        profiles::save(common, output, save)
-    }
-
-    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
-        write::write(common, output, write)
-    }
-
-    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
-        act::act(common, output, act)
-    }
-
-    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
-        decode::decode(output, &arguments.hex)
+    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+        Some(match command {
+            Command::Identify(_) => inspect::identify(common, output),
+            Command::Status(_) => inspect::status(common, output),
+            Command::Position(position) => inspect::position(common, output, position),
+            Command::Read(read) => inspect::read(common, output, &read.item),
+            Command::Save(save) => profiles::save(common, output, save),
+            Command::Write(write) => write::write(common, output, write),
+            Command::Do(act) => act::act(common, output, act),
+            Command::Decode(decode) => decode::decode(output, &decode.hex),
+            _ => return None,
+        })
     }
 
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
@@ -128,10 +110,6 @@ impl DeviceCommands for BissCommands {
 
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
         profiles::present(common, output, profile)
-    }
-
-    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-        profiles::compare(left, right)
     }
 
     fn remark(&self, profile: &Body) -> Option<Text> {

@@ -4,18 +4,17 @@ use serde_json::json;
 
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
-use crate::app::{Kinds, Text, explain};
+use crate::app::Text;
 use crate::cli::args::{Common, Restore, Save};
-use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
-use crate::cli::runner::{failed, unexpected};
+use crate::cli::profiles::{Left, keep, restore_options, say_mounting_left, to_restore, write_restore};
+use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
-use crate::devices::biss::profile::{self, BissProfile, ProfileIdentity};
+use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::DeviceMode;
 use crate::devices::biss::state::explain as words;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common, BissJob::Save)?;
@@ -33,11 +32,6 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 /// The encoder as it is, for a comparison: refused where it shows what was never saved.
 pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
     Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
-}
-
-/// What differs between two profiles.
-pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
 }
 
 /// That it was read in a device mode, where it was.
@@ -63,13 +57,8 @@ fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile
-        .into_profile::<BissProfile>()
-        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
     let options = restore_options(restore)?;
-    if !restore.dry_run {
-        require_consent(&restore.consent)?;
-    }
+    let profile = to_restore::<BissProfile>(restore, profile)?;
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
     if let Some(types) = &prepared.other_type {
@@ -78,17 +67,11 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: the encoder does not have it"));
     }
-    for range in &prepared.mounting_left {
-        output.remark(&format!(
-            "{range} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
-        ));
-    }
+    say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
     let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-    left.warn(output);
-    if restore.dry_run {
-        return show_dry_run(output, &shown(&prepared), &left);
-    }
-    let (spent, _) = commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE)?;
-    show_restored(output, &spent, &left)
+    let plan = shown(&prepared);
+    write_restore(output, restore, &plan, &left, || {
+        commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE).map(|(spent, _)| spent)
+    })
 }

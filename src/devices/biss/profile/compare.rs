@@ -7,7 +7,7 @@ use crate::profile::difference::runs;
 use crate::profile::{Comparison, Difference};
 
 /// Compares filter, preset value and plain data. What is only recorded is not part of it.
-pub fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
+pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     let mut comparison = Comparison::default();
     let filter = |profile: &BissProfile| profile.filter.map(|filter| vec![filter.byte()]);
     compare_bytes(BissProfile::FILTER, filter(left), filter(right), &mut comparison);

@@ -13,7 +13,6 @@ mod restore;
 mod test_profiles;
 mod text;
 
-pub use compare::compare;
 pub use edit::{
     MotorSource, MountingRun, Place, place, plan_edits, plan_filter, plan_mounting, plan_preset, procedure,
 };

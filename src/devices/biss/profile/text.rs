@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{self, DeviceMode, Filter, Firmware, PresetV
 use crate::expected::Expected;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Writer, quoted};
-use crate::profile::{Profile, ProfileError};
+use crate::profile::{Comparison, Profile, ProfileError};
 
 /// Three registers hold a preset value.
 const PRESET_NUMBER: Expected = Expected::between(0, 16_777_215);
@@ -65,6 +65,10 @@ impl Profile for BissProfile {
             image.write(writer);
         }
         writer.close(']');
+    }
+
+    fn compare(&self, other: &Self) -> Comparison {
+        super::compare::compare(self, other)
     }
 }
 

@@ -19,7 +19,7 @@ use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, Args};
 
 use self::args::{DoOptions, HiperdriveAction, HubOption, Move, OfDrive, WordOptions};
-use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::args::{Command, Common, Restore, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::Simulated;
@@ -27,7 +27,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::profile::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{KIND, PARAMETERS};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 /// What can be done with drives.
 pub(crate) struct HiperdriveCommands;
@@ -91,40 +91,19 @@ impl DeviceCommands for HiperdriveCommands {
         true
     }
 
-    fn find(&self, common: &Common, output: &Output, _: &Find) -> Result {
-        find::find(common, output)
-    }
-
-    fn identify(&self, common: &Common, output: &Output) -> Result {
-        inspect::identify(common, output)
-    }
-
-    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
-        inspect::status(common, output)
-    }
-
-    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
-        position::position(common, output, position)
-    }
-
-    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
-        inspect::read(common, output, read)
-    }
-
-    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
-        profiles::save(common, output, save)
-    }
-
-    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
-        write::write(common, output, write)
-    }
-
-    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
-        act::act(common, output, act)
-    }
-
-    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
-        decode::decode(output, arguments)
+    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+        Some(match command {
+            Command::Find(_) => find::find(common, output),
+            Command::Identify(_) => inspect::identify(common, output),
+            Command::Status(_) => inspect::status(common, output),
+            Command::Position(position) => position::position(common, output, position),
+            Command::Read(read) => inspect::read(common, output, read),
+            Command::Save(save) => profiles::save(common, output, save),
+            Command::Write(write) => write::write(common, output, write),
+            Command::Do(act) => act::act(common, output, act),
+            Command::Decode(decode) => decode::decode(output, decode),
+            _ => return None,
+        })
     }
 
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
@@ -137,10 +116,6 @@ impl DeviceCommands for HiperdriveCommands {
 
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
         profiles::present(common, output, profile)
-    }
-
-    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-        profiles::compare(left, right)
     }
 
     fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {

@@ -4,17 +4,15 @@ use serde_json::json;
 
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
-use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Restore, Save};
-use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
-use crate::cli::runner::{failed, unexpected};
+use crate::cli::profiles::{Left, keep, restore_options, to_restore, write_restore};
+use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
 use crate::devices::hiperdrive::state::explain as words;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common)?;
@@ -36,11 +34,6 @@ fn saved(common: &Common) -> Result<HiperdriveProfile> {
         HiperdriveOutput::Saved(profile) => Ok(*profile),
         other => Err(unexpected(&other)),
     }
-}
-
-/// What differs between two profiles.
-pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
 }
 
 /// That two profiles are not of the same device, or of the same drives. One without a serial number is of none.
@@ -69,13 +62,8 @@ fn absent(prepared: &Prepared) -> Vec<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile
-        .into_profile::<HiperdriveProfile>()
-        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
     let options = restore_options(restore)?;
-    if !restore.dry_run {
-        require_consent(&restore.consent)?;
-    }
+    let profile = to_restore::<HiperdriveProfile>(restore, profile)?;
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
     for types in &prepared.other_types {
@@ -93,10 +81,6 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
     let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-    left.warn(output);
-    if restore.dry_run {
-        return show_dry_run(output, &shown(&prepared), &left);
-    }
-    let spent = commit(&mut runner, output, prepared, &restore.consent)?;
-    show_restored(output, &spent, &left)
+    let plan = shown(&prepared);
+    write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }

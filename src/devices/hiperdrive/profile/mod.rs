@@ -1,7 +1,6 @@
 //! HIPERDRIVE: what an adapter or a hub keeps of itself and its drives, what is saved of it, how two differ, and what a write
 //! would do.
 
-mod compare;
 mod edit;
 mod entry_error;
 mod error;
@@ -16,7 +15,6 @@ mod test_profiles;
 mod text;
 mod warning;
 
-pub use compare::compare;
 pub use edit::{Positions, plan_edits, plan_service, plan_set_position};
 pub use entry_error::EntryError;
 pub use error::{OtherType, PlanError};

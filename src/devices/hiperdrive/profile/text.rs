@@ -7,7 +7,7 @@ use super::{EntryError, HiperdriveProfile, Image, Item, Kept, MountingMark, Prof
 use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
 use crate::expected::Expected;
 use crate::profile::ron_text::{Entries, Writer, value_text};
-use crate::profile::{Profile, ProfileError};
+use crate::profile::{Comparison, Profile, ProfileError};
 
 const PLACE: Expected = Expected::between(1, 8);
 const VARIANT: Expected = Expected::between(0, 65_535);
@@ -67,6 +67,15 @@ impl Profile for HiperdriveProfile {
             writer.close(')');
         }
         writer.close(']');
+    }
+
+    /// Compares the parameters that are kept. Who the devices are is not part of it, nor what is measured.
+    fn compare(&self, other: &Self) -> Comparison {
+        let mut comparison = Comparison::default();
+        for number in self.image.with(&other.image).values.into_keys() {
+            comparison.add(Item(number).to_string(), self.image.get(number), other.image.get(number));
+        }
+        comparison
     }
 }
 

@@ -6,7 +6,7 @@ use serde_json::{Value as Json, json};
 
 use super::args;
 use crate::bits::{hex, hex_compact};
-use crate::cli::args::{Common, Position};
+use crate::cli::args::{Common, Find, Position};
 use crate::cli::consent::can_ask;
 use crate::cli::output::{Lines, Output};
 use crate::cli::positions::readings;
@@ -23,7 +23,7 @@ use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{EncoderTypes, KIND, LineSettings, StatusCode};
 use crate::devices::hiperface::state::explain as explained;
 
-pub(super) fn find(common: &Common, output: &Output, find: &args::FindOptions) -> Result {
+pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     if let Some(url) = &common.link
         && may_have_other_master(url)
         && !common.only_master
@@ -35,6 +35,7 @@ pub(super) fn find(common: &Common, output: &Output, find: &args::FindOptions) -
                 .to_owned(),
         ));
     }
+    let find = find.own.read::<args::FindOptions>()?;
     let mut runner = Runner::open(common)?;
     let power_cycle = find.power_cycle.map(Duration::from_secs);
     output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");

@@ -16,7 +16,7 @@ use clap::builder::PossibleValue;
 use self::args::{DoOptions, FindOptions, HiperfaceAction};
 use self::codes::CodeOption;
 use crate::app::Given;
-use crate::cli::args::{Common, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::args::{Command, Common, Restore, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, OwnOptions, options_of, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
@@ -24,7 +24,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{KIND, LineSettings};
 use crate::devices::hiperface::sim::{Bus, Config};
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 use crate::units::{CharacterFormat, Moment};
 
 /// What can be done with HIPERFACE encoders.
@@ -91,40 +91,19 @@ impl DeviceCommands for HiperfaceCommands {
         true
     }
 
-    fn find(&self, common: &Common, output: &Output, find: &Find) -> Result {
-        inspect::find(common, output, &find.own.read()?)
-    }
-
-    fn identify(&self, common: &Common, output: &Output) -> Result {
-        inspect::identify(common, output)
-    }
-
-    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
-        inspect::status(common, output)
-    }
-
-    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
-        inspect::position(common, output, position)
-    }
-
-    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
-        inspect::read(common, output, &read.item)
-    }
-
-    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
-        profiles::save(common, output, save)
-    }
-
-    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
-        write::write(common, output, write)
-    }
-
-    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
-        act::act(common, output, act)
-    }
-
-    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
-        decode::decode(output, &arguments.hex)
+    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+        Some(match command {
+            Command::Find(find) => inspect::find(common, output, find),
+            Command::Identify(_) => inspect::identify(common, output),
+            Command::Status(_) => inspect::status(common, output),
+            Command::Position(position) => inspect::position(common, output, position),
+            Command::Read(read) => inspect::read(common, output, &read.item),
+            Command::Save(save) => profiles::save(common, output, save),
+            Command::Write(write) => write::write(common, output, write),
+            Command::Do(act) => act::act(common, output, act),
+            Command::Decode(decode) => decode::decode(output, &decode.hex),
+            _ => return None,
+        })
     }
 
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
@@ -137,10 +116,6 @@ impl DeviceCommands for HiperfaceCommands {
 
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
         profiles::present(common, output, profile)
-    }
-
-    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-        profiles::compare(left, right)
     }
 
     fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {

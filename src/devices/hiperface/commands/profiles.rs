@@ -5,20 +5,18 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::write::{commit, operations, plan_text};
-use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Restore, Save};
-use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
 use crate::cli::plan::Shown;
-use crate::cli::profiles::{Left, keep, show_dry_run, show_restored};
-use crate::cli::runner::{failed, unexpected};
+use crate::cli::profiles::{Left, keep, say_mounting_left, to_restore, write_restore};
+use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
 use crate::devices::hiperface::procedures::SaveOptions;
-use crate::devices::hiperface::profile::{self, FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownField};
+use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownField};
 use crate::devices::hiperface::state::explain as words;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let mut runner = Runner::open(common)?;
@@ -54,13 +52,6 @@ pub(super) fn present(common: &Common, output: &Output, _profile: Option<&Body>)
     Ok(Body::new(saved.profile))
 }
 
-/// What differs between two profiles.
-pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    let (left, right) =
-        (left.clone().into_profile::<HiperfaceProfile>()?, right.clone().into_profile::<HiperfaceProfile>()?);
-    Ok(profile::compare(&left.fields, &right.fields))
-}
-
 /// That two profiles are not of the same encoder.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let (profile, device) = (&profile.get::<HiperfaceProfile>()?.identity, &device.get::<HiperfaceProfile>()?.identity);
@@ -74,12 +65,7 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile
-        .into_profile::<HiperfaceProfile>()
-        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
-    if !restore.dry_run {
-        require_consent(&restore.consent)?;
-    }
+    let profile = to_restore::<HiperfaceProfile>(restore, profile)?;
     let options = RestoreOptions {
         allow_other_device: restore.allow_other_device,
         allow_other_type: restore.allow_other_type,
@@ -103,20 +89,12 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: profile or encoder does not have it, or it cannot be read"));
     }
-    for range in &prepared.mounting_left {
-        output.remark(&format!(
-            "{range} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
-        ));
-    }
+    say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.redo().iter().map(ToString::to_string).collect();
     let missing = prepared.missing.iter().map(ToString::to_string).collect();
     let left = Left { unchanged: prepared.unchanged, missing, redo };
-    left.warn(output);
-    if restore.dry_run {
-        return show_dry_run(output, &shown(&prepared), &left);
-    }
-    let spent = commit(&mut runner, output, prepared, &restore.consent)?;
-    show_restored(output, &spent, &left)
+    let plan = shown(&prepared);
+    write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }
 
 /// What the command line answers about data fields whose bytes have no known meaning.

@@ -10,7 +10,6 @@ mod record;
 mod restore;
 
 pub use commutation::{CommutationRecord, Damaged};
-pub use compare::compare;
 pub use edit::{plan_create, plan_delete, plan_redefine, plan_scalar, plan_store};
 pub use entry_error::EntryError;
 pub use item::{FieldRange, Item, ItemError, PlanItem};

@@ -5,7 +5,7 @@ use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
 use crate::expected::Expected;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Unknown, Writer};
-use crate::profile::{Profile, ProfileError};
+use crate::profile::{Comparison, Profile, ProfileError};
 
 /// A HIPERFACE encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -197,6 +197,10 @@ impl Profile for HiperfaceProfile {
             write_field(writer, field, None);
         }
         writer.close(']');
+    }
+
+    fn compare(&self, other: &Self) -> Comparison {
+        super::compare::compare(&self.fields, &other.fields)
     }
 }
 

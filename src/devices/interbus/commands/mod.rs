@@ -17,7 +17,7 @@ use clap::Arg;
 use clap::builder::PossibleValue;
 
 use self::args::{InterbusAction, WordOptions};
-use crate::cli::args::{Common, Consenting, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::args::{Command, Common, Consenting, Restore, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::consent::{ask, can_ask};
 use crate::cli::output::Output;
@@ -27,7 +27,7 @@ use crate::devices::interbus::profile::{Item, ItemError};
 use crate::devices::interbus::protocol::KIND;
 use crate::devices::interbus::state::TEXTS;
 use crate::link::Scheme;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 /// What can be done with INTERBUS encoders.
 pub(crate) struct InterbusCommands;
@@ -82,36 +82,18 @@ impl DeviceCommands for InterbusCommands {
         values_of::<InterbusAction>()
     }
 
-    fn identify(&self, common: &Common, output: &Output) -> Result {
-        inspect::identify(common, output)
-    }
-
-    fn status(&self, common: &Common, output: &Output, _: &Status) -> Result {
-        inspect::status(common, output)
-    }
-
-    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
-        position::position(common, output, position)
-    }
-
-    fn read(&self, common: &Common, output: &Output, read: &Read) -> Result {
-        inspect::read(common, output, &read.item)
-    }
-
-    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
-        profiles::save(common, output, save)
-    }
-
-    fn write(&self, common: &Common, output: &Output, write: &Write) -> Result {
-        write::write(common, output, write)
-    }
-
-    fn act(&self, common: &Common, output: &Output, act: &Do) -> Result {
-        act::act(common, output, act)
-    }
-
-    fn decode(&self, output: &Output, arguments: &Decode) -> Result {
-        decode::decode(output, arguments)
+    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+        Some(match command {
+            Command::Identify(_) => inspect::identify(common, output),
+            Command::Status(_) => inspect::status(common, output),
+            Command::Position(position) => position::position(common, output, position),
+            Command::Read(read) => inspect::read(common, output, &read.item),
+            Command::Save(save) => profiles::save(common, output, save),
+            Command::Write(write) => write::write(common, output, write),
+            Command::Do(act) => act::act(common, output, act),
+            Command::Decode(decode) => decode::decode(output, decode),
+            _ => return None,
+        })
     }
 
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
@@ -124,10 +106,6 @@ impl DeviceCommands for InterbusCommands {
 
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
         profiles::present(common, output, profile)
-    }
-
-    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-        profiles::compare(left, right)
     }
 
     fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {

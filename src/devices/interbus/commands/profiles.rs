@@ -5,17 +5,15 @@ use serde_json::json;
 use super::Disturbs;
 use super::plan::{commit, prepare, shown};
 use super::run::{Runner, programs, survey};
-use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Restore, Save};
-use crate::cli::consent::require_consent;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, restore_options, show_dry_run, show_restored};
-use crate::cli::runner::{failed, unexpected};
+use crate::cli::profiles::{Left, keep, restore_options, say_mounting_left, to_restore, write_restore};
+use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{self, Image, InterbusProfile, PlanError, Recorded, programs_needed};
 use crate::devices::interbus::state::explain as words;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common, output)?;
@@ -64,11 +62,6 @@ fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Res
     Ok(InterbusProfile::of(survey.identity.profile(), image, Recorded::default()))
 }
 
-/// What differs between two profiles.
-pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
-}
-
 /// That two profiles are not of the same encoder. One without a serial number is of none.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let error =
@@ -83,13 +76,8 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = profile
-        .into_profile::<InterbusProfile>()
-        .map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))?;
     let options = restore_options(restore)?;
-    if !restore.dry_run {
-        require_consent(&restore.consent)?;
-    }
+    let profile = to_restore::<InterbusProfile>(restore, profile)?;
     let mut runner = Runner::open(common)?;
     let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
     disturbs.begin(common, output, Some(&restore.consent))?;
@@ -100,17 +88,9 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     for item in &prepared.missing {
         output.remark(&format!("{item} is left alone: the encoder does not have it"));
     }
-    for item in &prepared.mounting_left {
-        output.remark(&format!(
-            "{item} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
-        ));
-    }
+    say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
     let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-    left.warn(output);
-    if restore.dry_run {
-        return show_dry_run(output, &shown(&prepared), &left);
-    }
-    let spent = commit(&mut runner, output, prepared, &restore.consent)?;
-    show_restored(output, &spent, &left)
+    let plan = shown(&prepared);
+    write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }

@@ -1,6 +1,5 @@
 //! INTERBUS: what a K3 encoder holds, what is saved of it, how two differ, and what a write would do.
 
-mod compare;
 mod edit;
 mod entry_error;
 mod error;
@@ -16,7 +15,6 @@ mod table;
 mod test_profiles;
 mod text;
 
-pub use compare::compare;
 pub use edit::{plan_default, plan_edits, plan_preset};
 pub use entry_error::EntryError;
 pub use error::{OtherType, PlanError};

@@ -10,7 +10,7 @@ use crate::devices::interbus::protocol::{
 use crate::expected::Expected;
 use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
-use crate::profile::{Profile, ProfileError};
+use crate::profile::{Comparison, Profile, ProfileError};
 
 const NUMBER: Expected = Expected::between(0, Value::MAX.get() as i128);
 const DIRECTION: Expected = Expected::words(&["cw", "ccw"]);
@@ -63,6 +63,15 @@ impl Profile for InterbusProfile {
             }
             writer.close(']');
         }
+    }
+
+    /// Compares parameters, the shift of the window, masks and cams. What is only recorded is not part of it, nor are names.
+    fn compare(&self, other: &Self) -> Comparison {
+        let mut comparison = Comparison::default();
+        for item in Item::writable() {
+            comparison.add(item.to_string(), self.image.item(item), other.image.item(item));
+        }
+        comparison
     }
 }
 

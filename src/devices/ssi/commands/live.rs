@@ -7,7 +7,7 @@ use super::frames::{Told, name};
 use super::layout::{Chosen, choose};
 use super::run::{begin, words};
 use crate::analysis::Time;
-use crate::cli::args::{Common, Position};
+use crate::cli::args::{Common, Position, Status};
 use crate::cli::output::{Lines, Output, count, say};
 use crate::cli::positions::readings;
 use crate::cli::runner::Ended;
@@ -141,8 +141,8 @@ fn row(at: Moment, told: &Told<'_>) -> String {
     )
 }
 
-pub(super) fn status(common: &Common, output: &Output, given: &LayoutOption) -> Result {
-    let chosen = layout(output, "status", given)?;
+pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Result {
+    let chosen = layout(output, "status", &status.own.read()?)?;
     let mut runner = begin(common, output, &chosen)?;
     let words = words(runner.run(SsiJob::Read)?)?;
     let Some((_, word)) = words.timed().next() else {

@@ -13,7 +13,7 @@ use clap::{Arg, ArgMatches, Subcommand};
 
 use self::args::{LayoutOption, Ssi, SsiLayout};
 use crate::buses::bridge::sim::{Adapter, Attachable};
-use crate::cli::args::{Common, Decode, Do, Position, Read, Restore, Save, Simulate, Status, Write};
+use crate::cli::args::{Command, Common, Restore, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
@@ -21,7 +21,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::ssi::protocol::KIND;
 use crate::devices::ssi::sim::{AtAdapter, Encoder};
 use crate::kinds::at_adapter;
-use crate::profile::{Body, Comparison, ProfileError};
+use crate::profile::Body;
 
 /// What can be done with SSI encoders. They send their position and have no memory.
 pub(crate) struct SsiCommands;
@@ -62,36 +62,18 @@ impl DeviceCommands for SsiCommands {
         &[&SsiCommand]
     }
 
-    fn identify(&self, _: &Common, _: &Output) -> Result {
-        refuse("identify", "its type label says who it is")
-    }
-
-    fn status(&self, common: &Common, output: &Output, status: &Status) -> Result {
-        live::status(common, output, &status.own.read()?)
-    }
-
-    fn position(&self, common: &Common, output: &Output, position: &Position) -> Result {
-        live::position(common, output, position)
-    }
-
-    fn read(&self, _: &Common, _: &Output, _: &Read) -> Result {
-        refuse("read", "there are no registers in it")
-    }
-
-    fn save(&self, common: &Common, output: &Output, save: &Save) -> Result {
-        profiles::save(common, output, save)
-    }
-
-    fn write(&self, _: &Common, _: &Output, _: &Write) -> Result {
-        refuse("write", SET)
-    }
-
-    fn act(&self, _: &Common, _: &Output, _: &Do) -> Result {
-        refuse("do", SET)
-    }
-
-    fn decode(&self, _: &Output, _: &Decode) -> Result {
-        refuse("decode", "use ssi decode --layout FILE|SPEC FRAME")
+    fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
+        Some(match command {
+            Command::Identify(_) => refuse("identify", "its type label says who it is"),
+            Command::Status(status) => live::status(common, output, status),
+            Command::Position(position) => live::position(common, output, position),
+            Command::Read(_) => refuse("read", "there are no registers in it"),
+            Command::Save(save) => profiles::save(common, output, save),
+            Command::Write(_) => refuse("write", SET),
+            Command::Do(_) => refuse("do", SET),
+            Command::Decode(_) => refuse("decode", "use ssi decode --layout FILE|SPEC FRAME"),
+            _ => return None,
+        })
     }
 
     fn restore(&self, _: &Common, _: &Output, _: &Restore, _: Body) -> Result {
@@ -104,10 +86,6 @@ impl DeviceCommands for SsiCommands {
 
     fn present(&self, _: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {
         refuse("reading a profile from a link", "compare two files with diff FILE FILE")
-    }
-
-    fn compare(&self, left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-        profiles::compare(left, right)
     }
 }
 

@@ -11,8 +11,8 @@ use crate::cli::args::{Common, Save};
 use crate::cli::output::{Output, count};
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
-use crate::devices::ssi::profile::{self, SsiProfile};
-use crate::profile::{Body, Comparison, Document, ProfileError};
+use crate::devices::ssi::profile::SsiProfile;
+use crate::profile::{Body, Document};
 use crate::store::write_atomically;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
@@ -38,9 +38,4 @@ pub(super) fn document(profile: SsiProfile) -> Document {
 
 pub(super) fn write(path: &Path, text: &str) -> Result<()> {
     write_atomically(path, text.as_bytes()).map_err(|error| failed(&explain::file(&error)))
-}
-
-/// What differs between two profiles.
-pub(super) fn compare(left: &Body, right: &Body) -> std::result::Result<Comparison, ProfileError> {
-    Ok(profile::compare(&left.clone().into_profile()?, &right.clone().into_profile()?))
 }

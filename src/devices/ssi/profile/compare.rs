@@ -5,7 +5,7 @@ use crate::devices::ssi::protocol::{Range, Word};
 use crate::profile::{Comparison, Difference};
 
 /// Compares frame, direction, preset and how both are read. What is left out in a file counts with its value.
-pub fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
+pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     let (left, right) = (items(left), items(right));
     let mut comparison = Comparison::default();
     for (item, left) in &left {

@@ -6,6 +6,5 @@ mod entry_error;
 mod record;
 mod text;
 
-pub use compare::compare;
 pub use entry_error::EntryError;
 pub use record::{Kept, ReadingSettings, SsiProfile};

@@ -12,7 +12,7 @@ use crate::devices::ssi::protocol::{
 };
 use crate::expected::Expected;
 use crate::profile::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
-use crate::profile::{Profile, ProfileError};
+use crate::profile::{Comparison, Profile, ProfileError};
 
 const SMALL: Expected = Expected::between(0, 255);
 const FLAG: Expected = Expected::words(&["true", "false"]);
@@ -62,6 +62,10 @@ impl Profile for SsiProfile {
             writer.entry("preset", &self.preset.to_string(), "");
         }
         self.write_reading(writer);
+    }
+
+    fn compare(&self, other: &Self) -> Comparison {
+        super::compare::compare(self, other)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_of, number, profile};
-use crate::devices::hiperdrive::profile::{MountingMark, Op, Service, compare};
+use crate::devices::hiperdrive::profile::{MountingMark, Op, Service};
 use crate::devices::hiperdrive::protocol::{Topology, Variant};
 use crate::profile::{Document, Profile};
 
@@ -115,7 +115,7 @@ fn differences_are_named_by_drive() {
     let mut right = profile();
     right.image = image(&[1, 3, 4]).with(&image_of(&[(24, 1), (166, 100), (366, 200)]));
     right.image.values.remove(&number(190));
-    let comparison = compare(&profile(), &right);
+    let comparison = profile().compare(&right);
     let differences: Vec<(&str, &str, &str)> =
         comparison.differences.iter().map(|own| (own.item.as_str(), own.left.as_str(), own.right.as_str())).collect();
     assert_eq!(differences, [("24", "0", "1"), ("166", "350", "100"), ("166 drive 3", "350", "200")]);

@@ -1,7 +1,7 @@
 //! What a restore writes, leaves and refuses; what a comparison names.
 
 use super::super::test_profiles::{edges, identity, image, profile, value, with};
-use super::super::{Base, ItemValue, Op, compare};
+use super::super::{Base, ItemValue, Op};
 use super::*;
 use crate::devices::interbus::protocol::{Flags, WindowShift};
 use crate::profile::{Document, Profile};
@@ -180,13 +180,13 @@ fn the_ready_made_profiles_do_what_they_say() {
 fn a_comparison_names_what_differs() {
     let (left, mut right) = (profile(MINE), profile("7654321"));
     right.recorded.temperature_tenths = None;
-    assert_eq!(compare(&left, &right).compared, 78);
-    assert!(compare(&left, &right).differences.is_empty());
+    assert_eq!(left.compare(&right).compared, 78);
+    assert!(left.compare(&right).differences.is_empty());
     right.image = with(&right.image, &[("direction", ItemValue::Direction(super::super::Direction::Counterclockwise))]);
     right.image = with(&right.image, &[("cam:2:5", Cam(edges(1, 2))), ("cam-mask:2", Mask(0x0F))]);
     right.image.shift = WindowShift::new(25);
     right.image.programs[7] = None;
-    let comparison = compare(&left, &right);
+    let comparison = left.compare(&right);
     let found: Vec<[&str; 3]> =
         comparison.differences.iter().map(|own| [own.item.as_str(), own.left.as_str(), own.right.as_str()]).collect();
     let expected = [
