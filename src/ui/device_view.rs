@@ -17,29 +17,32 @@ pub struct PageInfo {
     pub help: &'static str,
 }
 
+impl PageInfo {
+    /// A page with its icon, and its name and help as the table of texts calls them.
+    pub const fn new(icon: &'static str, word: &'static str, help: &'static str) -> Self {
+        PageInfo { icon, word, help }
+    }
+}
+
 /// The pages of a tab.
 pub trait TabPage: Copy + PartialEq + Default + 'static {
     /// All pages, in the order of the navigation.
-    const ALL: &'static [Self];
+    const PAGES: &'static [(Self, PageInfo)];
 
-    /// Returns the icon of the page.
-    fn icon(self) -> &'static str;
-
-    /// Returns the name of the page, as the table of texts calls it.
-    fn word(self) -> &'static str;
-
-    /// Returns the help for the page, as the table of texts calls it.
-    fn help(self) -> &'static str;
+    /// Returns its place among all of its tab.
+    fn place(self) -> usize {
+        Self::PAGES.iter().position(|(own, _)| *own == self).unwrap_or_default()
+    }
 }
 
 /// Returns all pages of a tab.
 pub(crate) fn infos<P: TabPage>() -> Vec<PageInfo> {
-    P::ALL.iter().map(|page| PageInfo { icon: page.icon(), word: page.word(), help: page.help() }).collect()
+    P::PAGES.iter().map(|(_, info)| *info).collect()
 }
 
-/// Returns the place of a page among all of its tab.
-pub(crate) fn place_of<P: TabPage>(page: P) -> usize {
-    P::ALL.iter().position(|own| *own == page).unwrap_or_default()
+/// Returns the page at a place; `None`: the tab has not so many.
+pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
+    P::PAGES.get(place).map(|(page, _)| *page)
 }
 
 /// The view of a kind of device, as the device implements it.
@@ -222,18 +225,16 @@ impl<M: Default> Memory<M> {
 
 impl<V: TypedDeviceView> SessionView for Session<V> {
     fn page(&self) -> usize {
-        place_of(self.page)
+        self.page.place()
     }
 
     fn open(&mut self, page: usize) {
-        if let Some(page) = V::Page::ALL.get(page) {
-            self.page = *page;
-        }
+        self.page = page_at(page).unwrap_or(self.page);
     }
 
     fn is_edited(&self, device: &AnyDevice, page: usize) -> bool {
-        let (device, page) = (device.get::<V::Device>(), V::Page::ALL.get(page));
-        device.zip(page).is_some_and(|(device, page)| V::is_edited(device, *page))
+        let (device, page) = (device.get::<V::Device>(), page_at(page));
+        device.zip(page).is_some_and(|(device, page)| V::is_edited(device, page))
     }
 
     fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>) {

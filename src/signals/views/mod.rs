@@ -19,7 +19,7 @@ use egui::Ui;
 use crate::app::{Action, SineCosineSource, Studio, Text, ToolKind};
 use crate::signals::state::input_circuit::Form as Circuit;
 use crate::signals::state::{Signals, SignalsKind, TEXTS};
-use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, place_of};
+use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, page_at};
 use crate::ui::{Skin, icons, page};
 
 /// A page of the tab.
@@ -39,37 +39,13 @@ pub(crate) enum Page {
 }
 
 impl TabPage for Page {
-    const ALL: &'static [Page] = &[Page::Scope, Page::Quality, Page::Error, Page::Synchronise, Page::InputCircuit];
-
-    fn icon(self) -> &'static str {
-        match self {
-            Page::Scope => icons::WAVE_SINE,
-            Page::Quality => icons::TARGET,
-            Page::Error => icons::CHART_LINE,
-            Page::Synchronise => icons::CROSSHAIR,
-            Page::InputCircuit => icons::SLIDERS,
-        }
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Page::Scope => "page.scope",
-            Page::Quality => "page.quality",
-            Page::Error => "page.error",
-            Page::Synchronise => "page.synchronise",
-            Page::InputCircuit => "page.input_circuit",
-        }
-    }
-
-    fn help(self) -> &'static str {
-        match self {
-            Page::Scope => "help.scope",
-            Page::Quality => "help.quality",
-            Page::Error => "help.error",
-            Page::Synchronise => "help.synchronise",
-            Page::InputCircuit => "help.input_circuit",
-        }
-    }
+    const PAGES: &'static [(Self, PageInfo)] = &[
+        (Page::Scope, PageInfo::new(icons::WAVE_SINE, "page.scope", "help.scope")),
+        (Page::Quality, PageInfo::new(icons::TARGET, "page.quality", "help.quality")),
+        (Page::Error, PageInfo::new(icons::CHART_LINE, "page.error", "help.error")),
+        (Page::Synchronise, PageInfo::new(icons::CROSSHAIR, "page.synchronise", "help.synchronise")),
+        (Page::InputCircuit, PageInfo::new(icons::SLIDERS, "page.input_circuit", "help.input_circuit")),
+    ];
 }
 
 /// What is typed and does not count yet, with the reason where it cannot.
@@ -112,13 +88,11 @@ impl ToolView for SignalsView {
 
 impl ToolPages for View {
     fn page(&self) -> usize {
-        place_of(self.page)
+        self.page.place()
     }
 
     fn open(&mut self, page: usize) {
-        if let Some(page) = Page::ALL.get(page) {
-            self.page = *page;
-        }
+        self.page = page_at(page).unwrap_or(self.page);
     }
 
     fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
@@ -137,7 +111,7 @@ fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    page::scrolling(ui, skin, view.page.word(), |ui| match view.page {
+    page::scrolling(ui, skin, ("signals", view.page.place()), |ui| match view.page {
         Page::Scope => {
             if source::source_ui(ui, skin, signals, &mut view.source, actions) {
                 scope::page_ui(ui, skin, signals, view, actions);

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 use encoder_studio::app::connect::Connect as Dialog;
 use encoder_studio::app::{Action as StudioAction, AnyDevice, Rgb, Studio, Text, explain};
 use encoder_studio::ui::controls::{card, entry, settled_entry, text_entry};
-use encoder_studio::ui::{Skin, TabPage, TypedConnectForm, TypedDeviceView, backups, foot, icons, page};
+use encoder_studio::ui::{PageInfo, Skin, TabPage, TypedConnectForm, TypedDeviceView, backups, foot, icons, page};
 
 use super::device_type::NovoForm;
 use super::protocol::ITEMS;
@@ -18,17 +18,10 @@ pub(crate) enum Page {
 }
 
 impl TabPage for Page {
-    const ALL: &'static [Self] = &[Page::Values, Page::Backups];
-
-    fn icon(self) -> &'static str {
-        if self == Page::Values { icons::SLIDERS } else { icons::CLOCK_COUNTER_CLOCKWISE }
-    }
-    fn word(self) -> &'static str {
-        if self == Page::Values { "page.values" } else { "page.backups" }
-    }
-    fn help(self) -> &'static str {
-        if self == Page::Values { "help.values" } else { "help.backups" }
-    }
+    const PAGES: &'static [(Self, PageInfo)] = &[
+        (Page::Values, PageInfo::new(icons::SLIDERS, "page.values", "help.values")),
+        (Page::Backups, PageInfo::new(icons::CLOCK_COUNTER_CLOCKWISE, "page.backups", "help.backups")),
+    ];
 }
 
 /// What is typed for each item and does not count yet.
@@ -55,7 +48,7 @@ impl TypedDeviceView for NovoView {
         (page, typed): (Page, &mut Typed),
         actions: &mut Vec<StudioAction>,
     ) {
-        page::scrolling(ui, skin, (device.id(), page.word()), |ui| match page {
+        page::scrolling(ui, skin, (device.id(), page.place()), |ui| match page {
             Page::Backups => backups::page_ui(ui, skin, device, actions),
             Page::Values => {
                 card(ui, skin, TEXTS.text("novo.values"), |ui| {

@@ -17,7 +17,7 @@ use egui::Ui;
 use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS};
 use crate::ui::controls::{enabled_button, paragraph};
-use crate::ui::device_view::{TabPage, TypedDeviceView};
+use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page, workspace};
 
 /// A page of the tab.
@@ -37,37 +37,13 @@ pub(crate) enum Page {
 }
 
 impl TabPage for Page {
-    const ALL: &'static [Page] = &[Page::Encoder, Page::Registers, Page::Data, Page::Procedures, Page::Backups];
-
-    fn icon(self) -> &'static str {
-        match self {
-            Page::Encoder => icons::CPU,
-            Page::Registers => icons::TABLE,
-            Page::Data => icons::MEMORY,
-            Page::Procedures => icons::LIST_CHECKS,
-            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
-        }
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Page::Encoder => "page.encoder",
-            Page::Registers => "page.registers",
-            Page::Data => "page.data",
-            Page::Procedures => "page.procedures",
-            Page::Backups => "page.backups",
-        }
-    }
-
-    fn help(self) -> &'static str {
-        match self {
-            Page::Encoder => "help.biss_encoder",
-            Page::Registers => "help.biss_registers",
-            Page::Data => "help.biss_data",
-            Page::Procedures => "help.biss_procedures",
-            Page::Backups => "help.backups",
-        }
-    }
+    const PAGES: &'static [(Self, PageInfo)] = &[
+        (Page::Encoder, PageInfo::new(icons::CPU, "page.encoder", "help.biss_encoder")),
+        (Page::Registers, PageInfo::new(icons::TABLE, "page.registers", "help.biss_registers")),
+        (Page::Data, PageInfo::new(icons::MEMORY, "page.data", "help.biss_data")),
+        (Page::Procedures, PageInfo::new(icons::LIST_CHECKS, "page.procedures", "help.biss_procedures")),
+        (Page::Backups, PageInfo::new(icons::CLOCK_COUNTER_CLOCKWISE, "page.backups", "help.backups")),
+    ];
 }
 
 impl Page {
@@ -152,7 +128,7 @@ impl TypedDeviceView for BissView {
             });
             return;
         }
-        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| match page {
+        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| match page {
             Page::Backups => backups::page_ui(ui, skin, device, actions),
             Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
             _ => encoder::page_ui(ui, skin, encoder, actions),

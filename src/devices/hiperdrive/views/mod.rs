@@ -26,7 +26,7 @@ use egui::{ScrollArea, Ui};
 use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::Unit;
-use crate::ui::device_view::{TabPage, TypedDeviceView};
+use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, foot, icons, workspace};
 
 /// A page of the tab.
@@ -48,41 +48,14 @@ pub(crate) enum Page {
 }
 
 impl TabPage for Page {
-    const ALL: &'static [Page] =
-        &[Page::Motion, Page::Parameters, Page::Axis, Page::Diagnosis, Page::Device, Page::Backups];
-
-    fn icon(self) -> &'static str {
-        match self {
-            Page::Motion => icons::GAUGE,
-            Page::Parameters => icons::SLIDERS,
-            Page::Axis => icons::RULER,
-            Page::Diagnosis => icons::MAGNIFYING_GLASS,
-            Page::Device => icons::CPU,
-            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
-        }
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Page::Motion => "page.motion",
-            Page::Parameters => "page.parameters",
-            Page::Axis => "page.axis",
-            Page::Diagnosis => "page.diagnosis",
-            Page::Device => "page.device",
-            Page::Backups => "page.backups",
-        }
-    }
-
-    fn help(self) -> &'static str {
-        match self {
-            Page::Motion => "help.hd_motion",
-            Page::Parameters => "help.hd_parameters",
-            Page::Axis => "help.hd_axis",
-            Page::Diagnosis => "help.hd_diagnosis",
-            Page::Device => "help.hd_device",
-            Page::Backups => "help.backups",
-        }
-    }
+    const PAGES: &'static [(Self, PageInfo)] = &[
+        (Page::Motion, PageInfo::new(icons::GAUGE, "page.motion", "help.hd_motion")),
+        (Page::Parameters, PageInfo::new(icons::SLIDERS, "page.parameters", "help.hd_parameters")),
+        (Page::Axis, PageInfo::new(icons::RULER, "page.axis", "help.hd_axis")),
+        (Page::Diagnosis, PageInfo::new(icons::MAGNIFYING_GLASS, "page.diagnosis", "help.hd_diagnosis")),
+        (Page::Device, PageInfo::new(icons::CPU, "page.device", "help.hd_device")),
+        (Page::Backups, PageInfo::new(icons::CLOCK_COUNTER_CLOCKWISE, "page.backups", "help.backups")),
+    ];
 }
 
 impl Page {
@@ -159,7 +132,7 @@ impl TypedDeviceView for HiperdriveView {
             frame.show(ui, |ui| parameters::page_ui(ui, skin, unit, &mut view.parameters, actions));
             return;
         }
-        ScrollArea::vertical().id_salt((unit.session.id, page.word())).auto_shrink(false).show(ui, |ui| {
+        ScrollArea::vertical().id_salt((unit.session.id, page.place())).auto_shrink(false).show(ui, |ui| {
             frame.show(ui, |ui| match page {
                 // No entry, and nothing that undoes what was typed into it, is another drive's.
                 Page::Motion => {

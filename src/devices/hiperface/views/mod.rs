@@ -13,7 +13,7 @@ use egui::Ui;
 
 use crate::app::{Action, AnyDevice, PendingEdits, Rgb, Studio};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
-use crate::ui::device_view::{TabPage, TypedDeviceView};
+use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, icons, page};
 
 /// A page of the tab.
@@ -35,41 +35,14 @@ pub(crate) enum Page {
 }
 
 impl TabPage for Page {
-    const ALL: &'static [Page] =
-        &[Page::Encoder, Page::Memory, Page::Values, Page::Setup, Page::Commutation, Page::Backups];
-
-    fn icon(self) -> &'static str {
-        match self {
-            Page::Encoder => icons::CPU,
-            Page::Memory => icons::MEMORY,
-            Page::Values => icons::GAUGE,
-            Page::Setup => icons::SLIDERS,
-            Page::Commutation => icons::LIGHTNING,
-            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
-        }
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Page::Encoder => "page.encoder",
-            Page::Memory => "page.memory",
-            Page::Values => "page.values",
-            Page::Setup => "page.setup",
-            Page::Commutation => "page.commutation",
-            Page::Backups => "page.backups",
-        }
-    }
-
-    fn help(self) -> &'static str {
-        match self {
-            Page::Encoder => "help.encoder",
-            Page::Memory => "help.memory",
-            Page::Values => "help.values",
-            Page::Setup => "help.setup",
-            Page::Commutation => "help.commutation",
-            Page::Backups => "help.backups",
-        }
-    }
+    const PAGES: &'static [(Self, PageInfo)] = &[
+        (Page::Encoder, PageInfo::new(icons::CPU, "page.encoder", "help.encoder")),
+        (Page::Memory, PageInfo::new(icons::MEMORY, "page.memory", "help.memory")),
+        (Page::Values, PageInfo::new(icons::GAUGE, "page.values", "help.values")),
+        (Page::Setup, PageInfo::new(icons::SLIDERS, "page.setup", "help.setup")),
+        (Page::Commutation, PageInfo::new(icons::LIGHTNING, "page.commutation", "help.commutation")),
+        (Page::Backups, PageInfo::new(icons::CLOCK_COUNTER_CLOCKWISE, "page.backups", "help.backups")),
+    ];
 }
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
@@ -117,7 +90,7 @@ impl TypedDeviceView for HiperfaceView {
                 .show(ui, |ui| memory::page_ui(ui, skin, (studio, device), encoder, &mut view.memory, actions));
             return;
         }
-        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| match page {
+        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| match page {
             Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
             Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
             Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),

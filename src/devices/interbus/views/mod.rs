@@ -16,7 +16,7 @@ use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::interbus::state::{Encoder, TEXTS};
-use crate::ui::device_view::{TabPage, TypedDeviceView};
+use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{Skin, backups, foot, icons, page};
 
 /// A page of the tab.
@@ -36,37 +36,13 @@ pub(crate) enum Page {
 }
 
 impl TabPage for Page {
-    const ALL: &'static [Page] = &[Page::Encoder, Page::Parameters, Page::Cams, Page::Diagnosis, Page::Backups];
-
-    fn icon(self) -> &'static str {
-        match self {
-            Page::Encoder => icons::CPU,
-            Page::Parameters => icons::SLIDERS,
-            Page::Cams => icons::CHART_LINE,
-            Page::Diagnosis => icons::MAGNIFYING_GLASS,
-            Page::Backups => icons::CLOCK_COUNTER_CLOCKWISE,
-        }
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Page::Encoder => "page.encoder",
-            Page::Parameters => "page.parameters",
-            Page::Cams => "page.cams",
-            Page::Diagnosis => "page.diagnosis",
-            Page::Backups => "page.backups",
-        }
-    }
-
-    fn help(self) -> &'static str {
-        match self {
-            Page::Encoder => "help.ib_encoder",
-            Page::Parameters => "help.ib_parameters",
-            Page::Cams => "help.ib_cams",
-            Page::Diagnosis => "help.ib_diagnosis",
-            Page::Backups => "help.backups",
-        }
-    }
+    const PAGES: &'static [(Self, PageInfo)] = &[
+        (Page::Encoder, PageInfo::new(icons::CPU, "page.encoder", "help.ib_encoder")),
+        (Page::Parameters, PageInfo::new(icons::SLIDERS, "page.parameters", "help.ib_parameters")),
+        (Page::Cams, PageInfo::new(icons::CHART_LINE, "page.cams", "help.ib_cams")),
+        (Page::Diagnosis, PageInfo::new(icons::MAGNIFYING_GLASS, "page.diagnosis", "help.ib_diagnosis")),
+        (Page::Backups, PageInfo::new(icons::CLOCK_COUNTER_CLOCKWISE, "page.backups", "help.backups")),
+    ];
 }
 
 impl Page {
@@ -125,7 +101,7 @@ impl TypedDeviceView for InterbusView {
                 .show_separator_line(false)
                 .show(ui, |ui| foot::foot_ui(ui, skin, (studio, device), foot::Edited::Values, actions));
         }
-        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| {
+        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| {
             if page != Page::Backups {
                 standstill::bar_ui(ui, skin, encoder, actions);
             }

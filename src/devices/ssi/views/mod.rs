@@ -17,7 +17,7 @@ use egui::Ui;
 use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio};
 use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::ui::controls::button;
-use crate::ui::device_view::{TabPage, TypedDeviceView};
+use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{Skin, icons, page};
 
 /// A page of the tab.
@@ -37,37 +37,13 @@ pub(crate) enum Page {
 }
 
 impl TabPage for Page {
-    const ALL: &'static [Page] = &[Page::Frame, Page::Timing, Page::Find, Page::Export, Page::Encoder];
-
-    fn icon(self) -> &'static str {
-        match self {
-            Page::Frame => icons::TABLE,
-            Page::Timing => icons::CLOCK_COUNTER_CLOCKWISE,
-            Page::Find => icons::MAGNIFYING_GLASS,
-            Page::Export => icons::DOWNLOAD_SIMPLE,
-            Page::Encoder => icons::CPU,
-        }
-    }
-
-    fn word(self) -> &'static str {
-        match self {
-            Page::Frame => "page.frame",
-            Page::Timing => "page.timing",
-            Page::Find => "page.find",
-            Page::Export => "page.export",
-            Page::Encoder => "page.encoder",
-        }
-    }
-
-    fn help(self) -> &'static str {
-        match self {
-            Page::Frame => "help.ssi_frame",
-            Page::Timing => "help.ssi_timing",
-            Page::Find => "help.ssi_find",
-            Page::Export => "help.ssi_export",
-            Page::Encoder => "help.ssi_encoder",
-        }
-    }
+    const PAGES: &'static [(Self, PageInfo)] = &[
+        (Page::Frame, PageInfo::new(icons::TABLE, "page.frame", "help.ssi_frame")),
+        (Page::Timing, PageInfo::new(icons::CLOCK_COUNTER_CLOCKWISE, "page.timing", "help.ssi_timing")),
+        (Page::Find, PageInfo::new(icons::MAGNIFYING_GLASS, "page.find", "help.ssi_find")),
+        (Page::Export, PageInfo::new(icons::DOWNLOAD_SIMPLE, "page.export", "help.ssi_export")),
+        (Page::Encoder, PageInfo::new(icons::CPU, "page.encoder", "help.ssi_encoder")),
+    ];
 }
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
@@ -103,7 +79,7 @@ impl TypedDeviceView for SsiView {
         (page, view): (Page, &mut View),
         actions: &mut Vec<Action>,
     ) {
-        page::scrolling(ui, skin, (encoder.session.id, page.word()), |ui| match page {
+        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| match page {
             Page::Frame => frame::page_ui(ui, skin, (studio, device), encoder, view, actions),
             Page::Timing => timing::page_ui(ui, skin, encoder, &mut view.form, actions),
             Page::Find => find::page_ui(ui, skin, encoder, &mut view.find, actions),
