@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 pub use permit::{Permit, Toggle};
 
+use super::session::Kind;
 use super::{Severity, Text, explain};
 use crate::profile::{Plan, PlanId};
 use crate::worker::commit::Planned;
@@ -264,7 +265,7 @@ pub enum Stage {
 }
 
 /// What a kind of device with a memory says about its writes.
-pub trait Reviewed {
+pub trait Reviewed: Kind<Review = Review<Self>> {
     /// What a user wants.
     type Change: Clone;
     /// What was read and planned.

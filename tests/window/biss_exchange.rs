@@ -31,7 +31,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     desk.until("the other one is read", |studio| {
         is_read(studio) && studio.biss().unwrap().serial_number() == Some("2")
     });
-    assert!(encoder(&desk).review.is_none(), "no plan is left for a consent");
+    assert!(encoder(&desk).session.review.is_none(), "no plan is left for a consent");
     assert!(!encoder(&desk).is_dirty());
     assert_eq!(desk.told(Severity::Warning), ["session.other_encoder"]);
     // They are still those of the first.

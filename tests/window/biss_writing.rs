@@ -20,14 +20,14 @@ use crate::support::{Desk, Outside, log};
 #[track_caller]
 fn until_planned(desk: &mut Desk) {
     let planned =
-        |own: &Encoder| own.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Ready(_)));
+        |own: &Encoder| own.session.review.as_ref().is_some_and(|review| matches!(review.state, ReviewState::Ready(_)));
     desk.until("the plan is there", |studio| is_read(studio) && studio.biss().is_some_and(planned));
 }
 
 /// Consents to the plan that is shown.
 fn write(desk: &mut Desk) {
     let own = encoder(desk);
-    let plan = own.review.as_ref().and_then(|review| review.prepared()).expect("a plan is shown").plan.id();
+    let plan = own.session.review.as_ref().and_then(|review| review.prepared()).expect("a plan is shown").plan.id();
     let id = own.session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
@@ -60,7 +60,7 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         }
         command(&mut desk, DeviceCommand::Review);
         until_planned(&mut desk);
-        let prepared = encoder(&desk).review.as_ref().unwrap().prepared().unwrap();
+        let prepared = encoder(&desk).session.review.as_ref().unwrap().prepared().unwrap();
         let [Op::StoreData { registers, .. }] = prepared.plan.ops.as_slice() else { panic!("{:?}", prepared.plan.ops) };
         assert_eq!((registers.len(), prepared.plan.write_cycles()), (3, 1), "{link}");
         write(&mut desk);
@@ -181,7 +181,7 @@ fn the_live_position_says_that_it_waits_for_a_job() {
     let id = screen.studio().biss().unwrap().session.id;
     screen.act(Action::Command(id, DeviceCommand::Poll(Some(Duration::from_millis(50)))));
     screen.act(Action::device(id, Biss::Plan(Box::new(calibration()))));
-    let plan = |studio: &Studio| Some(studio.biss()?.review.as_ref()?.prepared()?.plan.id());
+    let plan = |studio: &Studio| Some(studio.biss()?.session.review.as_ref()?.prepared()?.plan.id());
     screen.until("the plan is there", |studio| is_read(studio) && plan(studio).is_some());
     let own = plan(screen.studio()).unwrap();
     let words = "paused while the job runs";
@@ -202,7 +202,7 @@ fn a_drive_on_this_encoder_is_refused() {
     let run = MountingRun { calibrate: true, ..MountingRun::default() };
     ask(&mut desk, Biss::Plan(Box::new(Change::Guided { run, motor: MotorSource::ThisEncoder })));
     desk.until("it is refused", |studio| {
-        let review = studio.biss().and_then(|own| own.review.as_ref());
+        let review = studio.biss().and_then(|own| own.session.review.as_ref());
         review.is_some_and(|review| matches!(review.state, ReviewState::Failed { begun: false, .. }))
     });
 }

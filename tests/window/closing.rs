@@ -60,13 +60,13 @@ fn escape_stops_first_then_closes_the_dialog_then_the_review() {
 
     desk.act(Action::Escape);
     assert!(desk.encoder().session.line().unwrap().running().unwrap().stopping);
-    assert!(desk.studio.connect.is_some() && desk.encoder().review.is_some());
+    assert!(desk.studio.connect.is_some() && desk.encoder().session.review.is_some());
     desk.wire().release();
     desk.until_ready();
     desk.act(Action::Escape);
-    assert!(desk.studio.connect.is_none() && desk.encoder().review.is_some());
+    assert!(desk.studio.connect.is_none() && desk.encoder().session.review.is_some());
     desk.act(Action::Escape);
-    assert!(desk.encoder().review.is_none());
+    assert!(desk.encoder().session.review.is_none());
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 }
 
@@ -78,10 +78,10 @@ fn a_plan_that_is_being_made_ends_with_its_review() {
     desk.command(DeviceCommand::Review);
     desk.wire().wait_until_held();
     desk.ask(Hiperface::CloseReview);
-    assert!(desk.encoder().review.is_none());
+    assert!(desk.encoder().session.review.is_none());
     desk.wire().release();
     desk.until_ready();
-    assert!(desk.encoder().review.is_none());
+    assert!(desk.encoder().session.review.is_none());
     assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
 }
 

@@ -176,7 +176,7 @@ fn a_typed_position_gives_the_offset_of_the_reference() {
     assert!(desk.why_not().is_some());
     desk.assist(Assistant::Store);
     desk.assist(Assistant::Set);
-    assert!(desk.edits().is_empty() && desk.encoder().review.is_none());
+    assert!(desk.edits().is_empty() && desk.encoder().session.review.is_none());
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn sides_that_are_too_far_apart_are_refused() {
     assert_eq!(desk.offset(), Err("commutation.friction"));
     desk.assist(Assistant::Store);
     desk.assist(Assistant::Set);
-    assert!(desk.edits().is_empty() && desk.encoder().review.is_none());
+    assert!(desk.edits().is_empty() && desk.encoder().session.review.is_none());
     desk.edit(|form| form.limit_deg = "5,7".to_owned());
     let offset = desk.encoder().commutation.offset(desk.encoder().geometry()).unwrap();
     assert!((offset.apart_deg.unwrap() - 5.625).abs() < 1e-9);
@@ -279,7 +279,7 @@ fn method_2_is_refused_where_its_step_is_too_large() {
     }
     desk.edit(|form| (form.periods, form.pole_pairs) = ("16".to_owned(), "5".to_owned()));
     desk.assist(Assistant::Set);
-    assert_eq!((desk.why_not(), desk.encoder().review.is_none()), (Some("commutation.unusable"), true));
+    assert_eq!((desk.why_not(), desk.encoder().session.review.is_none()), (Some("commutation.unusable"), true));
     // SKM36: 128 periods and 4096 turns are 524 288 periods.
     desk.edit(|form| {
         (form.periods, form.pole_pairs, form.period) = (String::new(), "4".to_owned(), "524288".to_owned())

@@ -219,10 +219,10 @@ fn stop_ends_no_reading_that_a_drive_in_hand_waits_for() {
     desk.until("nothing runs", |studio| studio.hiperdrive().unwrap().session.is_ready());
     edit(&mut desk, Edit::Set(number(24), 7));
     command(&mut desk, DeviceCommand::Review);
-    assert!(unit(&desk).review.is_some() && unit(&desk).session.is_busy());
+    assert!(unit(&desk).session.review.is_some() && unit(&desk).session.is_busy());
     let id = unit(&desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Close));
-    assert!(unit(&desk).review.is_none() && unit(&desk).session.is_polling());
+    assert!(unit(&desk).session.review.is_none() && unit(&desk).session.is_polling());
     set(&desk, 160, 65_536);
     desk.until("what rules it is still looked at", |studio| {
         studio.hiperdrive().unwrap().limits(ONE) == Some((-33_488_896, 65_536))

@@ -246,7 +246,7 @@ fn a_review_takes_a_key_only_after_it_was_seen_up() {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
     screen.act(Action::Command(id, DeviceCommand::Review));
-    screen.until("it is planned", |studio| studio.hiperdrive().unwrap().review.is_some());
+    screen.until("it is planned", |studio| studio.hiperdrive().unwrap().session.review.is_some());
     let writes = |studio: &Studio| studio.hiperdrive().unwrap().session.is_writing();
     screen.until("it can be written", |studio| studio.hiperdrive().unwrap().session.is_ready());
     screen.button("review.write").focus();
@@ -266,7 +266,7 @@ fn a_barcode_scanner_writes_nothing() {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));
     screen.act(Action::Command(id, DeviceCommand::Review));
-    screen.until("it is planned", |studio| studio.hiperdrive().unwrap().review.is_some());
+    screen.until("it is planned", |studio| studio.hiperdrive().unwrap().session.review.is_some());
     screen.until("it can be written", |studio| studio.hiperdrive().unwrap().session.is_ready());
     screen.button("review.write").focus();
     screen.steps();

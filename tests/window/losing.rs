@@ -181,7 +181,7 @@ fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
     desk.until_ready();
     desk.settle();
-    assert!(desk.encoder().review.is_none() && desk.edits().is_empty());
+    assert!(desk.encoder().session.review.is_none() && desk.edits().is_empty());
     assert_eq!(desk.times_told("session.other_encoder"), 1);
     assert_eq!(desk.wire().wear(), 0);
 }
@@ -315,7 +315,7 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
     desk.until("it was read in vain", |studio| studio.hiperface().unwrap().session.is_readable());
     assert!(silent(&desk.studio));
     desk.command(DeviceCommand::Review);
-    assert!(desk.encoder().review.is_none());
+    assert!(desk.encoder().session.review.is_none());
     desk.wire().exchange("");
     desk.ask(Hiperface::ReadAnalogue(0x07));
     desk.until_ready();

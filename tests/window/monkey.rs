@@ -77,7 +77,7 @@ fn day(seed: u64, steps: usize) {
         .studio()
         .devices()
         .iter()
-        .filter_map(|own| own.get::<encoder_studio::devices::hiperface::state::Encoder>()?.review.as_ref());
+        .filter_map(|own| own.get::<encoder_studio::devices::hiperface::state::Encoder>()?.session.review.as_ref());
     for review in written {
         assert!(!matches!(review.state, ReviewState::Failed { begun: true, .. }), "seed {seed}");
     }

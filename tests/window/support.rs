@@ -345,7 +345,7 @@ impl Desk {
     }
 
     pub(crate) fn review(&self) -> &Review {
-        self.encoder().review.as_ref().expect("a review is open")
+        self.encoder().session.review.as_ref().expect("a review is open")
     }
 
     pub(crate) fn phase(&self) -> &Phase {
@@ -379,7 +379,7 @@ impl Desk {
     /// Consents to the plan that is shown.
     pub(crate) fn write_as_shown(&mut self) {
         let nothing = HiperfacePlan { base: Base::default(), ops: Vec::new() };
-        let shown = self.encoder().review.as_ref().and_then(Review::prepared);
+        let shown = self.encoder().session.review.as_ref().and_then(Review::prepared);
         let id = shown.map_or(nothing.id(), |prepared| prepared.plan.id());
         self.ask(Hiperface::Write(id));
     }
@@ -425,7 +425,7 @@ pub(crate) fn asks_for_drive(studio: &Studio) -> bool {
 }
 
 pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) -> bool {
-    studio.hiperface().and_then(|encoder| encoder.review.as_ref()).is_some_and(|review| wanted(&review.state))
+    studio.hiperface().and_then(|encoder| encoder.session.review.as_ref()).is_some_and(|review| wanted(&review.state))
 }
 
 /// Everything that was told, for a test that fails.

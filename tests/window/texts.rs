@@ -117,7 +117,7 @@ fn check_encoder(encoder: &Encoder) {
     if let Some(Err(why)) = &encoder.session.writes {
         check(why);
     }
-    let Some(review) = &encoder.review else { return };
+    let Some(review) = &encoder.session.review else { return };
     check(&review.what);
     if let ReviewState::Failed { texts, .. } = &review.state {
         texts.iter().for_each(check);

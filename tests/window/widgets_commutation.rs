@@ -69,7 +69,7 @@ fn the_page_is_gone_through_by_hand() {
     assert!(screen.encoder().staged.is_edited(0, 0));
     assert!(screen.shows("\"EMD71K-4 3000rpm\" would be replaced"), "and until it is written");
     screen.click("commutation.review");
-    assert!(screen.encoder().review.is_some(), "the usual review writes it");
+    assert!(screen.encoder().session.review.is_some(), "the usual review writes it");
     screen.act(Action::SetLanguage(Language::German));
     screen.check_language();
 }

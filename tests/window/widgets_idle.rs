@@ -65,7 +65,7 @@ fn control_enter_with_nothing_edited_says_so() {
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
     screen.steps();
     assert!(screen.shows(&screen.say("session.nothing_edited")));
-    assert!(screen.encoder().review.is_none());
+    assert!(screen.encoder().session.review.is_none());
 }
 
 #[test]

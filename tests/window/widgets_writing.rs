@@ -54,7 +54,7 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
     assert!(screen.shows(&screen.words(&verified)));
     assert_eq!(screen.outside.wire(PORT).field(0)[0], 0x58);
     screen.click("review.close");
-    assert!(screen.encoder().review.is_none() && !screen.encoder().staged.is_dirty());
+    assert!(screen.encoder().session.review.is_none() && !screen.encoder().staged.is_dirty());
     let editor = screen.words(&crate::texts::text("memory.bytes").with("number", 0));
     // The cursor stands behind the byte that was typed.
     assert!(screen.harness.get_by_label(&editor).value().unwrap().starts_with("0x01: 4D"));
@@ -70,7 +70,7 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
             && studio.hiperface().unwrap().session.is_ready()
     });
     screen.key(Key::Escape);
-    assert!(screen.encoder().review.is_none());
+    assert!(screen.encoder().session.review.is_none());
     assert!(screen.encoder().staged.is_dirty());
     assert_eq!(screen.outside.wire(PORT).wear(), 0);
     screen.click("memory.undo");

@@ -48,7 +48,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     assert!(!desk.encoder().staged.is_dirty());
     assert_eq!(desk.times_told("session.written"), 1);
     desk.ask(Hiperface::CloseReview);
-    assert!(desk.encoder().review.is_none());
+    assert!(desk.encoder().session.review.is_none());
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn nothing_is_written_without_consent() {
     desk.ask(Hiperface::CloseReview);
     desk.write_as_shown();
     desk.settle();
-    assert!(!desk.encoder().session.is_busy() && desk.encoder().review.is_none());
+    assert!(!desk.encoder().session.is_busy() && desk.encoder().session.review.is_none());
     assert_eq!((desk.wire().field(0), desk.wire().wear()), (before, 0));
     assert_eq!(desk.edits(), [(0, 0, b'X')], "the edit stays");
     assert!(!desk.outside.path("data/backups").exists());
@@ -279,7 +279,7 @@ fn what_comes_late_for_another_encoder_is_dropped() {
     let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();
     let document = Box::new(Document::parse(&read_text(&path).unwrap(), program().studio.formats).unwrap());
     desk.act(Action::Done(Done::Backup { session: id, of: other, path, result: Ok(document) }));
-    assert!(desk.encoder().review.is_none() && !desk.encoder().session.is_busy());
+    assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 
 /// A second field, so that the first is no longer the last.

@@ -19,6 +19,9 @@ pub trait Kind: Device + Sized {
     /// What is kept of a session beside its thread.
     type Aside: Send;
 
+    /// A write on its way: the [`Review`](crate::app::review::Review) of a kind with a memory.
+    type Review;
+
     /// Takes that before the session goes to its thread.
     fn aside(session: &Session<Self>) -> Self::Aside;
 

@@ -22,10 +22,14 @@ pub type Agreed<K> = worker::commit::Agreed<<K as Reviewed>::Prepared>;
 /// Whoever has a memory.
 pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     /// A write on its way.
-    fn review(&self) -> Option<&Review<Self::Device>>;
+    fn review(&self) -> Option<&Review<Self::Device>> {
+        self.session().review.as_ref()
+    }
 
     /// The same, to be changed.
-    fn review_mut(&mut self) -> &mut Option<Review<Self::Device>>;
+    fn review_mut(&mut self) -> &mut Option<Review<Self::Device>> {
+        &mut self.session_mut().review
+    }
 
     /// An operation of a plan, in words.
     fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OpWords {
@@ -72,9 +76,6 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     fn objection_to(&self, _prepared: &Prepared<Self>) -> Option<Text> {
         None
     }
-
-    /// A plan was made for another device, and is given up.
-    fn tell_of_another(&self, _prepared: &Prepared<Self>, _services: &mut Services) {}
 
     /// What the plan that is being carried out changes is to be read again, however that ends.
     fn reads_again(&mut self) {}
@@ -140,7 +141,12 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.is_of_another(&prepared) {
             *self.review_mut() = None;
-            self.tell_of_another(&prepared, services);
+            // Where something is edited, the other device is told of when it was read.
+            if !self.pending().is_dirty() {
+                let serial = prepared.device(self.session().is_virtual()).serial_number;
+                let text = Text::new("session.plan_of_another").with("serial", serial);
+                services.tell(Severity::Warning, vec![text], Some(&self.session().name()));
+            }
             return self.submit(Self::Device::survey(), services);
         }
         let objection = self.objection_to(&prepared);

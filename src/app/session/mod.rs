@@ -111,6 +111,8 @@ pub struct Session<D: Kind> {
     pub(crate) line: Option<Line<D>>,
     /// How it stands with the draft of its edits.
     pub(crate) drafting: Drafting<D::Edits>,
+    /// A write on its way.
+    pub review: Option<D::Review>,
 }
 
 /// The state of a session is read and changed as a part of it.
@@ -145,7 +147,7 @@ impl<D: Kind> Session<D> {
     }
 
     fn new(id: SessionId, source: Source, phase: Phase) -> Self {
-        Session { state: SessionState::new(id, source, phase), line: None, drafting: Drafting::new(id) }
+        Session { state: SessionState::new(id, source, phase), line: None, drafting: Drafting::new(id), review: None }
     }
 
     /// The line to the device, while it is connected.

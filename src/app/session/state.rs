@@ -119,12 +119,6 @@ impl SessionState {
         self.statuses.clear();
     }
 
-    /// Another device was read than the one before.
-    pub fn tell_of_another(&self, serial: &str, services: &mut Services) {
-        let text = Text::new("session.other_encoder").with("serial", serial);
-        services.tell(Severity::Warning, vec![text], Some(&self.name()));
-    }
-
     /// What was asked for cannot be.
     pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
         services.tell(Severity::Error, vec![why], Some(&self.name()));

@@ -1,7 +1,7 @@
 //! What the program knows of Novo encoders before there is one.
 
 use encoder_studio::app::connect::form::{FormModel, NoFinder};
-use encoder_studio::app::review::{self, Reviewed};
+use encoder_studio::app::review::{self, Review, Reviewed};
 use encoder_studio::app::session::{Drafted, Kind, ProfileFile, Session};
 use encoder_studio::app::{DeviceType, Services, SessionId, Severity, Text, explain};
 use encoder_studio::link::LinkUrl;
@@ -18,6 +18,7 @@ impl Kind for Novo {
     const KIND: &'static str = KIND;
     type Edits = Vec<(usize, u16)>;
     type Aside = ();
+    type Review = Review<Self>;
 
     fn aside(_: &worker::Session<Self>) {}
 

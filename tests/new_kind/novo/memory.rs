@@ -1,6 +1,6 @@
 //! What a person wants a Novo encoder to keep: kept over a crash, reviewed, written, saved and restored.
 
-use encoder_studio::app::review::{OpWords, Permit, Review, Reviewed};
+use encoder_studio::app::review::{OpWords, Permit, Reviewed};
 use encoder_studio::app::session::{Agreed, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
 use encoder_studio::app::{Edits, PendingEdits, Services, Text, explain};
 use encoder_studio::profile::{Body, Document, ProfileError, Written};
@@ -60,12 +60,6 @@ impl Drafted for Encoder {
 }
 
 impl WithMemory for Encoder {
-    fn review(&self) -> Option<&Review<Novo>> {
-        self.review.as_ref()
-    }
-    fn review_mut(&mut self) -> &mut Option<Review<Novo>> {
-        &mut self.review
-    }
     fn edited_change(&self) -> Option<Change> {
         let values = self.wanted().filter(|_| self.staged.is_dirty())?;
         Some(Change { restored: None, values, options: Default::default() })

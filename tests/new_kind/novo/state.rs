@@ -2,7 +2,6 @@
 
 use std::convert::Infallible;
 
-use encoder_studio::app::review::Review;
 use encoder_studio::app::session::{Cut, Drafted, OnDesk, OnLine, Saved, Session, WithMemory};
 use encoder_studio::app::track::{Meaning, Sighting, Track};
 use encoder_studio::app::{
@@ -43,12 +42,11 @@ pub(crate) struct Encoder {
     pub(crate) staged: Edits<usize, u16>,
     pub(crate) last: Option<Sample>,
     pub(super) track: Track<Infallible>,
-    pub(super) review: Option<Review<Novo>>,
 }
 
 impl Encoder {
     pub(super) fn with(session: Session<Novo>) -> Self {
-        Encoder { session, read: None, staged: Edits::default(), last: None, track: Track::default(), review: None }
+        Encoder { session, read: None, staged: Edits::default(), last: None, track: Track::default() }
     }
 
     /// What it is to keep; `None` before it was read.

@@ -7,7 +7,6 @@ use super::guide::Guide;
 use super::meaning::Meaning;
 use super::memory::Memory;
 use super::record::{Record, Streamed};
-use super::review::Review;
 use super::table::Table;
 use crate::app::check::CheckLine;
 use crate::app::services::Services;
@@ -38,8 +37,6 @@ pub struct Encoder {
     pub table: Table,
     /// What was recorded while it was polled.
     pub record: Record,
-    /// A write on its way.
-    pub review: Option<Review>,
     /// A procedure on its way, or as it ended.
     pub guide: Option<Guide>,
     /// Why data were not read the last time that somebody wanted it.
@@ -64,7 +61,6 @@ impl Encoder {
             memory: Memory::default(),
             table: Table::default(),
             record: Record::default(),
-            review: None,
             guide: None,
             refusal: None,
             motor: None,

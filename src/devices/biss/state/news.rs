@@ -3,7 +3,7 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::words;
-use crate::app::review::told;
+use crate::app::review::{Review, told};
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Cut, Kind, OnLine, WithMemory, first};
 use crate::app::{Severity, Text};
@@ -21,6 +21,7 @@ impl Kind for Biss {
     const KIND: &'static str = KIND;
     type Edits = Edits;
     type Aside = Option<Motor>;
+    type Review = Review<Self>;
 
     fn aside(session: &Session<Self>) -> Option<Motor> {
         session.motor()

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::encoder::Encoder;
 use super::guide::{End, Guide};
-use super::review::{Review, ReviewState, is_guided};
+use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Cut, Known, Saved, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
@@ -83,14 +83,6 @@ impl Encoder {
 }
 
 impl WithMemory for Encoder {
-    fn review(&self) -> Option<&Review> {
-        self.review.as_ref()
-    }
-
-    fn review_mut(&mut self) -> &mut Option<Review> {
-        &mut self.review
-    }
-
     fn edited_change(&self) -> Option<Change> {
         let edit = |(start, _, bytes): (_, _, Vec<u8>)| {
             let range = RegisterRange::new(start, u8::try_from(bytes.len()).ok()?)?;
@@ -131,12 +123,12 @@ impl WithMemory for Encoder {
             None => self.commit(agreed),
         };
         if self.begin_write(job, services) && guide.is_some() {
-            (self.guide, self.review) = (guide, None);
+            (self.guide, self.session.review) = (guide, None);
         }
     }
 
     fn reads_again(&mut self) {
-        let ops: &[Op] = match (&self.guide, self.review.as_ref().map(|review| &review.state)) {
+        let ops: &[Op] = match (&self.guide, self.session.review.as_ref().map(|review| &review.state)) {
             (Some(guide), _) if guide.is_running() => guide.ops(),
             (_, Some(ReviewState::Writing(prepared))) => &prepared.plan.ops,
             _ => return,

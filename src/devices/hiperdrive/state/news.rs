@@ -6,7 +6,7 @@ use super::drafts::Edits;
 use super::job;
 use super::review::ReviewState;
 use super::unit::Unit;
-use crate::app::review::told;
+use crate::app::review::{Review, told};
 use crate::app::services::Services;
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
 use crate::app::{Recording, Severity, Text};
@@ -43,6 +43,7 @@ impl Kind for Hiperdrive {
     const KIND: &'static str = KIND;
     type Edits = Edits;
     type Aside = Aside;
+    type Review = Review<Self>;
 
     fn aside(session: &Session<Self>) -> Aside {
         Aside { motion: session.motion(), target: session.target() }
@@ -279,8 +280,7 @@ impl OnLine for Unit {
             Cut::Lost => {}
         }
         let is_told = self.cut_write(how, texts);
-        let begun =
-            matches!(self.review.as_ref().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
+        let begun = matches!(self.review().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
         self.unsaved.ended(begun);
         is_told
     }

@@ -96,7 +96,7 @@ impl Unit {
         if !self.moves.is_open() {
             return Err(TEXTS.text("hd_refused.not_taken"));
         }
-        if self.session.is_writing() || self.review.is_some() {
+        if self.session.is_writing() || self.session.review.is_some() {
             return Err(TEXTS.text("hd_refused.busy"));
         }
         Ok(())

@@ -60,7 +60,7 @@ impl Unit {
         let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
         Seen {
             connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
-            busy: self.session.is_busy() || self.review.is_some(),
+            busy: self.session.is_busy() || self.session.review.is_some(),
             stale: self.is_stale,
             is_virtual: self.target.is_some(),
             controlled: self.moves.is_open(),
@@ -220,7 +220,7 @@ impl Unit {
             }
         }
         let begins = match ask {
-            Ask::Try(_) | Ask::Restore(_) | Ask::SetPosition(_) | Ask::Save => self.review.is_some(),
+            Ask::Try(_) | Ask::Restore(_) | Ask::SetPosition(_) | Ask::Save => self.session.review.is_some(),
             _ => true,
         };
         if let Some(axis) = self.axes.get_mut(&drive).filter(|_| begins) {
@@ -234,7 +234,7 @@ impl Unit {
             return;
         }
         // `None` where there is no review any more; whether it was carried out, once it is over.
-        let write = self.review.as_ref().map(|review| match &review.state {
+        let write = self.review().map(|review| match &review.state {
             ReviewState::Done(..) => Some(Ok(())),
             ReviewState::Failed { begun, .. } => Some(Err(*begun)),
             _ => None,

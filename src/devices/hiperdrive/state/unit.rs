@@ -9,7 +9,6 @@ use super::axis::Axis;
 use super::moves::Moves;
 use super::record::Record;
 use super::remembered::Exchanged;
-use super::review::Review;
 use super::ruler::{Measure, Ruler};
 use super::staged::{Mark, Staged};
 use super::unsaved::Unsaved;
@@ -46,8 +45,6 @@ pub struct Unit {
     pub(super) records: BTreeMap<DriveNumber, Record>,
     /// When the session began, by which the times of recordings count.
     pub(super) began: Option<Zoned>,
-    /// A write on its way.
-    pub review: Option<Review>,
     /// The drives as they are moved.
     pub moves: Moves,
     /// What positions are shown in.
@@ -94,7 +91,6 @@ impl Unit {
             record: Record::default(),
             records: BTreeMap::new(),
             began: None,
-            review: None,
             moves: Moves::default(),
             measure: Measure::default(),
             refusal: None,

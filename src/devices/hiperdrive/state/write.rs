@@ -26,14 +26,6 @@ impl Unit {
 }
 
 impl WithMemory for Unit {
-    fn review(&self) -> Option<&Review> {
-        self.review.as_ref()
-    }
-
-    fn review_mut(&mut self) -> &mut Option<Review> {
-        &mut self.review
-    }
-
     fn op(&self, prepared: &Prepared, op: &Op) -> OpWords {
         op_words(prepared, op, |drive| self.pitch(drive))
     }
@@ -69,7 +61,7 @@ impl WithMemory for Unit {
     }
 
     fn carried_out(&mut self, _: &Committed, _: &mut Services) {
-        if let Some(prepared) = self.review.as_ref().and_then(Review::writing) {
+        if let Some(prepared) = self.session.review.as_ref().and_then(Review::writing) {
             self.unsaved.done(&prepared.plan);
         }
     }
@@ -77,12 +69,6 @@ impl WithMemory for Unit {
     /// What is held is let go.
     fn hands_off(&mut self) {
         self.moves.let_go();
-    }
-
-    fn tell_of_another(&self, prepared: &Prepared, services: &mut Services) {
-        if !self.is_dirty() {
-            self.session.tell_of_another(&prepared.identity.serial_number, services);
-        }
     }
 
     fn forget_device(&mut self) {

@@ -44,7 +44,7 @@ impl Encoder {
             Action::Revert(range) => self.staged.revert_range(range),
             Action::Plan(change) => self.plan(change, services),
             Action::PlanAgain(options) => {
-                if let Some(review) = &self.review {
+                if let Some(review) = &self.session.review {
                     self.plan_again(with_options(&review.change, options), services);
                 }
             }

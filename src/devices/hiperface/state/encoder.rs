@@ -6,7 +6,6 @@ use super::commutation::Commutation;
 use super::meaning::Meaning;
 use super::record::Record;
 use super::rest::RestAsked;
-use super::review::Review;
 use super::{Staged, rules};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved, Session, Source, WithMemory};
@@ -45,8 +44,6 @@ pub struct Encoder {
     /// The commutation assistant.
     pub commutation: Commutation,
     pub(super) rest: RestAsked,
-    /// A write on its way.
-    pub review: Option<Review>,
     pub(super) meaning: Meaning,
     /// Access codes that the user gave or changed: the next session with this encoder begins with them.
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
@@ -76,7 +73,6 @@ impl Encoder {
             record: Record::default(),
             commutation: Commutation::default(),
             rest: RestAsked::default(),
-            review: None,
             meaning: Meaning::default(),
             access_codes: Vec::new(),
             asked: None,

@@ -24,6 +24,7 @@ impl Kind for Hiperface {
     const KIND: &'static str = KIND;
     type Edits = Edits;
     type Aside = ();
+    type Review = Review;
 
     fn aside(_session: &Session<Self>) {}
 
@@ -162,7 +163,7 @@ impl Encoder {
     /// After a write that ended early, the session follows those operations that were carried out.
     fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
         let JobError::Interrupted { interrupted, .. } = error else { return };
-        let Some(prepared) = self.review.as_ref().and_then(Review::writing) else { return };
+        let Some(prepared) = self.review().and_then(Review::writing) else { return };
         let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
         self.follow(&done, services);
     }

@@ -25,23 +25,15 @@ impl Encoder {
         if self.session.is_busy() {
             return;
         }
-        let Some(review) = &mut self.review else { return };
+        let Some(review) = &mut self.session.review else { return };
         *review = Review::new(change.clone(), review.is_for_another, review.is_for_another_type);
         if !self.try_submit(HiperfaceJob::Prepare(change), services) {
-            self.review = None;
+            self.session.review = None;
         }
     }
 }
 
 impl WithMemory for Encoder {
-    fn review(&self) -> Option<&Review> {
-        self.review.as_ref()
-    }
-
-    fn review_mut(&mut self) -> &mut Option<Review> {
-        &mut self.review
-    }
-
     fn edited_change(&self) -> Option<Change> {
         self.staged.is_dirty().then(|| Change::Store(self.staged.changed_runs()))
     }
@@ -77,7 +69,7 @@ impl WithMemory for Encoder {
     }
 
     fn carried_out(&mut self, _: &Committed, services: &mut Services) {
-        let Some(prepared) = self.review.as_ref().and_then(Review::writing) else { return };
+        let Some(prepared) = self.review().and_then(Review::writing) else { return };
         let ops = prepared.plan.ops.clone();
         self.follow(&ops, services);
     }
@@ -86,7 +78,7 @@ impl WithMemory for Encoder {
     fn log_begin(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn plan_with(&mut self, permit: Permit, services: &mut Services) {
-        if let Some(change) = self.review.as_ref().and_then(|review| review.toggled(permit)) {
+        if let Some(change) = self.review().and_then(|review| review.toggled(permit)) {
             self.plan_again(change, services);
         }
     }

@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::preview::Preview;
 use super::record::Record;
-use super::review::Review;
 use super::staged::{Mark, Place, Staged, Wanted};
 use super::table::Import;
 use super::trace::Meaning;
@@ -42,8 +41,6 @@ pub struct Encoder {
     pub record: Record,
     /// Whether its cam outputs are those of the programs that it holds.
     pub preview: Preview,
-    /// A write on its way.
-    pub review: Option<Review>,
     /// Words of the last handshakes, the newest last.
     pub handshake: VecDeque<Handshake>,
     /// What turns the virtual encoder's shaft.
@@ -74,7 +71,6 @@ impl Encoder {
             read_outs: BTreeMap::new(),
             record: Record::default(),
             preview: Preview::default(),
-            review: None,
             handshake: VecDeque::new(),
             motor: None,
             import: None,

@@ -39,14 +39,6 @@ impl Encoder {
 }
 
 impl WithMemory for Encoder {
-    fn review(&self) -> Option<&Review> {
-        self.review.as_ref()
-    }
-
-    fn review_mut(&mut self) -> &mut Option<Review> {
-        &mut self.review
-    }
-
     fn edited_change(&self) -> Option<Change> {
         let edited = self.edited_image().filter(|_| self.staged.is_dirty())?;
         Some(Change::Write(Box::new(edited)))
@@ -74,14 +66,8 @@ impl WithMemory for Encoder {
         InterbusJob::Commit(Box::new(agreed))
     }
 
-    fn tell_of_another(&self, prepared: &Prepared, services: &mut Services) {
-        if !self.is_dirty() {
-            self.session.tell_of_another(&prepared.identity.serial_number, services);
-        }
-    }
-
     fn reads_again(&mut self) {
-        let programs = self.review.as_ref().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
+        let programs = self.review().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
     }
 

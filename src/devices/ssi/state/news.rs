@@ -23,6 +23,8 @@ impl Kind for Ssi {
     const KIND: &'static str = KIND;
     type Edits = Drafts;
     type Aside = Option<Motor>;
+    /// Nothing is ever written into it.
+    type Review = Infallible;
 
     fn aside(session: &Session<Self>) -> Option<Motor> {
         session.motor()
