@@ -5,6 +5,8 @@ use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::Severity;
 use encoder_studio::app::session::Phase;
+use encoder_studio::devices::biss::jobs::Change;
+use encoder_studio::devices::biss::protocol::Filter;
 use encoder_studio::devices::biss::state::Action as Biss;
 use encoder_studio::signals::state::{Action as Signals, SourceAction};
 
@@ -40,6 +42,21 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     desk.until("the first one is back", |studio| {
         is_read(studio) && studio.biss().unwrap().serial_number() == Some("1") && studio.biss().unwrap().is_dirty()
     });
+}
+
+/// Nothing is edited, so that nothing but the discarded plan is told of.
+#[test]
+fn a_plan_for_one_encoder_is_discarded_for_another_and_that_is_told() {
+    let served = Served::new("serial=1");
+    let mut desk = Desk::fresh("");
+    connect(&mut desk, &served.link());
+    served.exchange("serial=2");
+    ask(&mut desk, Biss::Plan(Box::new(Change::SelectFilter(Filter::Dynamic))));
+    desk.until("the other one is read", |studio| {
+        is_read(studio) && studio.biss().unwrap().serial_number() == Some("2")
+    });
+    assert!(encoder(&desk).session.review.is_none());
+    assert_eq!(desk.told(Severity::Warning), ["session.plan_of_another"]);
 }
 
 #[test]

@@ -186,6 +186,18 @@ fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned
     assert_eq!(desk.wire().wear(), 0);
 }
 
+/// Nothing is edited, so that nothing but the discarded plan is told of.
+#[test]
+fn a_plan_for_an_encoder_that_was_exchanged_is_discarded_and_that_is_told() {
+    let mut desk = Desk::at_port("");
+    desk.wire().exchange("serial=OTHER0001");
+    desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
+    desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
+    desk.until_ready();
+    assert!(desk.encoder().session.review.is_none());
+    assert_eq!((desk.times_told("session.plan_of_another"), desk.times_told("session.other_encoder")), (1, 0));
+}
+
 /// The survey after the replug is stopped: who is connected is not known, and the edits are not offered to it.
 #[test]
 fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
