@@ -1,82 +1,98 @@
 //! Values that a user wants otherwise than the device has them, by their place, with steps that can be undone. What a value
-//! is on the device, and whether it may be edited at all, is said by whoever holds the memory.
+//! is on the device, and whether it may be edited at all, is said by the memory beside which they stand.
 
 use std::collections::BTreeMap;
 
 use super::PendingEdits;
 use super::history::History;
 
-/// Edited values by their place: bytes, where no other type is named.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Edits<K: Ord, V = u8> {
-    edits: BTreeMap<K, V>,
-    history: History<BTreeMap<K, V>>,
+/// A memory as it was read.
+pub trait EditBase: Default {
+    /// Where a value stands.
+    type Place: Ord + Copy;
+    /// A value.
+    type Value: Copy + PartialEq;
+
+    /// A value at a place is an edit: another one was read there.
+    fn is_edit(&self, at: Self::Place, value: Self::Value) -> bool;
 }
 
-impl<K: Ord, V> Default for Edits<K, V> {
+/// A memory as it was read, and the values that are wanted otherwise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Edits<B: EditBase> {
+    base: B,
+    edits: BTreeMap<B::Place, B::Value>,
+    history: History<BTreeMap<B::Place, B::Value>>,
+}
+
+impl<B: EditBase> Default for Edits<B> {
     fn default() -> Self {
-        Edits { edits: BTreeMap::new(), history: History::default() }
+        Edits { base: B::default(), edits: BTreeMap::new(), history: History::default() }
     }
 }
 
-impl<K: Ord + Copy, V: Copy + PartialEq> Edits<K, V> {
+impl<B: EditBase> Edits<B> {
+    /// The memory as it was read.
+    pub fn base(&self) -> &B {
+        &self.base
+    }
+
     /// The value that is wanted here; `None`: as the device has it.
-    pub fn get(&self, at: K) -> Option<V> {
+    pub fn get(&self, at: B::Place) -> Option<B::Value> {
         self.edits.get(&at).copied()
     }
 
-    /// There is something to write.
-    pub fn is_dirty(&self) -> bool {
-        !self.edits.is_empty()
-    }
-
     /// All of them, in the order of their places.
-    pub fn iter(&self) -> impl Iterator<Item = (K, V)> {
+    pub fn iter(&self) -> impl Iterator<Item = (B::Place, B::Value)> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits values, as one step that can be undone; `is_edit` says whether a value at its place is one.
-    pub fn put(&mut self, values: impl IntoIterator<Item = (K, V)>, is_edit: impl Fn(K, V) -> bool) {
-        self.step(|edits| {
-            for (at, value) in values {
-                if is_edit(at, value) {
-                    edits.insert(at, value);
-                } else {
-                    edits.remove(&at);
-                }
+    /// Edits values, as one step that can be undone; one that is as the device has it is no edit.
+    pub fn set(&mut self, values: impl IntoIterator<Item = (B::Place, B::Value)>) {
+        let mut after = self.edits.clone();
+        for (at, value) in values {
+            if self.base.is_edit(at, value) {
+                after.insert(at, value);
+            } else {
+                after.remove(&at);
             }
-        });
+        }
+        self.history.step(&mut self.edits, after);
     }
 
     /// Takes edits back, as one step that can be undone. False where none is meant.
-    pub fn revert(&mut self, is_meant: impl Fn(K) -> bool) -> bool {
-        self.step(|edits| edits.retain(|at, _| !is_meant(*at)))
+    pub fn take_back(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
+        let mut after = self.edits.clone();
+        after.retain(|at, _| !is_meant(*at));
+        self.history.step(&mut self.edits, after)
     }
 
-    /// Forgets what is no edit any more: the device was read again, or a step was undone.
-    pub fn settle(&mut self, is_edit: impl Fn(K, V) -> bool) {
-        self.edits.retain(|at, value| is_edit(*at, *value));
-    }
-
-    /// What was undone belongs to another memory.
-    pub fn forget_redo(&mut self) {
+    /// The memory was read again: edits stay, unless the device has them by now.
+    pub fn read_again(&mut self, read: impl FnOnce(&mut B)) {
+        read(&mut self.base);
+        self.settle();
         self.history.forget_undone();
     }
 
-    fn step(&mut self, change: impl FnOnce(&mut BTreeMap<K, V>)) -> bool {
-        let mut after = self.edits.clone();
-        change(&mut after);
-        self.history.step(&mut self.edits, after)
+    /// Forgets everything: another device.
+    pub fn clear(&mut self) {
+        *self = Edits::default();
+    }
+
+    /// Forgets what is no edit any more: an earlier step may hold such.
+    fn settle(&mut self) {
+        let base = &self.base;
+        self.edits.retain(|at, value| base.is_edit(*at, *value));
     }
 }
 
-impl<K: Ord + Copy, V: Copy + PartialEq> PendingEdits for Edits<K, V> {
+impl<B: EditBase> PendingEdits for Edits<B> {
     fn count(&self) -> usize {
         self.edits.len()
     }
 
     fn is_dirty(&self) -> bool {
-        Edits::is_dirty(self)
+        !self.edits.is_empty()
     }
 
     fn can_undo(&self) -> bool {
@@ -88,15 +104,19 @@ impl<K: Ord + Copy, V: Copy + PartialEq> PendingEdits for Edits<K, V> {
     }
 
     fn undo(&mut self) -> bool {
-        self.history.undo(&mut self.edits)
+        let done = self.history.undo(&mut self.edits);
+        self.settle();
+        done
     }
 
     fn redo(&mut self) -> bool {
-        self.history.redo(&mut self.edits)
+        let done = self.history.redo(&mut self.edits);
+        self.settle();
+        done
     }
 
     fn revert(&mut self) -> bool {
-        Edits::revert(self, |_| true)
+        self.take_back(|_| true)
     }
 
     fn forget_steps(&mut self) {

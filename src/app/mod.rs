@@ -60,7 +60,7 @@ pub use kinds::Kinds;
 pub use tool::{Tool, ToolAction, ToolContext, ToolKind};
 
 pub use drives::{Marks, Measure, RememberedDrives};
-pub use edits::Edits;
+pub use edits::{EditBase, Edits};
 pub use file_question::{DeviceFile, FileQuestion};
 pub use given::{Given, Opener};
 pub use hold::{HoldEvent, HoldInput, HoldScene, HoldState};

@@ -39,7 +39,7 @@ fn it_is_offered_and_connects_from_the_dialog() {
         desk.studio.act(StudioAction::Connect(action));
     }
     desk.until_ready();
-    let read = desk.encoder().read.clone();
+    let read = desk.encoder().read().cloned();
     assert_eq!(read, Some(NovoProfile { serial: 77, values: DELIVERED }));
     assert_eq!((desk.shown().tab(), desk.shown().name().as_str()), (Encoder::TAB, "Novo · 77"));
 }
@@ -86,7 +86,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
     let text = std::fs::read_to_string(&backup).unwrap();
     let before = Document::parse(&text, program().studio.formats).unwrap().body;
     assert_eq!(before, Body::new(NovoProfile { serial: 1001, values: DELIVERED }));
-    assert_eq!(desk.encoder().read.as_ref().unwrap().values, [100, 3, 0, 65535], "read back");
+    assert_eq!(desk.encoder().read().unwrap().values, [100, 3, 0, 65535], "read back");
     assert!(!desk.shown().is_dirty() && !desk.shown().can_undo());
     // The shaft stands at 0, which is 100 steps below the zero of 65536.
     desk.command(DeviceCommand::ReadPosition);
@@ -98,7 +98,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
     desk.command(DeviceCommand::Restore(backup));
     desk.write();
     desk.until_ready();
-    assert_eq!(desk.encoder().read.as_ref().unwrap().values, DELIVERED);
+    assert_eq!(desk.encoder().read().unwrap().values, DELIVERED);
     assert_eq!(desk.told(Severity::Error), [""; 0]);
 }
 
@@ -113,7 +113,7 @@ fn what_is_not_taken_is_told_and_stays_edited() {
     desk.review(ReviewAction::Write(plan));
     desk.until_stage(|stage| matches!(stage, Stage::Failed { begun: true, done: 1, .. }));
     desk.until("it is read again", |desk| desk.shown().is_ready() && desk.shown().edits() == 1);
-    assert_eq!(desk.encoder().read.as_ref().unwrap().values, [100, 3, 0, 65535]);
+    assert_eq!(desk.encoder().read().unwrap().values, [100, 3, 0, 65535]);
     desk.until("it is listed", |desk| matches!(desk.shown().writes(), Some(Ok(all)) if all.len() == 1));
     let writes = desk.shown().writes().unwrap().as_ref().unwrap();
     let spent = writes.iter().map(|write| write.conclusion.as_ref().unwrap().cycles_spent);
@@ -138,8 +138,8 @@ fn a_profile_is_saved_opened_and_edited_and_goes_into_no_other_encoder_unasked()
     desk.studio.act(StudioAction::Command(profile, DeviceCommand::WriteInto(id)));
     desk.until("the device is shown", |desk| desk.shown().id() == id);
     desk.write();
-    assert_eq!(desk.encoder().read.as_ref().unwrap().serial, 1001);
-    desk.until("it is read back", |desk| desk.encoder().read.as_ref().unwrap().values == [0, 7, 0, 65535]);
+    assert_eq!(desk.encoder().read().unwrap().serial, 1001);
+    desk.until("it is read back", |desk| desk.encoder().read().unwrap().values == [0, 7, 0, 65535]);
     desk.until_ready();
     desk.review(ReviewAction::Close);
     // Another one needs a permit.

@@ -2,7 +2,7 @@
 
 use encoder_studio::app::review::{OpWords, Permit, Reviewed};
 use encoder_studio::app::session::{Agreed, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
-use encoder_studio::app::{Edits, PendingEdits, Services, Text, explain};
+use encoder_studio::app::{PendingEdits, Services, Text, explain};
 use encoder_studio::profile::{Body, Document, ProfileError, Written};
 use encoder_studio::store::DeviceKey;
 
@@ -44,7 +44,7 @@ impl Drafted for Encoder {
         self.staged.iter().collect()
     }
     fn take_edits(&mut self, edits: Vec<(usize, u16)>) {
-        self.edit(edits);
+        self.staged.set(edits);
     }
     fn take_document(&mut self, file: ProfileFile, document: Document) {
         let Some(profile) = document.body.get::<NovoProfile>().cloned() else { return };
@@ -65,10 +65,10 @@ impl WithMemory for Encoder {
         Some(Change { restored: None, values, options: Default::default() })
     }
     fn is_for_another(&self, change: &Change) -> bool {
-        change.restored.zip(self.read.as_ref()).is_some_and(|(of, own)| of != own.serial)
+        change.restored.zip(self.read()).is_some_and(|(of, own)| of != own.serial)
     }
     fn is_of_another(&self, prepared: &Prepared) -> bool {
-        self.read.as_ref().is_some_and(|own| own.serial != prepared.serial)
+        self.read().is_some_and(|own| own.serial != prepared.serial)
     }
     fn prepare(change: Change) -> Job {
         Job::Prepare(change)
@@ -77,24 +77,24 @@ impl WithMemory for Encoder {
         Job::Commit(Box::new(agreed))
     }
     fn forget_device(&mut self) {
-        (self.staged, self.read) = (Edits::default(), None);
+        self.staged.clear();
         self.track.forget();
     }
 }
 
 impl Saved for Encoder {
     fn key(&self) -> Option<DeviceKey> {
-        self.read.as_ref().map(|own| device_key(own.serial, self.session.is_virtual()))
+        self.read().map(|own| device_key(own.serial, self.session.is_virtual()))
     }
     fn read_all() -> Job {
         Job::Survey
     }
     fn wanted_body(&self) -> Option<Body> {
-        Some(Body::new(NovoProfile { values: self.wanted()?, ..self.read.clone()? }))
+        Some(Body::new(NovoProfile { values: self.wanted()?, ..self.read()?.clone() }))
     }
     fn known_body(&self) -> Option<Known> {
         let remarks = without_edits(self.staged.count()).into_iter().collect();
-        Some(Ok((Body::new(self.read.clone()?), remarks)))
+        Some(Ok((Body::new(self.read()?.clone()), remarks)))
     }
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
         let NovoProfile { serial, values } = body.into_profile()?;

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use encoder_studio::app::session::{Cut, Drafted, OnDesk, OnLine, Saved, Session, WithMemory};
 use encoder_studio::app::track::{Meaning, Sighting, Track};
 use encoder_studio::app::{
-    ActContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditStep, Edits, JobEnd, Opened, PendingEdits,
+    ActContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobEnd, Opened, PendingEdits,
     Recording, Services, Tab, Text,
 };
 use encoder_studio::link::TraceEntry;
@@ -34,38 +34,43 @@ pub(crate) enum Action {
 
 impl DeviceAction for Action {}
 
+/// As it was read, or as the profile says.
+#[derive(Clone, Default)]
+pub(crate) struct Own(Option<NovoProfile>);
+
+impl EditBase for Own {
+    type Place = usize;
+    type Value = u16;
+
+    fn is_edit(&self, item: usize, value: u16) -> bool {
+        self.0.as_ref().and_then(|own| own.values.get(item)).is_some_and(|own| *own != value)
+    }
+}
+
 pub(crate) struct Encoder {
     pub(super) session: Session<Novo>,
-    /// As it was read, or as the profile says.
-    pub(crate) read: Option<NovoProfile>,
     /// What is wanted otherwise, by the number of the item.
-    pub(crate) staged: Edits<usize, u16>,
+    pub(crate) staged: Edits<Own>,
     pub(crate) last: Option<Sample>,
     pub(super) track: Track<Infallible>,
 }
 
 impl Encoder {
     pub(super) fn with(session: Session<Novo>) -> Self {
-        Encoder { session, read: None, staged: Edits::default(), last: None, track: Track::default() }
+        Encoder { session, staged: Edits::default(), last: None, track: Track::default() }
     }
 
     /// What it is to keep; `None` before it was read.
     pub(crate) fn wanted(&self) -> Option<Values> {
-        let mut values = self.read.as_ref()?.values;
+        let mut values = self.read()?.values;
         self.staged.iter().for_each(|(item, value)| values[item] = value);
         Some(values)
     }
-    pub(super) fn edit(&mut self, edits: impl IntoIterator<Item = (usize, u16)>) {
-        let is_edit = |item: usize, value| {
-            self.read.as_ref().and_then(|own| own.values.get(item)).is_some_and(|own| *own != value)
-        };
-        self.staged.put(edits, is_edit);
+    pub(crate) fn read(&self) -> Option<&NovoProfile> {
+        self.staged.base().0.as_ref()
     }
-
-    /// What is wanted as it was read now is no edit any more.
     pub(super) fn take(&mut self, read: NovoProfile) {
-        self.staged.settle(|item, value| read.values[item] != value);
-        self.read = Some(read);
+        self.staged.read_again(|own| own.0 = Some(read));
     }
     fn see(&mut self, samples: &[Sample], dropped: u64) {
         let sighting = |(at, position): &Sample| Sighting {
@@ -79,10 +84,10 @@ impl Encoder {
         self.last = samples.last().copied().or(self.last);
     }
     fn surveyed(&mut self, read: NovoProfile, services: &mut Services) {
-        if self.read.as_ref().is_some_and(|own| own.serial != read.serial) {
+        if self.read().is_some_and(|own| own.serial != read.serial) {
             self.replaced_by(&read.serial.to_string(), services);
         }
-        let is_first = self.read.is_none();
+        let is_first = self.read().is_none();
         self.session.title = Some(format!("Novo · {}", read.serial));
         if std::mem::take(&mut self.session.just_connected) {
             self.session.log_answer(Vec::new(), services);
@@ -149,7 +154,7 @@ impl DeviceModel for Encoder {
         self.submit(Job::Survey, services);
     }
     fn act(&mut self, Action::Set(item, value): Action, _: &mut ActContext<'_>) {
-        self.edit([(item, value)]);
+        self.staged.set([(item, value)]);
     }
     fn done(&mut self, done: Infallible, _: &mut Services) {
         match done {}
@@ -162,11 +167,6 @@ impl DeviceModel for Encoder {
     }
     fn record_mut(&mut self) -> &mut dyn Recording {
         &mut self.track
-    }
-    fn step(&mut self, step: EditStep) {
-        step(&mut self.staged);
-        let values = self.read.as_ref().map_or(Values::default(), |own| own.values);
-        self.staged.settle(|item, value| values[item] != value);
     }
     fn memory(&self) -> Option<&dyn DeviceMemory> {
         Some(self)

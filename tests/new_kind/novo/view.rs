@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 use encoder_studio::app::connect::Connect as Dialog;
-use encoder_studio::app::{Action as StudioAction, AnyDevice, Rgb, Studio, Text, explain};
+use encoder_studio::app::{Action as StudioAction, AnyDevice, PendingEdits, Rgb, Studio, Text, explain};
 use encoder_studio::ui::controls::{card, entry, settled_entry, text_entry};
 use encoder_studio::ui::{PageInfo, Skin, TabPage, TypedConnectForm, TypedDeviceView, backups, foot, icons, page};
 

@@ -95,7 +95,7 @@ impl Encoder {
     /// The profile as the user wants it, where this is one.
     pub(crate) fn wanted_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
-        for (at, byte) in self.memory.wishes() {
+        for (at, byte) in self.memory.iter() {
             profile.put(at, byte);
         }
         Some(profile)

@@ -6,18 +6,28 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::app::PendingEdits;
-use crate::app::edits::Edits;
+use crate::app::{EditBase, Edits};
 use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddress};
 
-/// Registers with the user's edits.
+/// Registers as they were read.
 #[derive(Clone, Debug, Default)]
-pub struct Memory {
+pub struct Registers {
     read: BTreeMap<RegisterAddress, u8>,
     /// Another value was read than the time before.
     changed: BTreeSet<RegisterAddress>,
-    edits: Edits<RegisterAddress>,
 }
+
+impl EditBase for Registers {
+    type Place = RegisterAddress;
+    type Value = u8;
+
+    fn is_edit(&self, at: RegisterAddress, byte: u8) -> bool {
+        self.read.get(&at) != Some(&byte)
+    }
+}
+
+/// Registers with the user's edits.
+pub type Memory = Edits<Registers>;
 
 /// Why an edit cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -36,30 +46,25 @@ pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 impl Memory {
     /// Takes bytes that were read, from `start` on. Edits stay, unless they are what the encoder has now.
     pub fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
-        for (at, byte) in (start.global()..).zip(bytes) {
-            let Some(at) = RegisterAddress::from_global(at) else { break };
-            match self.read.insert(at, *byte) {
-                Some(before) if before != *byte => self.changed.insert(at),
-                _ => self.changed.remove(&at),
-            };
-        }
-        self.settle();
-        self.edits.forget_redo();
-    }
-
-    /// Forgets everything: another encoder.
-    pub fn clear(&mut self) {
-        *self = Memory::default();
+        self.read_again(|own| {
+            for (at, byte) in (start.global()..).zip(bytes) {
+                let Some(at) = RegisterAddress::from_global(at) else { break };
+                match own.read.insert(at, *byte) {
+                    Some(before) if before != *byte => own.changed.insert(at),
+                    _ => own.changed.remove(&at),
+                };
+            }
+        });
     }
 
     /// A register as it was read; `None`: it was not.
     pub fn read(&self, at: RegisterAddress) -> Option<u8> {
-        self.read.get(&at).copied()
+        self.base().read.get(&at).copied()
     }
 
     /// A register as the user wants it.
     pub fn wanted(&self, at: RegisterAddress) -> Option<u8> {
-        self.edits.get(at).or_else(|| self.read(at))
+        self.get(at).or_else(|| self.read(at))
     }
 
     /// Bytes as they were read; `None` unless all were.
@@ -103,12 +108,12 @@ impl Memory {
 
     /// Another value was read than the time before.
     pub fn has_changed(&self, at: RegisterAddress) -> bool {
-        self.changed.contains(&at)
+        self.base().changed.contains(&at)
     }
 
     /// The user wants another value here than the encoder has.
     pub fn is_edited(&self, at: RegisterAddress) -> bool {
-        self.edits.get(at).is_some()
+        self.get(at).is_some()
     }
 
     /// Edits bytes from `start` on, as one step that can be undone.
@@ -125,21 +130,20 @@ impl Memory {
             self.read(at).ok_or(MemoryError::NotRead(at))?;
             wanted.push((at, *byte));
         }
-        let read = &self.read;
-        self.edits.put(wanted, |at, byte| read.get(&at) != Some(&byte));
+        self.set(wanted);
         Ok(())
     }
 
     /// Takes the edits of `count` bytes back.
     pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
         let range = start.global()..start.global().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
-        self.edits.revert(|at| range.contains(&at.global()));
+        self.take_back(|at| range.contains(&at.global()));
     }
 
     /// Runs of edited bytes; none reaches beyond its bank.
     pub fn changes(&self) -> Runs {
         let mut runs: Runs = Vec::new();
-        for (at, byte) in self.edits.iter() {
+        for (at, byte) in self.iter() {
             let old = self.read(at).unwrap_or(byte);
             let next = |start: RegisterAddress, count: usize| u8::try_from(count).ok().and_then(|own| start.plus(own));
             match runs.last_mut() {
@@ -153,64 +157,15 @@ impl Memory {
         runs
     }
 
-    /// The edited bytes.
-    pub(super) fn wishes(&self) -> impl Iterator<Item = (RegisterAddress, u8)> {
-        self.edits.iter()
-    }
-
     /// The edits, for a draft on disk: global address and byte.
     pub fn edits(&self) -> Vec<(u16, u8)> {
-        self.edits.iter().map(|(at, byte)| (at.global(), byte)).collect()
+        self.iter().map(|(at, byte)| (at.global(), byte)).collect()
     }
 
     /// Takes edits from a draft. Those that are as the encoder has them fall away when it is read.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
-        let read = &self.read;
-        self.edits.put(places, |at, byte| read.get(&at) != Some(&byte));
-    }
-
-    fn settle(&mut self) {
-        let read = &self.read;
-        self.edits.settle(|at, byte| read.get(&at) != Some(&byte));
-    }
-}
-
-impl PendingEdits for Memory {
-    fn count(&self) -> usize {
-        self.edits().len()
-    }
-
-    fn is_dirty(&self) -> bool {
-        self.edits.is_dirty()
-    }
-
-    fn can_undo(&self) -> bool {
-        self.edits.can_undo()
-    }
-
-    fn can_redo(&self) -> bool {
-        self.edits.can_redo()
-    }
-
-    fn undo(&mut self) -> bool {
-        let done = self.edits.undo();
-        self.settle();
-        done
-    }
-
-    fn redo(&mut self) -> bool {
-        let done = self.edits.redo();
-        self.settle();
-        done
-    }
-
-    fn revert(&mut self) -> bool {
-        self.edits.revert(|_| true)
-    }
-
-    fn forget_steps(&mut self) {
-        self.edits.forget_steps();
+        self.set(places);
     }
 }
 
@@ -224,6 +179,7 @@ pub fn places(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::PendingEdits as _;
     use crate::devices::biss::protocol::Descriptions;
 
     fn kit() -> Description {

@@ -5,16 +5,25 @@
 //! has now; every other byte follows the encoder. Those of a field that cannot be read, because its access code is not
 //! known any more, wait until it can.
 
-use crate::app::PendingEdits;
-use crate::app::edits::Edits;
+use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
-/// Data fields with the user's edits.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Staged {
-    device: Vec<FieldImage>,
-    /// Bytes that differ from the device's, by field and address.
-    edits: Edits<(u8, usize)>,
+/// Data fields with the user's edits: bytes by field and address.
+pub type Staged = Edits<Vec<FieldImage>>;
+
+impl EditBase for Vec<FieldImage> {
+    type Place = (u8, usize);
+    type Value = u8;
+
+    /// A byte here is another than the encoder's, as far as that is known.
+    fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
+        let image = self.iter().find(|image| image.number == field);
+        match image.map(|image| (&image.bytes, image.status)) {
+            Some((Some(bytes), _)) => bytes.get(address).is_some_and(|own| *own != byte),
+            Some((None, status)) => address < status.size().bytes(),
+            None => false,
+        }
+    }
 }
 
 /// Why an edit cannot be made.
@@ -45,25 +54,18 @@ pub enum StagedError {
 impl Staged {
     /// Takes what was read from the encoder; edits stay, unless the byte they are for is gone or is as wanted now.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
-        self.device = device;
-        self.forget_the_impossible();
-        self.edits.forget_redo();
-    }
-
-    /// Forgets everything: another encoder.
-    pub fn clear(&mut self) {
-        *self = Staged::default();
+        self.read_again(|own| *own = device);
     }
 
     /// The fields as the encoder has them.
     pub fn device(&self) -> &[FieldImage] {
-        &self.device
+        self.base()
     }
 
     /// The fields as the user wants them.
     pub fn wanted(&self) -> Vec<FieldImage> {
-        let mut fields = self.device.clone();
-        for ((number, address), byte) in self.edits.iter() {
+        let mut fields = self.base().clone();
+        for ((number, address), byte) in self.iter() {
             let field = fields.iter_mut().find(|field| field.number == number);
             if let Some(own) = field.and_then(|field| field.bytes.as_mut()).and_then(|bytes| bytes.get_mut(address)) {
                 *own = byte;
@@ -79,18 +81,18 @@ impl Staged {
 
     /// One byte as the user wants it.
     pub fn byte(&self, field: u8, address: usize) -> Option<u8> {
-        self.edits.get((field, address)).or_else(|| self.on_device(field, address))
+        self.get((field, address)).or_else(|| self.on_device(field, address))
     }
 
     /// The user wants another byte here than the encoder has.
     pub fn is_edited(&self, field: u8, address: usize) -> bool {
-        self.edits.get((field, address)).is_some()
+        self.get((field, address)).is_some()
     }
 
     /// Runs of edited bytes.
     pub fn changes(&self) -> Vec<FieldRange> {
         let mut runs: Vec<FieldRange> = Vec::new();
-        for ((field, address), _) in self.edits.iter() {
+        for ((field, address), _) in self.iter() {
             match runs.last_mut() {
                 Some(FieldRange { field: own, start, count: Some(count) })
                     if *own == field && *start + *count == address =>
@@ -128,12 +130,12 @@ impl Staged {
 
     /// Takes the edits of one range back.
     pub fn revert_range(&mut self, range: FieldRange) {
-        self.edits.revert(|(field, address)| range.contains(field, address));
+        self.take_back(|(field, address)| range.contains(field, address));
     }
 
     /// The edits, for a draft on disk.
     pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {
-        self.edits.iter().map(|((field, address), byte)| (field, address, byte))
+        self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
     /// Takes edits from a draft. Those for bytes that are not there, or that are as wanted, fall away.
@@ -142,72 +144,14 @@ impl Staged {
     }
 
     fn field(&self, number: u8) -> Option<&FieldImage> {
-        self.device.iter().find(|field| field.number == number)
-    }
-
-    fn set(&mut self, bytes: impl IntoIterator<Item = ((u8, usize), u8)>) {
-        let device = &self.device;
-        self.edits.put(bytes, |at, byte| is_edit(device, at, byte));
-    }
-
-    /// After a refresh, an earlier step may hold edits that are no longer any.
-    fn forget_the_impossible(&mut self) {
-        let device = &self.device;
-        self.edits.settle(|at, byte| is_edit(device, at, byte));
-    }
-}
-
-impl PendingEdits for Staged {
-    fn count(&self) -> usize {
-        self.edits().count()
-    }
-
-    fn is_dirty(&self) -> bool {
-        self.edits.is_dirty()
-    }
-
-    fn can_undo(&self) -> bool {
-        self.edits.can_undo()
-    }
-
-    fn can_redo(&self) -> bool {
-        self.edits.can_redo()
-    }
-
-    fn undo(&mut self) -> bool {
-        let done = self.edits.undo();
-        self.forget_the_impossible();
-        done
-    }
-
-    fn redo(&mut self) -> bool {
-        let done = self.edits.redo();
-        self.forget_the_impossible();
-        done
-    }
-
-    fn revert(&mut self) -> bool {
-        self.edits.revert(|_| true)
-    }
-
-    fn forget_steps(&mut self) {
-        self.edits.forget_steps();
-    }
-}
-
-/// A byte here is another than the encoder's, as far as that is known.
-fn is_edit(device: &[FieldImage], (field, address): (u8, usize), byte: u8) -> bool {
-    let image = device.iter().find(|image| image.number == field);
-    match image.map(|image| (&image.bytes, image.status)) {
-        Some((Some(bytes), _)) => bytes.get(address).is_some_and(|own| *own != byte),
-        Some((None, status)) => address < status.size().bytes(),
-        None => false,
+        self.base().iter().find(|field| field.number == number)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::PendingEdits as _;
     use crate::devices::hiperface::protocol::DataFieldStatus;
 
     fn fields(first: &[u8; 16]) -> Vec<FieldImage> {
