@@ -2,7 +2,7 @@
 //! nobody reads.
 
 use crate::tabs::Tabs as _;
-use encoder_studio::app::DeviceCommand;
+use encoder_studio::app::{DeviceCommand, DeviceModel as _};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Recording, Severity, Theme};
+use encoder_studio::app::{Action, Severity, Theme};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
@@ -214,8 +214,8 @@ fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
     without_polling(|| wire.count(0x42) > 6_000);
     desk.studio.poll();
-    let record = &desk.encoder().record;
-    assert!(record.dropped() > 0 && record.positions() >= 4_096, "{} {}", record.dropped(), record.positions());
+    let (dropped, positions) = (desk.encoder().record().dropped(), desk.encoder().record.positions());
+    assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");
     assert!(desk.encoder().session.trace.dropped() > 0);
     // In between, a job is taken at once.
     desk.ask(Hiperface::ReadCounter);

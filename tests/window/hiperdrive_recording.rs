@@ -2,11 +2,11 @@
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
-use encoder_studio::app::DeviceCommand;
+use encoder_studio::app::{DeviceCommand, DeviceModel as _};
 use std::fs;
 
 use encoder_studio::app::recorder::Recorder;
-use encoder_studio::app::{Action, Desk as Whose, FileQuestion, Recording, Severity};
+use encoder_studio::app::{Action, Desk as Whose, FileQuestion, Severity};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure};
 use encoder_studio::units::Moment;
@@ -15,7 +15,7 @@ use crate::hiperdrive::{ONE, act, number, read, unit};
 use crate::support::Desk;
 
 fn recorder(desk: &Desk) -> &Recorder {
-    unit(desk).record.recorder()
+    unit(desk).record().recorder()
 }
 
 /// Positions in a line, by its heading; none where there is no such line.
@@ -34,7 +34,7 @@ fn until_recorded(desk: &mut Desk, more: u64) {
     let before = positions(desk);
     desk.until("some is recorded", |studio| {
         let own = studio.hiperdrive().unwrap();
-        samples(own.record.recorder(), |heading| heading == "position") >= before + more
+        samples(own.record().recorder(), |heading| heading == "position") >= before + more
     });
 }
 
@@ -79,7 +79,7 @@ fn no_unit_and_no_scale_forgets_a_recording() {
         own.session.is_ready() && own.number(ONE, 154) == Some(400)
     });
     desk.until("the new scale is recorded", |studio| {
-        studio.hiperdrive().unwrap().record.recorder().lines().iter().any(|line| line.ended)
+        studio.hiperdrive().unwrap().record().recorder().lines().iter().any(|line| line.ended)
     });
     assert!(samples(recorder(&desk), |heading| heading.starts_with("position until ")) >= before);
 }

@@ -1,13 +1,13 @@
 //! What is recorded of a polled encoder, and what can be done with it.
 
 use crate::tabs::Tabs as _;
-use encoder_studio::app::DeviceCommand;
+use encoder_studio::app::{DeviceCommand, DeviceModel as _};
 use std::fs;
 use std::time::Duration;
 
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::app::recorder::{self, Line, Recorder};
-use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Recording, Severity, Studio};
+use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Severity, Studio};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::losing::lost;
@@ -25,7 +25,7 @@ fn own(desk: &Desk) -> Of {
 }
 
 fn recorder(desk: &Desk) -> &Recorder {
-    desk.encoder().record.recorder()
+    desk.encoder().record().recorder()
 }
 
 fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Line {
@@ -162,7 +162,7 @@ fn what_is_watched_is_recorded_beside_the_position() {
     }
     desk.command(FAST);
     desk.until("the counter has come", |studio| {
-        let recorder = &studio.hiperface().unwrap().record.recorder();
+        let recorder = &studio.hiperface().unwrap().record().recorder();
         recorder.history(line(recorder, "counter")).is_some_and(|history| history.all().end > 0)
     });
     let recording = recorder(&desk);

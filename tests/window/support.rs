@@ -1,7 +1,7 @@
 //! A desk for the window's state: a studio in a world of the test's own, with two cables and a link that hangs for ever.
 
 use crate::tabs::Tabs as _;
-use encoder_studio::app::DeviceCommand;
+use encoder_studio::app::{DeviceCommand, DeviceModel as _};
 use encoder_studio::app::{Given, Opener};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Patience, Recording, ReviewAction, Severity, Studio, World, connect};
+use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, World, connect};
 use encoder_studio::devices::biss::jobs as biss;
 use encoder_studio::devices::biss::procedures::Way;
 use encoder_studio::devices::hiperdrive::jobs as hiperdrive;
@@ -193,7 +193,7 @@ pub(crate) struct Desk {
 impl Desk {
     /// Samples of the position that are recorded without a value to believe.
     pub(crate) fn bad_positions(&self) -> u64 {
-        let recorder = &self.encoder().record.recorder();
+        let recorder = &self.encoder().record().recorder();
         let history = recorder.history(&recorder.lines()[0]).unwrap();
         history.statistics(0, history.all()).map_or(0, |statistics| statistics.bad)
     }

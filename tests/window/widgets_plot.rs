@@ -1,13 +1,13 @@
 //! The plot in the window: its tools by their labels, its chart by the pointer and the keyboard.
 
 use crate::tabs::Tabs as _;
-use encoder_studio::app::DeviceCommand;
+use encoder_studio::app::{DeviceCommand, DeviceModel as _};
 use std::time::Duration;
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
-use encoder_studio::app::{Action, FileQuestion, Recording};
+use encoder_studio::app::{Action, FileQuestion};
 use encoder_studio::app::{Desk as Of, Language, recorder};
 
 use crate::screen::Screen;
@@ -27,7 +27,7 @@ fn recorded() -> Screen {
 }
 
 fn recorder(screen: &Screen) -> &Recorder {
-    screen.encoder().record.recorder()
+    screen.encoder().record().recorder()
 }
 
 fn chart(screen: &Screen) -> Rect {

@@ -50,11 +50,11 @@ impl DeviceModel for Unit {
     }
 
     fn record(&self) -> &dyn Recording {
-        &self.record
+        &self.record.track
     }
 
     fn record_mut(&mut self) -> &mut dyn Recording {
-        &mut self.record
+        &mut self.record.track
     }
 
     fn step(&mut self, step: EditStep) {
@@ -71,11 +71,11 @@ impl DeviceModel for Unit {
     }
 
     fn recorders(&self) -> Vec<&Recorder> {
-        std::iter::once(&self.record).chain(self.records.values()).map(Recording::recorder).collect()
+        std::iter::once(&self.record).chain(self.records.values()).map(|own| &own.track.recorder).collect()
     }
 
     fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
-        std::iter::once(&mut self.record).chain(self.records.values_mut()).map(Recording::recorder_mut).collect()
+        std::iter::once(&mut self.record).chain(self.records.values_mut()).map(|own| &mut own.track.recorder).collect()
     }
 
     fn is_active(&self) -> bool {

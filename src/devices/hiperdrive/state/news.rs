@@ -9,7 +9,7 @@ use super::unit::Unit;
 use crate::app::review::{Review, told};
 use crate::app::services::Services;
 use crate::app::session::{Cut, Kind, OnLine, WithMemory};
-use crate::app::{Recording, Severity, Text};
+use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
@@ -152,7 +152,7 @@ impl Unit {
     fn poll(&mut self) {
         let Some(line) = self.session.line.as_mut().filter(|line| line.polling().is_none()) else { return };
         line.poll(Some(PACE));
-        self.record.poll(Some(PACE), true);
+        self.record.track.poll(Some(PACE), true);
     }
 }
 

@@ -1,22 +1,19 @@
 //! What is recorded of the drive that is shown: its position, its own speed, its target.
 
-use std::time::Duration;
-
 use crate::devices::hiperdrive::state::TEXTS;
 
 use jiff::Zoned;
 
 use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
-use crate::app::Recording;
-use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::recorder::{GroupId, Line, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
 /// What stands beside the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Beside {
+pub(super) enum Beside {
     /// The drive's own speed, in rpm.
     Speed,
     /// Where it is sent, in steps of this ruler.
@@ -26,7 +23,7 @@ enum Beside {
 /// The recorder of a drive, and what came last.
 #[derive(Debug, Default)]
 pub struct Record {
-    track: Track<Beside>,
+    pub(super) track: Track<Beside>,
     last: Option<Reading>,
 }
 
@@ -81,24 +78,6 @@ impl Record {
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;
-    }
-}
-
-impl Recording for Record {
-    fn recorder(&self) -> &Recorder {
-        &self.track.recorder
-    }
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.track.recorder
-    }
-
-    fn dropped(&self) -> u64 {
-        self.track.dropped()
-    }
-
-    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
     }
 }
 

@@ -9,7 +9,7 @@ use super::words;
 use crate::app::review::OpWords;
 use crate::app::services::Services;
 use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
-use crate::app::{PendingEdits, Recording, Text};
+use crate::app::{PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
 use crate::devices::hiperdrive::profile::{
     HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types,
@@ -77,7 +77,7 @@ impl WithMemory for Unit {
         self.moves.forget();
         self.record.forget();
         self.records.values_mut().for_each(Record::forget);
-        self.records.retain(|_, record| !record.recorder().is_empty());
+        self.records.retain(|_, record| !record.track.recorder.is_empty());
         self.readings.clear();
         self.pitches.clear();
         self.axes.clear();

@@ -44,11 +44,11 @@ impl DeviceModel for Encoder {
     }
 
     fn record(&self) -> &dyn Recording {
-        &self.record
+        &self.record.track
     }
 
     fn record_mut(&mut self) -> &mut dyn Recording {
-        &mut self.record
+        &mut self.record.track
     }
 
     fn read_device(&mut self, services: &mut Services) {

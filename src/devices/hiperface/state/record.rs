@@ -1,23 +1,21 @@
 //! What is recorded of a HIPERFACE encoder while it is polled: its positions in the units of its geometry, analogue values
 //! and its counter.
 
-use std::time::Duration;
-
 use crate::devices::hiperface::state::TEXTS;
 
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
-use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::Text;
+use crate::app::recorder::{GroupId, Line, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
-use crate::app::{Recording, Text};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
 /// The recorder of an encoder, and what it said last.
 #[derive(Debug, Default)]
 pub struct Record {
-    track: Track<Watch>,
+    pub(super) track: Track<Watch>,
     last: Option<PositionReading>,
     refused: bool,
 }
@@ -82,24 +80,6 @@ impl Record {
     pub(super) fn forget(&mut self) {
         self.track.forget();
         (self.last, self.refused) = (None, false);
-    }
-}
-
-impl Recording for Record {
-    fn recorder(&self) -> &Recorder {
-        &self.track.recorder
-    }
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.track.recorder
-    }
-
-    fn dropped(&self) -> u64 {
-        self.track.dropped()
-    }
-
-    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
     }
 }
 

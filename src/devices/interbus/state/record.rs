@@ -1,15 +1,12 @@
 //! What is recorded of an INTERBUS encoder while its IN word is read: positions by its gear, its own speed, and its cam
 //! outputs.
 
-use std::time::Duration;
-
 use crate::devices::interbus::state::TEXTS;
 
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
-use crate::app::Recording;
-use crate::app::recorder::{GroupId, Line, Recorder, Scale};
+use crate::app::recorder::{GroupId, Line, Scale};
 use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
@@ -17,7 +14,7 @@ use crate::units::Moment;
 
 /// What an encoder sends instead of its position, or with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Beside {
+pub(super) enum Beside {
     /// Its own speed, in velocity mode.
     Speed,
     /// The output of a cam.
@@ -27,7 +24,7 @@ enum Beside {
 /// The recorder of an encoder, and the word that came last.
 #[derive(Debug, Default)]
 pub struct Record {
-    track: Track<Beside>,
+    pub(super) track: Track<Beside>,
     last: Option<Reading>,
 }
 
@@ -99,24 +96,6 @@ impl Record {
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;
-    }
-}
-
-impl Recording for Record {
-    fn recorder(&self) -> &Recorder {
-        &self.track.recorder
-    }
-
-    fn recorder_mut(&mut self) -> &mut Recorder {
-        &mut self.track.recorder
-    }
-
-    fn dropped(&self) -> u64 {
-        self.track.dropped()
-    }
-
-    fn poll(&mut self, interval: Option<Duration>, begins: bool) {
-        self.track.poll(interval, begins);
     }
 }
 

@@ -26,13 +26,13 @@ fn watched(microseconds: u64, value: i64) -> Sample {
 }
 
 fn line<'a>(record: &'a Record, heading: &str) -> &'a Line {
-    record.recorder().lines().iter().find(|line| line.heading == heading).unwrap()
+    record.track.recorder.lines().iter().find(|line| line.heading == heading).unwrap()
 }
 
 /// Time in nanoseconds, value in the samples' own unit, flags.
 fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
     let line = line(record, heading);
-    let history = record.recorder().history(line).unwrap();
+    let history = record.track.recorder.history(line).unwrap();
     let sample = |index| history.sample(line.column(), index).unwrap();
     history.all().map(sample).map(|own| (own.time.nanoseconds(), own.value.to_f64(), own.flags)).collect()
 }
@@ -64,7 +64,7 @@ fn nothing_is_joined_across_what_is_missing() {
         |heading| -> Vec<bool> { samples(&record, heading).iter().map(|own| own.2.contains(Flags::BREAK)).collect() };
     assert_eq!(breaks("position"), [false, false, true]);
     assert_eq!(breaks("temperature"), [false, false, true]);
-    assert_eq!(record.dropped(), 7);
+    assert_eq!(record.track.dropped(), 7);
     // The cable was out for an hour.
     let began: Zoned = "2026-03-01T10:00:00[UTC]".parse().unwrap();
     let mut record = Record::default();
@@ -86,10 +86,10 @@ fn nothing_is_joined_across_what_is_missing() {
 fn what_is_stopped_and_started_again_is_not_joined() {
     let mut record = Record::default();
     let every = Some(Duration::from_millis(50));
-    record.poll(every, true);
+    record.track.poll(every, true);
     record.add(vec![position(0, 0), position(50_000, 1)], 0, Some(SKM36));
-    record.poll(None, false);
-    record.poll(every, true);
+    record.track.poll(None, false);
+    record.track.poll(every, true);
     record.add(vec![position(150_000, 2), position(200_000, 3)], 0, Some(SKM36));
     // Four intervals and 0.4 s later something is missing, stopped or not.
     record.add(vec![position(790_000, 4), position(1_400_000, 5)], 0, Some(SKM36));
@@ -101,7 +101,7 @@ fn what_is_stopped_and_started_again_is_not_joined() {
 #[test]
 fn a_long_run_misses_no_break_and_no_wrap() {
     let mut record = Record::default();
-    record.poll(Some(Duration::from_millis(1)), false);
+    record.track.poll(Some(Duration::from_millis(1)), false);
     let (mut microseconds, mut expected) = (0, Vec::new());
     let start = RANGE - 1_000_000;
     let steps = |microseconds: u64| start + microseconds as i64 * 40_960 / 1_000_000;
@@ -115,7 +115,7 @@ fn a_long_run_misses_no_break_and_no_wrap() {
             record.add(std::mem::take(&mut batch), 0, Some(SKM36));
         }
     }
-    let recorder = &record.recorder();
+    let recorder = &record.track.recorder;
     let own = line(&record, "position");
     let history = recorder.history(own).unwrap();
     assert_eq!(history.all(), 0..600_000);
