@@ -10,7 +10,7 @@ use crate::app::Text;
 use crate::app::connect::form::{AnyForm, Filled, Finder, FormModel};
 use crate::app::payload::{Payload, WrongKind};
 use crate::app::services::Services;
-use crate::app::session::{Kind, ProfileFile};
+use crate::app::session::{Kind, ProfileFile, Session};
 use crate::app::studio::SessionId;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
@@ -46,8 +46,17 @@ pub trait DeviceType: DeviceModel + Sized {
         false
     }
 
+    /// Returns a device of which nothing is known but what the profile says that was opened, with what that is read with.
+    fn begin(
+        session: Session<Self::Device>,
+        profile: Option<(&Self::Profile, Self::Tables)>,
+        services: &mut Services,
+    ) -> Self;
+
     /// Returns a device at a link that is being opened.
-    fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self;
+    fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
+        Self::begin(Session::at_link(id, url), None, services)
+    }
 
     /// Reads what its profiles are read with. Runs on the thread of a task.
     fn tables(store: &Store) -> Self::Tables;
@@ -59,7 +68,12 @@ pub trait DeviceType: DeviceModel + Sized {
         document: Document,
         tables: Self::Tables,
         services: &mut Services,
-    ) -> Self;
+    ) -> Self {
+        let session = Session::in_file(id, file, document.clone());
+        let mut own = Self::begin(session, document.body.get().map(|profile| (profile, tables)), services);
+        own.load_draft(services);
+        own
+    }
 
     /// Returns the words for why a profile of this kind is refused; `None` for a cause that is not this kind's.
     fn explain(_cause: &Cause) -> Option<Text> {

@@ -111,7 +111,7 @@ fn page_ui(
     view: &mut View,
     actions: &mut Vec<Action>,
 ) {
-    page::scrolling(ui, skin, ("signals", view.page.place()), |ui| match view.page {
+    page::scrolling(ui, skin, view.page.place(), |ui| match view.page {
         Page::Scope => {
             if source::source_ui(ui, skin, signals, &mut view.source, actions) {
                 scope::page_ui(ui, skin, signals, view, actions);

@@ -2,10 +2,9 @@
 
 use encoder_studio::app::connect::form::{FormModel, NoFinder};
 use encoder_studio::app::review::{self, Review, Reviewed};
-use encoder_studio::app::session::{Drafted, Kind, ProfileFile, Session};
-use encoder_studio::app::{DeviceType, Services, SessionId, Severity, Text, explain};
+use encoder_studio::app::session::{Kind, Session};
+use encoder_studio::app::{DeviceType, Services, Severity, Text, explain};
 use encoder_studio::link::LinkUrl;
-use encoder_studio::profile::Document;
 use encoder_studio::store::Store;
 use encoder_studio::worker::{self, OpenError};
 
@@ -70,15 +69,11 @@ impl DeviceType for Encoder {
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         jobs::check(url)
     }
-    fn at_link(id: SessionId, url: LinkUrl, _: &mut Services) -> Self {
-        Encoder::with(Session::at_link(id, url))
-    }
     fn tables(_: &Store) {}
 
-    fn in_file(id: SessionId, file: ProfileFile, document: Document, (): (), services: &mut Services) -> Self {
-        let mut own = Encoder::with(Session::in_file(id, file.clone(), document.clone()));
-        own.take_document(file, document);
-        own.load_draft(services);
+    fn begin(session: Session<Novo>, profile: Option<(&NovoProfile, ())>, _: &mut Services) -> Self {
+        let mut own = Encoder::with(session);
+        profile.into_iter().for_each(|(profile, ())| own.take(profile.clone()));
         own
     }
 }

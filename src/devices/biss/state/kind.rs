@@ -4,15 +4,14 @@ use std::sync::Arc;
 
 use super::{BissForm, Encoder};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, ProfileFile, Session};
-use crate::app::studio::SessionId;
+use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
-use crate::devices::biss::jobs::{check, descriptions};
+use crate::devices::biss::jobs::{Biss, check, descriptions};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::protocol::Descriptions;
 use crate::devices::biss::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::{Cause, Document};
+use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -30,28 +29,17 @@ impl DeviceType for Encoder {
         explain::entry(cause)
     }
 
-    fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {
-        Encoder::with(Session::at_link(id, url))
-    }
-
     fn tables(store: &Store) -> Self::Tables {
         descriptions(store).0
     }
 
-    fn in_file(
-        id: SessionId,
-        file: ProfileFile,
-        document: Document,
-        tables: Self::Tables,
-        services: &mut Services,
-    ) -> Self {
-        let mut encoder = Encoder::with(Session::in_file(id, file, document.clone()));
-        if let Some(profile) = document.body.get::<BissProfile>() {
+    fn begin(session: Session<Biss>, profile: Option<(&BissProfile, Descriptions)>, _: &mut Services) -> Self {
+        let mut encoder = Encoder::with(session);
+        if let Some((profile, tables)) = profile {
             let described = tables.named(&profile.identity.description).or_else(|| tables.iter().last()).cloned();
             encoder.describe(described.map(Arc::new));
             encoder.take_profile(profile);
         }
-        encoder.load_draft(services);
         encoder
     }
 }

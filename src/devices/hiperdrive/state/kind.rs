@@ -3,15 +3,14 @@
 use super::staged::Staged;
 use super::{HiperdriveForm, Unit};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, ProfileFile, Session};
-use crate::app::studio::SessionId;
+use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
-use crate::devices::hiperdrive::jobs::check;
+use crate::devices::hiperdrive::jobs::{Hiperdrive, check};
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::{Cause, Document};
+use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -29,25 +28,16 @@ impl DeviceType for Unit {
         explain::entry(cause)
     }
 
-    fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {
-        Unit::with(Session::at_link(id, url), Staged::default())
-    }
-
     fn tables(_store: &Store) -> Self::Tables {}
 
-    fn in_file(id: SessionId, file: ProfileFile, document: Document, _tables: (), services: &mut Services) -> Self {
-        let staged = match document.body.get::<HiperdriveProfile>() {
-            Some(profile) => {
-                let mut staged = Staged::of_profile(profile.image.clone());
-                let drives = profile.identity.drives.iter();
-                staged.know(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
-                staged
-            }
-            None => Staged::default(),
-        };
-        let mut unit = Unit::with(Session::in_file(id, file, document), staged);
-        unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
-        unit.load_draft(services);
+    fn begin(session: Session<Hiperdrive>, profile: Option<(&HiperdriveProfile, ())>, _: &mut Services) -> Self {
+        let mut unit = Unit::with(session);
+        if let Some((profile, ())) = profile {
+            unit.staged = Staged::of_profile(profile.image.clone());
+            let drives = profile.identity.drives.iter();
+            unit.staged.know(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
+            unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
+        }
         unit
     }
 }

@@ -81,13 +81,13 @@ pub struct Unit {
 }
 
 impl Unit {
-    pub(super) fn with(session: Session<Hiperdrive>, staged: Staged) -> Self {
+    pub(super) fn with(session: Session<Hiperdrive>) -> Self {
         Unit {
             session,
             survey: None,
             status: None,
             check: None,
-            staged,
+            staged: Staged::default(),
             record: Record::default(),
             records: BTreeMap::new(),
             began: None,

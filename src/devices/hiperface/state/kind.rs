@@ -2,15 +2,15 @@
 
 use super::{Encoder, LinkForm};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, ProfileFile, Session};
-use crate::app::studio::SessionId;
+use crate::app::session::Session;
 use crate::app::{DeviceType, Severity, Text};
-use crate::devices::hiperface::jobs::{self, check, encoder_types};
+use crate::devices::hiperface::jobs::{self, Hiperface, check, encoder_types};
+use crate::devices::hiperface::procedures::identity_of;
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
-use crate::profile::{Cause, Document};
+use crate::profile::Cause;
 use crate::store::{Store, StoreError};
 use crate::worker::OpenError;
 
@@ -32,36 +32,25 @@ impl DeviceType for Encoder {
         words::refused(cause)
     }
 
-    fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {
-        Encoder::with(Session::at_link(id, url))
-    }
-
     fn tables(store: &Store) -> Self::Tables {
         encoder_types(store)
     }
 
-    fn in_file(
-        id: SessionId,
-        file: ProfileFile,
-        document: Document,
-        tables: Self::Tables,
+    fn begin(
+        session: Session<Hiperface>,
+        profile: Option<(&HiperfaceProfile, Self::Tables)>,
         services: &mut Services,
     ) -> Self {
-        let types = tables.unwrap_or_else(|error| {
-            services.tell(Severity::Warning, vec![words::store(&error)], None);
-            EncoderTypes::built_in()
-        });
-        let profile = document.body.get::<HiperfaceProfile>();
-        let fields = profile.map(|profile| profile.fields.clone()).unwrap_or_default();
-        let identity = profile.map(|profile| crate::devices::hiperface::procedures::identity_of(profile, &types));
-        let counter = profile.and_then(|profile| profile.recorded.counter);
-        let mut encoder = Encoder::with(Session::in_file(id, file, document));
-        if let Some(identity) = identity {
-            encoder.identify(identity);
+        let mut encoder = Encoder::with(session);
+        if let Some((profile, tables)) = profile {
+            let types = tables.unwrap_or_else(|error| {
+                services.tell(Severity::Warning, vec![words::store(&error)], None);
+                EncoderTypes::built_in()
+            });
+            encoder.identify(identity_of(profile, &types));
+            encoder.counter = profile.recorded.counter;
+            encoder.staged.refresh(profile.fields.clone());
         }
-        encoder.counter = counter;
-        encoder.staged.refresh(fields);
-        encoder.load_draft(services);
         encoder
     }
 }

@@ -3,14 +3,13 @@
 use super::staged::Staged;
 use super::{Encoder, InterbusForm};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, ProfileFile, Session};
-use crate::app::studio::SessionId;
+use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
-use crate::devices::interbus::jobs::check;
+use crate::devices::interbus::jobs::{Interbus, check};
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::{Cause, Document};
+use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -28,19 +27,10 @@ impl DeviceType for Encoder {
         explain::entry(cause)
     }
 
-    fn at_link(id: SessionId, url: LinkUrl, _services: &mut Services) -> Self {
-        Encoder::with(Session::at_link(id, url), Staged::default())
-    }
-
     fn tables(_store: &Store) -> Self::Tables {}
 
-    fn in_file(id: SessionId, file: ProfileFile, document: Document, _tables: (), services: &mut Services) -> Self {
-        let staged = match document.body.get::<InterbusProfile>() {
-            Some(profile) => Staged::of_profile(profile.image.clone(), profile.names.clone()),
-            None => Staged::default(),
-        };
-        let mut encoder = Encoder::with(Session::in_file(id, file, document), staged);
-        encoder.load_draft(services);
-        encoder
+    fn begin(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
+        let staged = profile.map(|(profile, ())| Staged::of_profile(profile.image.clone(), profile.names.clone()));
+        Encoder::with(session, staged.unwrap_or_default())
     }
 }

@@ -6,14 +6,14 @@ use super::design::Designer;
 use super::families::families;
 use super::{Encoder, SsiForm};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, ProfileFile, Session};
+use crate::app::session::{Drafted, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{DeviceType, Text};
-use crate::devices::ssi::jobs::check;
+use crate::devices::ssi::jobs::{Ssi, check};
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::state::explain;
 use crate::link::LinkUrl;
-use crate::profile::{Cause, Document};
+use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
 
@@ -31,23 +31,18 @@ impl DeviceType for Encoder {
         explain::entry(cause)
     }
 
-    fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
-        let families = families(services);
-        let designer = Designer::at_link(&url, families);
-        Encoder::with(Session::at_link(id, url), designer)
-    }
-
     fn tables(_store: &Store) -> Self::Tables {}
 
-    fn in_file(id: SessionId, file: ProfileFile, document: Document, _tables: (), services: &mut Services) -> Self {
+    fn begin(session: Session<Ssi>, profile: Option<(&SsiProfile, ())>, services: &mut Services) -> Self {
         let families = families(services);
-        let mut designer = Designer::delivered(families);
-        if let Some(profile) = document.body.get::<SsiProfile>() {
+        let mut designer = match &session.source {
+            Source::Link(url) => Designer::at_link(url, families),
+            Source::File { .. } | Source::New { .. } => Designer::delivered(families),
+        };
+        if let Some((profile, ())) = profile {
             designer.open(profile.clone());
         }
-        let mut encoder = Encoder::with(Session::in_file(id, file, document), designer);
-        encoder.load_draft(services);
-        encoder
+        Encoder::with(session, designer)
     }
 
     /// A layout as it is delivered of the first family, with the first name that no other such layout has.
@@ -55,8 +50,7 @@ impl DeviceType for Encoder {
         let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
         let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);
         let suggested = names.find(|name| !is_taken(name))?;
-        let designer = Designer::delivered(families(services));
-        let mut encoder = Encoder::with(Session::of_nothing(id, suggested), designer);
+        let mut encoder = Self::begin(Session::of_nothing(id, suggested), None, services);
         encoder.load_draft(services);
         Some(encoder)
     }
