@@ -72,6 +72,25 @@ pub enum Marks {
     Read,
 }
 
+/// Drives of which the settings remember something.
+pub trait RemembersDrives {
+    /// Returns the name under which the settings remember its drives; `None` before it was read.
+    fn remembered_as(&self) -> Option<String>;
+
+    /// Takes what the settings remember of its drives, and returns what they are to remember from now on, where that is
+    /// something else. All of it is taken once for a device; later only limits that were marked elsewhere.
+    fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
+
+    /// Locks the drives whose limits were marked elsewhere, before the settings know of it.
+    fn lock_by(&mut self, found: &RememberedDrives);
+
+    /// Returns whether the settings were read since control was taken.
+    fn marks(&self) -> Marks;
+
+    /// Says whether the settings were read since control was taken: before that nothing moves.
+    fn set_marks(&mut self, marks: Marks);
+}
+
 impl From<LocksAlone> for RememberedDrives {
     fn from(LocksAlone { unconfirmed, marks }: LocksAlone) -> Self {
         RememberedDrives { unconfirmed, marks, ..RememberedDrives::default() }

@@ -59,7 +59,7 @@ pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice};
 pub use kinds::Kinds;
 pub use tool::{Tool, ToolAction, ToolContext, ToolKind};
 
-pub use drives::{Marks, Measure, RememberedDrives};
+pub use drives::{Marks, Measure, RememberedDrives, RemembersDrives};
 pub use edits::{EditBase, Edits};
 pub use file_question::{DeviceFile, FileQuestion};
 pub use given::{Given, Opener};

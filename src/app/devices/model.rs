@@ -11,8 +11,7 @@ use crate::app::services::{Services, World};
 use crate::app::session::{Drafted, Kind, Listed, OnDesk, OnLine, Saved, WithMemory};
 use crate::app::studio::SessionId;
 use crate::app::{
-    AnyDevice, DeviceAction, DeviceCommand, EditStep, Marks, Recording, RememberedDrives, Severity, SineCosineSource,
-    Tab, Text,
+    AnyDevice, DeviceAction, DeviceCommand, EditStep, Recording, RemembersDrives, Severity, SineCosineSource, Tab, Text,
 };
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
@@ -193,6 +192,11 @@ pub trait DeviceModel: OnLine + Drafted + 'static {
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         None
     }
+
+    /// Returns the drives that the settings remember; `None` for a kind of which they remember none.
+    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
+        None
+    }
 }
 
 /// What is done with a session before it goes to its thread.
@@ -250,22 +254,6 @@ pub trait MotionControl {
 
     /// This window has the control: values come without being asked for.
     fn is_in_control(&self) -> bool;
-
-    /// Returns the name under which the settings remember its drives; `None` before it was read.
-    fn remembered_as(&self) -> Option<String>;
-
-    /// Takes what the settings remember of its drives, and returns what they are to remember from now on, where that is
-    /// something else. All of it is taken once for a device; later only limits that were marked elsewhere.
-    fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
-
-    /// Locks the drives whose limits were marked elsewhere.
-    fn lock_by(&mut self, found: &RememberedDrives);
-
-    /// Returns whether the settings were read since control was taken.
-    fn marks(&self) -> Marks;
-
-    /// Says whether the settings were read since control was taken: before that nothing moves.
-    fn set_marks(&mut self, marks: Marks);
 }
 
 /// A memory that is written through a review, and saved and restored as a profile.

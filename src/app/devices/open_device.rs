@@ -13,7 +13,7 @@ use crate::app::line::Progressing;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{DraftDone, Drafted, Kind, OnLine, ProfileFile, Saving, SessionState, Source};
-use crate::app::{Payload, SineCosineSource, Tab, Text, WrongKind};
+use crate::app::{Payload, RemembersDrives, SineCosineSource, Tab, Text, WrongKind};
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::FileError;
@@ -85,6 +85,8 @@ pub trait OpenDevice: Any {
     fn motion(&self) -> Option<&dyn MotionControl>;
     #[doc(hidden)]
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl>;
+    #[doc(hidden)]
+    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives>;
     #[doc(hidden)]
     fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()>;
     #[doc(hidden)]
@@ -252,6 +254,10 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         DeviceModel::motion_mut(self)
+    }
+
+    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
+        DeviceModel::remembers_drives(self)
     }
 
     fn open_failed(&self, failed: &OpenFailed) -> Text {

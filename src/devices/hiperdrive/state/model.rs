@@ -9,7 +9,7 @@ use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::OnLine;
 use crate::app::{
-    ActContext, DeviceMemory, DeviceModel, EditStep, Marks, MotionControl, Recording, RememberedDrives, Tab, Text,
+    ActContext, DeviceMemory, DeviceModel, EditStep, MotionControl, Recording, RemembersDrives, Tab, Text,
 };
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
 use crate::devices::hiperdrive::protocol::DriveNumber;
@@ -99,6 +99,10 @@ impl DeviceModel for Unit {
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         Some(self)
     }
+
+    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
+        Some(self)
+    }
 }
 
 impl MotionControl for Unit {
@@ -124,25 +128,5 @@ impl MotionControl for Unit {
 
     fn is_in_control(&self) -> bool {
         self.moves.is_open()
-    }
-
-    fn remembered_as(&self) -> Option<String> {
-        Unit::remembered_as(self)
-    }
-
-    fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives> {
-        Unit::exchange_remembered(self, kept)
-    }
-
-    fn lock_by(&mut self, found: &RememberedDrives) {
-        Unit::lock_by(self, found);
-    }
-
-    fn marks(&self) -> Marks {
-        self.marks
-    }
-
-    fn set_marks(&mut self, marks: Marks) {
-        self.marks = marks;
     }
 }

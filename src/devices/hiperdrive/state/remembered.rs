@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::ruler::Measure;
 use super::unit::Unit;
-use crate::app::RememberedDrives;
+use crate::app::{Marks, RememberedDrives, RemembersDrives};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
 /// What a device's session and the settings told each other last.
@@ -20,17 +20,14 @@ pub(super) struct Exchanged {
     scales: BTreeMap<DriveNumber, (i64, i64)>,
 }
 
-impl Unit {
-    /// Under what name it is remembered; `None` before it was read.
-    pub(super) fn remembered_as(&self) -> Option<String> {
+impl RemembersDrives for Unit {
+    fn remembered_as(&self) -> Option<String> {
         let own = self.identity()?;
         let kind = if self.session.is_virtual() { "virtual " } else { "" };
         Some(format!("{kind}{} {}", own.category, own.serial_number))
     }
 
-    /// Takes what is remembered, and gives what is to be from now on where that is something else. All of it is taken once for
-    /// a device; later only limits that were marked elsewhere.
-    pub(super) fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives> {
+    fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives> {
         let before = match self.exchanged.take() {
             Some(before) => before,
             None => self.take_remembered(kept),
@@ -59,8 +56,7 @@ impl Unit {
         (next != *kept).then_some(next)
     }
 
-    /// Locks what was marked elsewhere, before the settings know of it.
-    pub(super) fn lock_by(&mut self, found: &RememberedDrives) {
+    fn lock_by(&mut self, found: &RememberedDrives) {
         let Some(before) = &mut self.exchanged else { return };
         for drive in found.marked_since(&before.kept).into_iter().filter_map(DriveNumber::new) {
             self.moves.unconfirm(drive);
@@ -69,6 +65,16 @@ impl Unit {
         }
     }
 
+    fn marks(&self) -> Marks {
+        self.marks
+    }
+
+    fn set_marks(&mut self, marks: Marks) {
+        self.marks = marks;
+    }
+}
+
+impl Unit {
     fn take_remembered(&mut self, kept: &RememberedDrives) -> Exchanged {
         for (drive, nanometres) in &kept.pitches {
             if let Some(drive) = DriveNumber::new(*drive) {
