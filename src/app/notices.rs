@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::path::Path;
+use std::time::Duration;
 
 use jiff::Zoned;
 
@@ -18,6 +19,18 @@ pub enum Severity {
     Warning,
     /// Something was not done.
     Error,
+}
+
+impl Severity {
+    /// Returns for how long a notice still stands that has been shown for so long; `None`: until it is closed.
+    pub fn stands_for(self, shown: Duration) -> Option<Duration> {
+        let seconds = match self {
+            Severity::Note | Severity::Good => 6,
+            Severity::Warning => 20,
+            Severity::Error => return None,
+        };
+        Some(Duration::from_secs(seconds).saturating_sub(shown))
+    }
 }
 
 /// One thing that happened.
@@ -150,6 +163,16 @@ mod tests {
             );
             assert_eq!(log.notices().len(), 2);
         }
+    }
+
+    #[test]
+    fn what_went_well_goes_by_itself_and_an_error_never() {
+        let left = |severity: Severity| severity.stands_for(Duration::from_millis(5_500));
+        assert_eq!(left(Severity::Note), Some(Duration::from_millis(500)));
+        assert_eq!(left(Severity::Good), left(Severity::Note));
+        assert_eq!(left(Severity::Warning), Some(Duration::from_millis(14_500)));
+        assert_eq!(left(Severity::Error), None);
+        assert_eq!(Severity::Warning.stands_for(Duration::from_secs(21)), Some(Duration::ZERO));
     }
 
     /// Issue 22.28: what stood in the way of a file is over with that file, and with no other.

@@ -12,7 +12,7 @@ use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
 use super::{Skin, Views, header, review, stopping};
-use crate::app::{Action, AnyDevice, DeviceCommand, Look, Severity, Studio};
+use crate::app::{Action, AnyDevice, DeviceCommand, Look, Studio};
 
 /// The window.
 pub struct Window {
@@ -31,15 +31,6 @@ pub struct Window {
 /// The keys of the tabs with Ctrl, in the tabs' order.
 const TAB_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
-
-/// Seconds for which a notice stands; `None`: until it is closed.
-const fn stands(severity: Severity) -> Option<f64> {
-    match severity {
-        Severity::Note | Severity::Good => Some(6.0),
-        Severity::Warning => Some(20.0),
-        Severity::Error => None,
-    }
-}
 
 impl Window {
     /// A window on a studio, with these tabs.
@@ -158,13 +149,10 @@ impl Window {
         let (_, colour) = super::controls::severity(skin, notice.severity);
         let place = strip.response.rect;
         ui.painter().hline(place.x_range(), place.top(), egui::Stroke::new(2.0, colour));
-        if let Some(stands) = stands(notice.severity) {
-            let left = stands - (now - since);
-            if left <= 0.0 {
-                actions.push(Action::Dismiss);
-            } else {
-                ui.ctx().request_repaint_after(Duration::from_secs_f64(left));
-            }
+        match notice.severity.stands_for(Duration::from_secs_f64(now - since)) {
+            Some(Duration::ZERO) => actions.push(Action::Dismiss),
+            Some(left) => ui.ctx().request_repaint_after(left),
+            None => {}
         }
     }
 

@@ -6,6 +6,8 @@
 
 mod content;
 
+use std::time::Duration;
+
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Severity, Text};
@@ -29,24 +31,21 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Seconds for which a step has been drawn; 0: it is new.
-    fn age(&mut self, step: Step, now: f64) -> f64 {
+    /// For how long a step has been drawn; zero: it is new.
+    fn age(&mut self, step: Step, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
-        now - since
+        Duration::from_secs_f64((now - since).max(0.0))
     }
 }
-
-/// So long a step is looked at before it is left: what a second click was meant for is the step before.
-const SETTLES: f64 = 0.6;
 
 /// The run, as it is drawn.
 pub(crate) struct Shown<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a Seen,
-    /// The step has been looked at for long enough to be left.
-    settled: bool,
+    /// For how long the step has been looked at.
+    looked_at: Duration,
 }
 
 impl Shown<'_> {
@@ -78,8 +77,8 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         return;
     };
     let seen = unit.seen(unit.drive());
-    let age = view.age(axis.step(), ui.input(|input| input.time));
-    let shown = Shown { unit, axis, seen: &seen, settled: age >= SETTLES };
+    let looked_at = view.age(axis.step(), ui.input(|input| input.time));
+    let shown = Shown { unit, axis, seen: &seen, looked_at };
     if let Some(end) = axis.end() {
         end_ui(ui, skin, &shown, end, actions);
         ui.add_space(skin.space.groups);
@@ -88,7 +87,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
     if ui.available_width() < BESIDE {
         // Nothing stands beside the step; at the end the list is the result.
         if goes_on {
-            step_ui(ui, skin, &shown, age, actions);
+            step_ui(ui, skin, &shown, actions);
         } else {
             card(ui, skin, TEXTS.text("hd_axis.title"), |ui| list(ui, skin, &shown));
         }
@@ -104,7 +103,7 @@ pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
         |ui, _| card(ui, skin, TEXTS.text("hd_axis.title"), |ui| list(ui, skin, &shown)),
         |ui, actions| {
             if goes_on {
-                step_ui(ui, skin, &shown, age, actions);
+                step_ui(ui, skin, &shown, actions);
                 ui.add_space(skin.space.groups);
             }
             notes(ui, skin);
@@ -169,14 +168,14 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
 }
 
 /// The step that counts.
-fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, age: f64, actions: &mut Vec<Action>) {
+fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
-    if age == 0.0 {
+    if shown.looked_at.is_zero() {
         ui.scroll_to_cursor(Some(egui::Align::TOP));
     }
-    if age < SETTLES {
-        ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(SETTLES - age));
+    if let Err(left) = Axis::may_leave(shown.looked_at) {
+        ui.ctx().request_repaint_after(left);
     }
     let place = Step::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
     let aside = |ui: &mut Ui| {
@@ -255,12 +254,14 @@ fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
 
 /// Back and cancel, and on. Before it is settled the step can only be cancelled, which stops what moves.
 fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let (axis, seen, settled) = (shown.axis, shown.seen, shown.settled);
+    let (axis, seen) = (shown.axis, shown.seen);
+    let settled = Axis::may_leave(shown.looked_at).is_ok();
     let step = axis.step();
     let allowed = axis.may_go_on(seen);
     ui.horizontal_wrapped(|ui| {
-        let may_back = settled && step != Step::Request && !axis.is_writing() && !seen.moves;
-        if enabled_button(ui, may_back, icons::ARROW_U_UP_LEFT, &say(skin, "hd_axis.back")).clicked() {
+        if enabled_button(ui, settled && axis.may_go_back(seen), icons::ARROW_U_UP_LEFT, &say(skin, "hd_axis.back"))
+            .clicked()
+        {
             shown.push(actions, Run::Back);
         }
         if button(ui, icons::X, &say(skin, "hd_axis.cancel")).clicked() {
@@ -280,7 +281,8 @@ fn skip(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
     let step = shown.axis.step();
     if step.may_be_skipped() {
         let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
-        if enabled_button(ui, shown.settled && shown.axis.may_skip(shown.seen), "", &say(skin, id)).clicked() {
+        let allowed = Axis::may_leave(shown.looked_at).is_ok() && shown.axis.may_skip(shown.seen);
+        if enabled_button(ui, allowed, "", &say(skin, id)).clicked() {
             shown.push(actions, Run::Skip);
         }
     }

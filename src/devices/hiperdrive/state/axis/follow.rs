@@ -65,7 +65,7 @@ impl Axis {
 
     /// To the step before, or to the one that has to be done again. What was written stays.
     pub(crate) fn back(&mut self, seen: &Seen) {
-        if self.over.is_some() || self.asked.is_some() || seen.moves {
+        if self.over.is_some() || !self.may_go_back(seen) {
             return;
         }
         if let Some(step) = self.fallen().or_else(|| self.step.beside(-1)) {

@@ -1,5 +1,7 @@
 //! What can be pressed in the set-up of an axis, what that asks for, and what is missing before the next step.
 
+use std::time::Duration;
+
 use super::supply::{MARK, Power, Restart, is_marked, mark};
 use super::{Ask, Axis, Button, Place, Seen, Step, differences, words};
 use crate::app::Text;
@@ -7,6 +9,9 @@ use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
+
+/// So long a step is looked at before it can be left.
+const SETTLES: Duration = Duration::from_millis(600);
 
 impl Axis {
     /// What pressing would ask for.
@@ -165,6 +170,23 @@ impl Axis {
             return Err(TEXTS.text("hd_axis.moving"));
         }
         seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
+    }
+
+    /// Whether a step that has been looked at for so long can be left, forward or back: what a second click was meant for is
+    /// the step before.
+    ///
+    /// # Errors
+    /// How much longer it has to be looked at.
+    pub fn may_leave(looked_at: Duration) -> Result<(), Duration> {
+        match SETTLES.saturating_sub(looked_at) {
+            Duration::ZERO => Ok(()),
+            left => Err(left),
+        }
+    }
+
+    /// Whether the step before can be shown now.
+    pub fn may_go_back(&self, seen: &Seen) -> bool {
+        self.step != Step::Request && self.asked.is_none() && !seen.moves
     }
 
     /// Whether the step can be left out now.

@@ -5,6 +5,7 @@ mod standstill;
 mod supply;
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use super::*;
 use crate::app::{Language, Text};
@@ -106,6 +107,19 @@ fn confirm_spindle(axis: &mut Axis, seen: &mut Seen) {
     next(axis, seen, Step::Confirm);
     seen.pitch = axis.entries().pitch().ok();
     axis.look(seen);
+}
+
+#[test]
+fn a_step_is_looked_at_for_a_while_before_it_is_left() {
+    let ms = Duration::from_millis;
+    assert_eq!([0, 599, 600].map(|age| Axis::may_leave(ms(age))), [Err(ms(600)), Err(ms(1)), Ok(())]);
+    let (mut axis, mut seen) = until_jog();
+    assert!(axis.may_go_back(&seen));
+    seen.moves = true;
+    assert!(!axis.may_go_back(&seen), "it moves");
+    seen.moves = false;
+    axis = run();
+    assert!(!axis.may_go_back(&seen), "nothing is before the first step");
 }
 
 /// A step that is proposed reads as the numbers beside it do, and is taken in either language.
