@@ -12,6 +12,7 @@ use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::{Image, Item, PlanError, Service};
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Access, Travel};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -30,9 +31,6 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
     show_done(output, &item.to_string(), &operations, &spent, &[], &said)
 }
-
-/// The position that is set: it has 32 bits, whatever bounds it beside.
-const REFERENCE: u16 = 198;
 
 /// What writing a value comes to. What no device takes is refused before anything is opened.
 fn change(item: Item, text: &str) -> Result<Change> {

@@ -11,6 +11,7 @@ use super::network::settings;
 use super::{Error, Identity, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
 use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, Item, NetworkSettings, Op, Service};
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
 };
@@ -158,9 +159,6 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
         Err(Error::NotTaken { number, wanted: reads, reads: position })
     }
 }
-
-/// The position that is set, by the number of drive 1.
-const REFERENCE: u16 = 198;
 
 fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written) -> Result<(), Error> {
     match service {

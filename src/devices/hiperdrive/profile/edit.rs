@@ -3,8 +3,11 @@
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-use super::record::REFERENCE;
 use super::{Base, DeviceState, HiperdrivePlan, Image, Item, Op, PlanError, Service};
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER, MAXIMUM_SPEED, NUMERATOR, REFERENCE, REQUESTED, RESET, SPEED_DENOMINATOR, SPEED_NUMERATOR,
+    UPPER,
+};
 use crate::devices::hiperdrive::protocol::{
     Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference,
 };
@@ -98,14 +101,8 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     HiperdrivePlan { base: Base { values, network: None }, ops: vec![Op::Service(service)] }
 }
 
-const NUMERATOR: u16 = 154;
-const DENOMINATOR: u16 = 156;
-const LOWER: u16 = 158;
-const UPPER: u16 = 160;
 /// What belongs together: the position's scale and the limits in it.
 const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
-/// The bus asks for the drive.
-const REQUESTED: u16 = 152;
 
 /// A parameter with another number.
 #[derive(Clone, Copy)]
@@ -137,8 +134,8 @@ impl Write {
         };
         let group = match base {
             NUMERATOR | DENOMINATOR => 0,
-            162 | 164 => 1,
-            166 => 2,
+            SPEED_NUMERATOR | SPEED_DENOMINATOR => 1,
+            MAXIMUM_SPEED => 2,
             LOWER | UPPER => 3,
             _ => 4,
         };
@@ -158,7 +155,7 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
     let row = number.row().ok_or(PlanError::NotRead { item })?;
     match (number.base(), row.access) {
         (101..=104, _) => Err(PlanError::Moves { item }),
-        (47 | REFERENCE | 199, _) => Err(PlanError::Acts { item }),
+        (47 | REFERENCE | RESET, _) => Err(PlanError::Acts { item }),
         (_, Access::Read) => Err(PlanError::ReadOnly { item }),
         _ => Ok(row.check(number, value, travel).map(|_| ())?),
     }

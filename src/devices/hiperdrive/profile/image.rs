@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, UPPER};
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, ParameterNumber, ParameterRow, PositionScale};
 
 /// Parameters by their own numbers. Of a device that was read: all that are saved and can be written, of the device and of
@@ -39,12 +40,12 @@ impl Image {
     /// How a drive's position is scaled (154, 156); `None` where that is not known, or cannot be.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
         let part = |number| self.of_drive(drive, number).and_then(|value| u16::try_from(value).ok());
-        PositionScale::new(part(154)?, part(156)?).ok()
+        PositionScale::new(part(NUMERATOR)?, part(DENOMINATOR)?).ok()
     }
 
     /// A drive's limits, lower and upper (158, 160), in steps as scaled.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
-        Some((self.of_drive(drive, 158)?, self.of_drive(drive, 160)?))
+        Some((self.of_drive(drive, LOWER)?, self.of_drive(drive, UPPER)?))
     }
 
     /// What it says of some parameters, as far as it does.

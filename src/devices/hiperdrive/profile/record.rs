@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Image, Item};
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, Topology, Variant};
 use crate::profile::ron_text::Unknown;
 
@@ -102,9 +103,6 @@ impl HiperdriveProfile {
         self.mounting.iter().any(|mark| mark.item == item)
     }
 }
-
-/// The reference: the position that is set, by the number of drive 1.
-pub(super) const REFERENCE: u16 = 198;
 
 impl ProfileIdentity {
     /// Nothing is known of the device itself.

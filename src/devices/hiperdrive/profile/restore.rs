@@ -3,11 +3,11 @@
 
 pub use crate::profile::RestoreOptions;
 
-use super::record::REFERENCE;
 use super::{
     HiperdrivePlan, HiperdriveProfile, Image, Item, OtherType, PlanError, Positions, ProfileDrive, ProfileIdentity,
     plan_edits,
 };
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
 
 /// A device as it is, as far as a plan needs it.

@@ -2,6 +2,7 @@
 
 use super::network::SWITCH;
 use super::{HiperdrivePlan, Image, Item, written};
+use crate::devices::hiperdrive::protocol::drive_parameter::REQUESTED;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
 /// What a plan brings along.
@@ -33,7 +34,7 @@ pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
     let mut warnings: Vec<Warning> = then.drives().into_iter().filter_map(|drive| moved(&now, &then, drive)).collect();
     for (&number, &new) in &written.values {
         warnings.extend(match (number.base(), number.drive(), new) {
-            (152, Some(drive), 0) => Some(Warning::NotRequested(drive)),
+            (REQUESTED, Some(drive), 0) => Some(Warning::NotRequested(drive)),
             (186, Some(drive), 255) => Some(Warning::NoTimeout(drive)),
             (188 | 190 | 192, ..) => Some(Warning::AfterReset(Item(number))),
             _ => None,

@@ -5,6 +5,7 @@
 //! derived, `U` is left open by the manual; where it contradicts itself, reference 8 says what is taken.
 
 mod control_word;
+pub mod drive_parameter;
 mod error_code;
 mod leds;
 mod parameter;

@@ -1,10 +1,15 @@
 //! All parameters, of the device and of drive 1 (reference 4). Names are ours: the manual's are German.
 
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use Kind::{I8, I16, I32, Text, U8, U16, U32};
 use Range::{Any, OneOf, Within, WithinOr};
 
+use super::drive_parameter::{
+    DENOMINATOR, LOWER, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NUMERATOR, REFERENCE, REQUESTED, RESET, SPEED_DENOMINATOR,
+    SPEED_NUMERATOR, UPPER,
+};
 use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
 use super::travel::Reach;
 use super::value::Kind;
@@ -103,6 +108,10 @@ const fn scale(number: u16, name: &'static str, factory: i64) -> ParameterRow {
     read(number, name, U16, "").kept(Within(1, 65535), Factory::Number(factory))
 }
 
+const fn within(range: RangeInclusive<u16>) -> Range {
+    Within(*range.start() as i64, *range.end() as i64)
+}
+
 /// All of them, by number. That 11 and 119 have a sign is assumed (`U`): the manual has their bits alone.
 pub const PARAMETERS: &[ParameterRow] = &[
     read(9, "control supply", U16, "0.1 V"),
@@ -154,17 +163,17 @@ pub const PARAMETERS: &[ParameterRow] = &[
     text(127, "nominal current", "A"),
     text(128, "nominal torque", "Nm"),
     text(129, "nominal speed", "rpm"),
-    read(152, "requested", U8, "")
+    read(REQUESTED, "requested", U8, "")
         .kept(Within(0, 1), Factory::Topology { adapter: 1, hub: 0 })
         .in_device()
         .slow(REQUEST),
-    scale(154, "position scale numerator", 256),
-    scale(156, "position scale denominator", 1),
-    read(158, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)).reaching(Reach::Position),
-    read(160, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)).reaching(Reach::Position),
-    scale(162, "speed scale numerator", 10),
-    scale(164, "speed scale denominator", 1),
-    read(166, "maximum speed", U16, "0.1 rpm").kept(Within(5, 350), Factory::Number(350)),
+    scale(NUMERATOR, "position scale numerator", 256),
+    scale(DENOMINATOR, "position scale denominator", 1),
+    read(LOWER, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)).reaching(Reach::Position),
+    read(UPPER, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)).reaching(Reach::Position),
+    scale(SPEED_NUMERATOR, "speed scale numerator", 10),
+    scale(SPEED_DENOMINATOR, "speed scale denominator", 1),
+    read(MAXIMUM_SPEED, "maximum speed", U16, "0.1 rpm").kept(within(MAXIMUM_SPEEDS), Factory::Number(350)),
     read(170, "jog 1 step", I32, "steps").written(Any, Factory::Number(4096)).reaching(Reach::Step),
     percent(172, "jog 1 speed"),
     percent(174, "jog 1 torque"),
@@ -177,7 +186,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     read(190, "RS-485 baud rate", U32, "baud").kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400)).in_device(),
     read(192, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
     read(197, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
-    read(198, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(Reach::Position),
-    ParameterRow { access: Access::Write, ..read(199, "reset drive", U8, "").written(Within(0, 1), Factory::None) }
+    read(REFERENCE, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(Reach::Position),
+    ParameterRow { access: Access::Write, ..read(RESET, "reset drive", U8, "").written(Within(0, 1), Factory::None) }
         .slow(RESET_DRIVE),
 ];

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::axis::{Defect, Load};
 use super::station::RESETS;
+use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEEDS;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
 use crate::expected::{Expected, Quantity};
 use crate::parameter::{ANY, Checked, Decimal, Maybe, Milliseconds, Refused, SWITCH, Whole, Words, number};
@@ -28,7 +29,7 @@ parameters! {
         /// Where the drives stand, in steps of which a turn has 65536.
         pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
         /// Parameter 166: greatest speed in tenths of rpm.
-        pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, 5..=350));
+        pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
         /// What the spindle takes: above 100 no drive can move it.
         load: u8 = Load::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
         /// The spindle is held where it stands.

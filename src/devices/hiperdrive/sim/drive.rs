@@ -9,6 +9,9 @@ use std::collections::VecDeque;
 
 use super::axis::{Axis, Came, Defect, Load, TICK, TURN, Wanted};
 use super::memory::Memory;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER, NUMERATOR, SPEED_DENOMINATOR, SPEED_NUMERATOR, UPPER,
+};
 use crate::devices::hiperdrive::protocol::{
     Actual, Begins, ControlBit, ControlWord, ErrorCode, Family, OutData, PositionScale, SpeedScale, State, StatusBit,
     StatusWord, Topology, Travel, Trigger, Variant, effective_torque,
@@ -201,16 +204,16 @@ impl Drive {
     }
 
     pub(super) fn scale(&self) -> PositionScale {
-        PositionScale::new(self.word(154), self.word(156)).unwrap_or(PositionScale::FACTORY)
+        PositionScale::new(self.word(NUMERATOR), self.word(DENOMINATOR)).unwrap_or(PositionScale::FACTORY)
     }
 
     fn speed_scale(&self) -> SpeedScale {
-        SpeedScale::new(self.word(162), self.word(164)).unwrap_or(SpeedScale::FACTORY)
+        SpeedScale::new(self.word(SPEED_NUMERATOR), self.word(SPEED_DENOMINATOR)).unwrap_or(SpeedScale::FACTORY)
     }
 
     pub(super) fn limits(&self) -> (i32, i32) {
         let limit = |number| self.memory.get(number).and_then(|value| i32::try_from(value).ok()).unwrap_or_default();
-        (limit(158), limit(160))
+        (limit(LOWER), limit(UPPER))
     }
 
     /// The master was lost: what is operational fails.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Family, PARAMETERS, ParameterRow, Topology};
 
 /// By the number of drive 1, or of the device.
@@ -78,9 +79,6 @@ impl Memory {
         self.now = self.factory.clone();
     }
 }
-
-/// The position that was set.
-const REFERENCE: u16 = 198;
 
 fn copy_own(from: &BTreeMap<u16, i64>, to: &mut BTreeMap<u16, i64>) {
     let own = |number: &u16| PARAMETERS.iter().any(|row| row.number == *number && row.is_kept_by_device());

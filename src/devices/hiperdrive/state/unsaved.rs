@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::unit::Unit;
 use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, written};
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 
 /// Of one adapter or hub with its drives.
@@ -17,9 +18,6 @@ pub(super) struct Unsaved {
     /// Drives whose position is being set.
     sets: Vec<DriveNumber>,
 }
-
-/// The position that is set, by the number of drive 1.
-const REFERENCE: u16 = 198;
 
 impl Unsaved {
     /// A plan is about to be carried out: from then on its parameters may be others than saved.

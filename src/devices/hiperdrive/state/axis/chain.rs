@@ -1,8 +1,8 @@
 //! What the set-up has made sure of, step by step. Each result keeps the facts of the drive that it rests on. Where one of
 //! them is another by now, whoever changed it, the result falls, and with it all that come after it.
 
-use super::differences::REFERENCE;
 use super::{Seen, Step};
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
 /// What the numbers of places count from: the position that was set last (198), how often one was set from here, and how often

@@ -1,6 +1,7 @@
 //! What of a drive is known to be other than saved: after a run that was broken off, and for what is written back.
 
 use super::Seen;
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 
 /// A parameter, by the number of drive 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,10 +13,6 @@ pub struct Difference {
     /// As it is.
     pub now: i64,
 }
-
-/// The position that was set. Writing it gives the place where the axis stands that number (manual, 198): at any other place
-/// than the one where it was set, the value of before would make a wrong zero.
-pub(super) const REFERENCE: u16 = 198;
 
 impl Seen {
     /// What is known to be other than saved, by number.
@@ -33,7 +30,8 @@ pub(super) fn is_place_other(seen: &Seen) -> bool {
     seen.differences().iter().any(|own| own.number == REFERENCE)
 }
 
-/// What is to be written so that all is as it was; the reference is set at its place by a person.
+/// What is to be written so that all is as it was. The reference is set by a person, at its place: writing it gives the place
+/// where the axis stands that number (manual, 198), which at any other place would be a wrong zero.
 pub(super) fn to_write_back(seen: &Seen) -> Vec<(u16, i64)> {
     let differences = seen.differences().into_iter().filter(|own| own.number != REFERENCE);
     differences.map(|own| (own.number, own.saved)).collect()

@@ -3,6 +3,7 @@
 use super::{Axis, Change, Outcome, Place, Power, Reached, Restart, Seen, Step};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended};
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{ErrorCode, ScaleError};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -189,7 +190,7 @@ pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
 /// What is known to be other than saved; `None`: nothing is.
 pub fn differences(seen: &Seen) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
-        let id = if own.number == super::differences::REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
+        let id = if own.number == REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
         TEXTS.text(id).with("number", own.number).with("now", own.now).with("saved", own.saved)
     };
     let all: Vec<Text> = seen.differences().into_iter().map(difference).collect();
@@ -233,7 +234,7 @@ pub fn place(place: Place) -> Text {
 pub fn changes(axis: &Axis) -> Text {
     let number = |own: &Change| match own {
         Change::Parameter(number, _) => *number,
-        Change::Position(_) => super::differences::REFERENCE,
+        Change::Position(_) => REFERENCE,
     };
     let all = axis.changes();
     let is_last = |(at, own): &(usize, &Change)| !all.iter().skip(at + 1).any(|later| number(later) == number(own));
@@ -246,7 +247,7 @@ fn change(own: &Change) -> Text {
     let text = TEXTS.text("hd_axis.changed");
     match own {
         Change::Parameter(number, value) => text.with("number", number).with("value", value),
-        Change::Position(steps) => text.with("number", super::differences::REFERENCE).with("value", steps),
+        Change::Position(steps) => text.with("number", REFERENCE).with("value", steps),
     }
 }
 
