@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use encoder_studio::analysis::capture::Wishes;
+use encoder_studio::analysis::capture::TableHints;
 use encoder_studio::analysis::diagnosis::{Record, diagnose};
 use encoder_studio::analysis::ellipse::Ellipse;
 use encoder_studio::analysis::lissajous::{Density, Square};
@@ -103,7 +103,7 @@ fn main() {
     let megabytes = text.len() as f64 / 1e6;
     println!("reading a table of {megabytes:.0} MB, median of {ROUNDS} in MB/s (goal: 100)");
     let studio = median(|| {
-        read_capture(&path, &Wishes::default(), &AtomicBool::new(false), &mut |_, _| ()).unwrap().1.sine_v.len()
+        read_capture(&path, &TableHints::default(), &AtomicBool::new(false), &mut |_, _| ()).unwrap().1.sine_v.len()
     });
     println!("{:<28} {:>8.0}", "studio", megabytes / studio);
     let naive = median(|| naive_read(&std::fs::read_to_string(&path).unwrap()).len());

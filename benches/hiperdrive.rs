@@ -17,7 +17,7 @@ use encoder_studio::buses::ethernet_ip::protocol::{
 };
 use encoder_studio::devices::hiperdrive::jobs::{Cyclic, Motion};
 use encoder_studio::devices::hiperdrive::procedures::cyclic::{Drives, Histogram};
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Intent, Permit, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Intent, MotionRequest, Permit};
 use encoder_studio::devices::hiperdrive::procedures::{DriveLimits, Opened, Rules};
 use encoder_studio::devices::hiperdrive::protocol::{
     ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutImage, Topology, Variant,
@@ -106,7 +106,7 @@ fn permit() -> Permit {
 /// A way to keep a cyclic connection.
 trait Way {
     fn name(&self) -> &'static str;
-    fn intend(&self, wish: Wish);
+    fn intend(&self, wish: MotionRequest);
     fn refresh(&self);
     /// Packets as they came, by how far their intervals were off.
     fn arrivals(&self) -> Histogram;
@@ -126,7 +126,7 @@ impl Way for Ours {
         "absolute deadlines"
     }
 
-    fn intend(&self, wish: Wish) {
+    fn intend(&self, wish: MotionRequest) {
         self.motion.intend(DriveNumber::FIRST, wish);
     }
 
@@ -152,7 +152,7 @@ impl Way for Naive {
         "sleep, then look"
     }
 
-    fn intend(&self, wish: Wish) {
+    fn intend(&self, wish: MotionRequest) {
         let intent = &mut self.shared.lock().unwrap().0;
         *intent = Intent { wish, number: intent.number + 1, refreshed: self.clock.now(), ..*intent };
     }
@@ -228,7 +228,7 @@ fn releases(way: &dyn Way, target: &Target, count: usize) -> Vec<f64> {
     let mut took = Vec::with_capacity(count);
     sleep(INTERVAL * 5);
     while took.len() < count {
-        way.intend(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+        way.intend(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
         let held = Instant::now() + Duration::from_micros(random.u64(120_000..160_000));
         while Instant::now() < held {
             way.refresh();
@@ -236,7 +236,7 @@ fn releases(way: &dyn Way, target: &Target, count: usize) -> Vec<f64> {
         }
         let moved = target.words.try_iter().last().is_some_and(|(_, word)| !word.is_standing());
         let released = Instant::now();
-        way.intend(Wish::Stop);
+        way.intend(MotionRequest::Stop);
         let stands = target.words.iter().find(|(at, word)| *at >= released && word.is_standing()).unwrap();
         assert!(moved, "the jog has not begun");
         took.push((stands.0 - released).as_secs_f64() * 1e3);

@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 use egui::{Context, RawInput, Rect, Vec2, pos2};
 use encoder_studio::analysis::Time;
 use encoder_studio::analysis::history::{Flags, Kind, Part};
-use encoder_studio::app::recorder::{self, GroupId, Line, Recorder, Scale};
-use encoder_studio::app::{Desk, Language, Look, SessionId, Text, Theme};
-use encoder_studio::ui::plot::{View, plot_ui};
-use encoder_studio::ui::{Skin, install_fonts};
+use encoder_studio::app::recorder::{self, GroupId, Recorder, Scale, Series};
+use encoder_studio::app::{ColorScheme, Language, RecorderOwner, SessionId, Text, ThemeData};
+use encoder_studio::ui::plot::{PlotUiState, plot_ui};
+use encoder_studio::ui::{Theme, install_fonts};
 
 const SAMPLES: usize = 10_000_000;
 const SIGNALS: usize = 4;
@@ -84,7 +84,7 @@ fn lines(recorder: &mut Recorder) -> GroupId {
     let group = recorder.add_group(&[Kind::Real; SIGNALS], SAMPLES + 1_000_000, Some(PERIOD * 10));
     for column in 0..SIGNALS {
         let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
-        recorder.add_line(Line::of(group, column, Text::new("recorder.position"), "value", scales));
+        recorder.add_line(Series::of(group, column, Text::new("recorder.position"), "value", scales));
     }
     group
 }
@@ -118,17 +118,17 @@ fn value(signal: usize, at: usize) -> f64 {
 
 struct Bench {
     ctx: Context,
-    skin: Skin,
-    view: View,
+    theme: Theme,
+    view: PlotUiState,
 }
 
 impl Bench {
     fn new() -> Self {
         let ctx = Context::default();
         install_fonts(&ctx);
-        let skin = Skin::new(Look::built_in().unwrap(), Theme::Dark, Language::English);
-        skin.dress(&ctx);
-        Bench { ctx, skin, view: View::default() }
+        let theme = Theme::new(ThemeData::built_in().unwrap(), ColorScheme::Dark, Language::English);
+        theme.dress(&ctx);
+        Bench { ctx, theme, view: PlotUiState::default() }
     }
 
     fn rounds(&mut self, recorder: &mut Recorder, mut before: impl FnMut(&mut Recorder, usize)) -> String {
@@ -153,9 +153,9 @@ impl Bench {
     /// One picture, up to what would be handed to the graphics card.
     fn frame(&mut self, recorder: &Recorder) -> (Duration, usize) {
         frame(&self.ctx, |ui| {
-            let (skin, mut actions) = (self.skin, Vec::new());
-            let desk = Desk::Device(SessionId::default());
-            plot_ui(ui, &skin, recorder, desk, &mut self.view, "", &mut actions);
+            let (theme, mut actions) = (self.theme, Vec::new());
+            let desk = RecorderOwner::Device(SessionId::default());
+            plot_ui(ui, &theme, recorder, desk, &mut self.view, "", &mut actions);
         })
     }
 }

@@ -80,7 +80,7 @@ const STREAMED: Duration = Duration::from_secs(15);
 /// The whole window with the position of a virtual BiSS encoder behind the virtual adapter in its plot, as it is drawn
 /// when the adapter streams 20 000 frames a second.
 fn stream() {
-    use encoder_studio::app::{Action, Look, Studio, Tab, World};
+    use encoder_studio::app::{Action, Studio, Tab, ThemeData, World};
     use encoder_studio::kinds::program;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
@@ -146,7 +146,7 @@ fn stream() {
             studio.act(Action::ShowTab(Tab::named("Biss")));
             // 2 MHz: a frame of 43 clocks takes 21.5 µs beside 27 µs of waiting.
             studio.begin(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
-            let window = Window::new(studio, Look::built_in()?, program().tabs);
+            let window = Window::new(studio, ThemeData::built_in()?, program().tabs);
             Ok(Box::new(Streaming { window, began: None, took: Vec::new() }))
         }),
     )
@@ -170,7 +170,7 @@ fn write_capture(path: &std::path::Path) {
 /// The whole window with the capture in its scope: every picture another stretch, as fast as they come.
 fn plot() {
     use encoder_studio::analysis::Time;
-    use encoder_studio::app::{Action, Look, Studio, World, recorder};
+    use encoder_studio::app::{Action, Studio, ThemeData, World, recorder};
     use encoder_studio::kinds::program;
     use encoder_studio::signals::state as signals;
     use encoder_studio::store::Store;
@@ -196,7 +196,7 @@ fn plot() {
                 let (from, to) = (Time::from_nanoseconds(from), Time::from_nanoseconds(from + length));
                 let mailbox = studio.mailbox();
                 mailbox.send(Action::Recorder(
-                    encoder_studio::app::Desk::Tool(encoder_studio::app::Tab::named("Signals")),
+                    encoder_studio::app::RecorderOwner::Tool(encoder_studio::app::Tab::named("Signals")),
                     recorder::Action::Look(from, to),
                 ));
                 if self.times.len() == 1 {
@@ -205,7 +205,7 @@ fn plot() {
                         // Sine, cosine, and both references.
                         let shown = [0, 1, 4, 6].contains(&at);
                         mailbox.send(Action::Recorder(
-                            encoder_studio::app::Desk::Tool(encoder_studio::app::Tab::named("Signals")),
+                            encoder_studio::app::RecorderOwner::Tool(encoder_studio::app::Tab::named("Signals")),
                             recorder::Action::Show(line.id, shown),
                         ));
                     }
@@ -238,7 +238,7 @@ fn plot() {
         renderer: eframe::Renderer::Glow,
         ..Default::default()
     };
-    let look = Look::built_in().unwrap();
+    let look = ThemeData::built_in().unwrap();
     eframe::run_native(
         "plot",
         options,

@@ -16,7 +16,7 @@ pub enum Verdict {
 
 /// One line of a check: `S` names its step, `F` what it found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line<S, F> {
+pub struct StepResult<S, F> {
     /// What was checked.
     pub step: S,
     /// How it ended.
@@ -25,11 +25,11 @@ pub struct Line<S, F> {
     pub findings: Vec<F>,
 }
 
-impl<S, F> Line<S, F> {
+impl<S, F> StepResult<S, F> {
     /// A step with what it found: it ended as the worst of that, and well where it found nothing.
     pub(crate) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
-        Line { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
+        StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
     }
 }
 

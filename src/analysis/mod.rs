@@ -28,7 +28,7 @@ pub mod spectrum;
 pub mod synchronise;
 mod time;
 mod unwrap;
-pub mod wires;
+pub mod wiring;
 
 pub use motion::{Motion, Rates};
 pub use time::Time;

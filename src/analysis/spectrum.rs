@@ -14,7 +14,7 @@ pub struct Spectrum {
 
 /// One line of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct SpectralLine {
     /// Frequency in hertz.
     pub frequency_hz: f64,
     /// Peak amplitude in the unit of the samples (volts).
@@ -83,7 +83,7 @@ impl Spectrum {
 
     /// The `most` highest peaks, the highest first; frequency and amplitude are interpolated between the lines. What
     /// belongs to a peak already taken and the lines around 0 Hz (the mean) are passed over.
-    pub fn peaks(&self, most: usize) -> Vec<Line> {
+    pub fn peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())
             .filter(|at| {
@@ -108,14 +108,14 @@ impl Spectrum {
     }
 
     /// A sine between two lines of a Hann window: the ratio of the highest to its higher neighbour tells how far.
-    pub(super) fn peak_at(&self, at: usize) -> Line {
+    pub(super) fn peak_at(&self, at: usize) -> SpectralLine {
         let height = |at: usize| self.amplitudes_v.get(at).copied().unwrap_or(0.0);
         let (before, top, after) = (height(at.saturating_sub(1)), height(at), height(at + 1));
         let (side, sign) = if after > before { (after, 1.0) } else { (before, -1.0) };
         let off = ((2.0 * side - top) / (side + top)).clamp(0.0, 0.5);
         // The window's own shape: sinc(δ)/(1 − δ²).
         let shape = if off < 1e-9 { 1.0 } else { (TAU / 2.0 * off).sin() / (TAU / 2.0 * off) / (1.0 - off * off) };
-        Line { frequency_hz: (at as f64 + sign * off) * self.spacing_hz, amplitude_v: top / shape }
+        SpectralLine { frequency_hz: (at as f64 + sign * off) * self.spacing_hz, amplitude_v: top / shape }
     }
 }
 

@@ -6,16 +6,16 @@ use std::path::PathBuf;
 use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{Diverged, Resolve};
 use super::file_question::FileQuestion;
-use super::keep::{SettingsRead, SettingsWritten};
-use super::leaving::Leaver;
 use super::payload::Payload;
 use super::recorder::{self, Exported};
 use super::review::Permit;
 use super::services::Services;
 use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
+use super::settings_store::{SettingsRead, SettingsWritten};
+use super::shutdown::Leaver;
 use super::studio::SessionId;
 use super::tab::Tab;
-use super::{Language, Picture, Settings, Theme, connect};
+use super::{ColorScheme, Language, Picture, Settings, connect};
 use crate::link::LinkError;
 use crate::profile::{Document, PlanId, ProfileError};
 use crate::store::{DeviceKey, FileError};
@@ -26,7 +26,7 @@ pub enum Action {
     /// Show a tab.
     ShowTab(Tab),
     /// Dark or light.
-    SetTheme(Theme),
+    SetTheme(ColorScheme),
     /// Another language.
     SetLanguage(Language),
     /// The arrangement of the panels has changed.
@@ -75,13 +75,13 @@ pub enum Action {
     /// A file was chosen, and what is there may be replaced.
     Chosen(FileQuestion, PathBuf),
     /// Something with the recorder of a desk.
-    Recorder(Desk, recorder::Action),
+    Recorder(RecorderOwner, recorder::Action),
     /// Forget what a recorder has recorded; asks first when that is much.
-    AskForget(Desk),
+    AskForget(RecorderOwner),
     /// Ask where to write a table of what a recorder shows: of what is visible, or of all.
     AskTable {
         /// Whose recorder.
-        desk: Desk,
+        desk: RecorderOwner,
         /// Only what is visible.
         visible: bool,
     },
@@ -160,7 +160,7 @@ pub enum Done {
     /// Comments of a person would be lost, and the file was not written: which.
     WouldLose(Box<Saving>, Vec<String>),
     /// A table was written, or not.
-    TableWritten(Desk, Exported),
+    TableWritten(RecorderOwner, Exported),
     /// A picture was saved, or not.
     PictureSaved(PathBuf, Result<(), FileError>),
     /// A report was saved, or not.
@@ -211,7 +211,7 @@ pub struct Opened<D: Kind> {
     /// The session.
     pub(super) worker: Worker<D>,
     /// What is kept of it beside its thread.
-    pub(crate) aside: D::Aside,
+    pub(crate) aside: D::SessionHandle,
     /// Where it talks.
     pub(super) url: crate::link::LinkUrl,
     /// Its trace.
@@ -281,7 +281,7 @@ pub enum ReadError {
 
 /// Whose recorder it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Desk {
+pub enum RecorderOwner {
     /// A device's.
     Device(SessionId),
     /// That of a tab that needs no device.

@@ -1,7 +1,7 @@
 //! A device check in words, for every kind of device.
 
 use super::Text;
-use crate::analysis::check::{Line, Verdict};
+use crate::analysis::check::{StepResult, Verdict};
 
 /// One line of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub struct CheckLine {
 
 impl CheckLine {
     /// A line with the words of its device.
-    pub(crate) fn of<S: Copy, F>(line: &Line<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
+    pub(crate) fn of<S: Copy, F>(line: &StepResult<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
         CheckLine {
             step: step(line.step),
             verdict: line.verdict,

@@ -5,7 +5,7 @@ mod command;
 mod kind;
 mod model;
 mod open_device;
-mod shown;
+mod selection;
 
 pub use command::DeviceCommand;
 pub(crate) use kind::OpenProfile;
@@ -13,4 +13,4 @@ pub use kind::{DeviceKind, DeviceType};
 pub(crate) use model::Prepare;
 pub use model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
 pub use open_device::{AnyDevice, OpenDevice};
-pub(super) use shown::Shown;
+pub(super) use selection::Selection;

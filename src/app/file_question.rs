@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::action::Desk;
+use super::action::RecorderOwner;
 use super::payload::Payload;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
@@ -30,7 +30,7 @@ pub enum FileQuestion {
     /// Where to write a table of samples.
     Table {
         /// Whose they are.
-        desk: Desk,
+        desk: RecorderOwner,
         /// Only what is visible.
         visible: bool,
         /// A name to begin with.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Desk, Done};
+use super::action::{Action, Done, RecorderOwner};
 use super::closing::MUCH;
 use super::file_question::FileQuestion;
 use super::question::{Question, Then};
@@ -73,27 +73,29 @@ impl Studio {
     }
 
     /// The recorder of a desk.
-    pub fn recorder(&self, desk: Desk) -> Option<&Recorder> {
+    pub fn recorder(&self, desk: RecorderOwner) -> Option<&Recorder> {
         match desk {
-            Desk::Device(id) => self.device(id).map(|device| device.recorder()),
-            Desk::Tool(tab) => self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder()),
+            RecorderOwner::Device(id) => self.device(id).map(|device| device.recorder()),
+            RecorderOwner::Tool(tab) => self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder()),
         }
     }
 
-    fn recorder_mut(&mut self, desk: Desk) -> Option<&mut Recorder> {
+    fn recorder_mut(&mut self, desk: RecorderOwner) -> Option<&mut Recorder> {
         match desk {
-            Desk::Device(id) => self.device_mut(id).map(|device| device.recorder_mut()),
-            Desk::Tool(tab) => self.tools.iter_mut().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder_mut()),
+            RecorderOwner::Device(id) => self.device_mut(id).map(|device| device.recorder_mut()),
+            RecorderOwner::Tool(tab) => {
+                self.tools.iter_mut().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder_mut())
+            }
         }
     }
 
-    pub(super) fn act_recorder(&mut self, desk: Desk, action: recorder::Action) {
+    pub(super) fn act_recorder(&mut self, desk: RecorderOwner, action: recorder::Action) {
         if let Some(recorder) = self.recorder_mut(desk) {
             recorder.act(action);
         }
     }
 
-    pub(super) fn ask_forget(&mut self, desk: Desk) {
+    pub(super) fn ask_forget(&mut self, desk: RecorderOwner) {
         if self.recorder(desk).is_some_and(|recorder| recorder.unsaved() >= MUCH) {
             let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
             self.question = Some(Question::before(text, confirm, Then::Forget(desk)));
@@ -102,7 +104,7 @@ impl Studio {
         }
     }
 
-    pub(super) fn ask_table(&mut self, desk: Desk, visible: bool) {
+    pub(super) fn ask_table(&mut self, desk: RecorderOwner, visible: bool) {
         let suggested = self.suggested(Some(desk), "csv");
         self.services.file_question = Some(FileQuestion::Table { desk, visible, suggested });
     }
@@ -118,10 +120,10 @@ impl Studio {
     }
 
     /// A name after the encoder and the time of day: what is recorded is not recorded again.
-    fn suggested(&self, desk: Option<Desk>, ending: &str) -> PathBuf {
+    fn suggested(&self, desk: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match desk {
-            Some(Desk::Device(id)) => self.device(id),
-            Some(Desk::Tool(_)) => None,
+            Some(RecorderOwner::Device(id)) => self.device(id),
+            Some(RecorderOwner::Tool(_)) => None,
             None => self.shown(),
         };
         let whose = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
@@ -129,7 +131,7 @@ impl Studio {
         PathBuf::from(format!("{whose}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
     }
 
-    fn write_table(&mut self, desk: Desk, visible: bool, path: &Path) {
+    fn write_table(&mut self, desk: RecorderOwner, visible: bool, path: &Path) {
         let mailbox = self.services.tasks.mailbox();
         let Some(recorder) = self.recorder_mut(desk) else { return };
         let busy = recorder.export().is_some();
@@ -145,12 +147,12 @@ impl Studio {
         }
     }
 
-    pub(super) fn table_written(&mut self, desk: Desk, exported: Exported) {
+    pub(super) fn table_written(&mut self, desk: RecorderOwner, exported: Exported) {
         let is_written = matches!(exported.rows, Ok(Some(_)));
         // Another drive may be shown by now.
         let recorders = match desk {
-            Desk::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
-            Desk::Tool(_) => self.recorder_mut(desk).into_iter().collect(),
+            RecorderOwner::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
+            RecorderOwner::Tool(_) => self.recorder_mut(desk).into_iter().collect(),
         };
         let ended = recorders.into_iter().find_map(|recorder| recorder.end_export(exported.number, is_written));
         let lost = ended.unwrap_or(0);

@@ -4,10 +4,10 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::given::Opener;
-use super::leaving::same_wire;
 use super::question::{Question, Then};
 use super::services::{JobEnd, Services, World};
 use super::session::{Kind, Opening, Phase, Source, without_codes};
+use super::shutdown::same_wire;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;

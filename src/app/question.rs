@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::Text;
-use super::action::Desk;
+use super::action::RecorderOwner;
 use super::file_question::FileQuestion;
 use super::session::{Saving, without_codes};
 use super::studio::SessionId;
@@ -28,7 +28,7 @@ pub(crate) enum Then {
     CloseWindow,
     CloseSession(SessionId),
     Write(FileQuestion, PathBuf),
-    Forget(Desk),
+    Forget(RecorderOwner),
     Save(Box<Saving>),
     /// The link of this session is opened.
     OpenLink(SessionId),

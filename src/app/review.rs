@@ -205,7 +205,7 @@ impl Manner {
 
 /// A review as a person sees it, whatever the device.
 #[derive(Clone, Debug)]
-pub struct Sheet {
+pub struct ReviewSheet {
     /// What the user wants.
     pub what: Text,
     /// How far it is.
@@ -358,12 +358,12 @@ pub fn redo(items: Vec<Text>) -> Option<Text> {
 
 impl<K: Reviewed> Review<K> {
     /// The review as a person sees it; `done` operations have been carried out.
-    pub fn sheet(&self, done: usize) -> Sheet {
+    pub fn sheet(&self, done: usize) -> ReviewSheet {
         self.sheet_with(done, K::op)
     }
 
     /// The same with the words that the device on the desk has for an operation.
-    pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &Op<K>) -> OpWords) -> Sheet {
+    pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &Op<K>) -> OpWords) -> ReviewSheet {
         let prepared = self.prepared();
         let cut_off = match &self.state {
             ReviewState::Failed { cut_off: Some((prepared, done)), .. } => Some((&**prepared, *done)),
@@ -389,7 +389,7 @@ impl<K: Reviewed> Review<K> {
         let costs = shown.filter(|_| plan.is_some());
         let uncounted = |own: &K::Prepared| is_uncounted(own.cycles_seen(), own.plan().write_cycles());
         let lines = |own: &K::Prepared| own.plan().ops.iter().map(|own_op| op(own, own_op)).collect();
-        Sheet {
+        ReviewSheet {
             what: self.what.clone(),
             stage,
             lines: carried.map(lines).unwrap_or_default(),

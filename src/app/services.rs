@@ -11,8 +11,8 @@ use super::brakes::Brakes;
 use super::file_question::FileQuestion;
 use super::given::Given;
 use super::kinds::Kinds;
-use super::leaving::{Leaving, Patience};
 use super::notices::{Log, Notice, Severity};
+use super::shutdown::{GracePeriods, Leaving};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
 use crate::link::{LinkError, PortInfo};
@@ -35,7 +35,7 @@ pub struct World {
     /// The time of day.
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
     /// How long closing waits.
-    pub patience: Patience,
+    pub patience: GracePeriods,
 }
 
 impl World {
@@ -48,7 +48,7 @@ impl World {
             ports: Arc::new(crate::link::ports),
             folders: Folders::of_user(),
             now: Arc::new(Zoned::now),
-            patience: Patience::default(),
+            patience: GracePeriods::default(),
         }
     }
 }

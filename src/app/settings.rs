@@ -14,7 +14,7 @@ use super::tab::Tab;
 
 /// Dark or light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Theme {
+pub enum ColorScheme {
     /// Light text on dark surfaces.
     #[default]
     Dark,
@@ -27,7 +27,7 @@ pub enum Theme {
 #[serde(default)]
 pub struct Settings {
     /// Dark or light.
-    pub theme: Theme,
+    pub theme: ColorScheme,
     /// Language of the window.
     pub language: Language,
     /// Links used, the latest first, by the tab of the device; never with access codes, which are no part of a link.
@@ -45,7 +45,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Settings {
-            theme: Theme::Dark,
+            theme: ColorScheme::Dark,
             language: Language::English,
             links: Links::default(),
             layout: None,
@@ -84,7 +84,7 @@ impl Settings {
         }
         let usual = Settings::default();
         Settings {
-            theme: entry!(theme: Theme, usual.theme),
+            theme: entry!(theme: ColorScheme, usual.theme),
             language: entry!(language: Language, usual.language),
             links: entry!(
                 links: Links,
@@ -257,23 +257,23 @@ mod tests {
 
     #[test]
     fn settings_come_back_and_unknown_ones_do_not_hurt() {
-        let mut settings = Settings { theme: Theme::Light, language: Language::German, ..Settings::default() };
+        let mut settings = Settings { theme: ColorScheme::Light, language: Language::German, ..Settings::default() };
         settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
         settings.layout = Some("(tiles: {})".to_owned());
         assert_eq!(Settings::parse(&settings.emit()), Some(settings));
-        assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Some(Theme::Light));
+        assert_eq!(Settings::parse("(theme: Light, colour: 7)").map(|s| s.theme), Some(ColorScheme::Light));
         assert_eq!(Settings::parse("(theme: Mauve)"), None);
         assert_eq!(Settings::parse(""), None);
     }
 
     #[test]
     fn what_can_be_read_of_broken_settings_is_kept() {
-        let mut settings = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
+        let mut settings = Settings { theme: ColorScheme::Light, size: Some((1500, 900)), ..Settings::default() };
         settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
         let broken = settings.emit().replace("tab: First", "tab: 7");
         assert_eq!(Settings::parse(&broken), None);
         assert_eq!(Settings::salvage(&broken), settings);
-        assert_eq!(Settings::salvage("(theme: Light, links: 7)").theme, Theme::Light);
+        assert_eq!(Settings::salvage("(theme: Light, links: 7)").theme, ColorScheme::Light);
         assert_eq!(Settings::salvage("(links: [\"sim:\"])").links(Tab::default()), ["sim:"], "from before");
         assert!(Settings::salvage("no settings").links(HIPERFACE).is_empty());
     }
@@ -293,14 +293,14 @@ mod tests {
 
     #[test]
     fn what_was_set_since_the_start_stays() {
-        let mut found = Settings { theme: Theme::Light, size: Some((1500, 900)), ..Settings::default() };
+        let mut found = Settings { theme: ColorScheme::Light, size: Some((1500, 900)), ..Settings::default() };
         found.use_link(HIPERFACE, "tcp:host:1");
         let mut settings = Settings { language: Language::German, ..Settings::default() };
         settings.use_link(HIPERFACE, "sim:");
         let settings = found.with_changes(&Settings::default(), &settings);
         assert_eq!(
             (settings.theme, settings.language, settings.size),
-            (Theme::Light, Language::German, Some((1500, 900)))
+            (ColorScheme::Light, Language::German, Some((1500, 900)))
         );
         assert_eq!(settings.links(HIPERFACE), ["sim:", "tcp:host:1"]);
     }

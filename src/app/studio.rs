@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, Done, Waited};
 use super::connect::Connect;
-use super::devices::{AnyDevice, DeviceType, Shown};
+use super::devices::{AnyDevice, DeviceType, Selection};
 use super::diverged::Diverged;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
-use super::keep::Keeper;
 use super::question::{Question, Then};
 use super::services::{Services, World};
+use super::settings_store::SettingsStore;
 use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
 use super::tasks::{Mailbox, Wake};
@@ -36,9 +36,9 @@ pub struct Studio {
     pub services: Services,
     pub(super) tools: Vec<(Tab, Box<dyn Tool>)>,
     pub(crate) devices: Vec<Box<AnyDevice>>,
-    pub(crate) shown: Shown,
+    pub(crate) shown: Selection,
     next_id: u32,
-    pub(crate) keeper: Keeper,
+    pub(crate) keeper: SettingsStore,
     pub(super) closing: bool,
     pub(super) waited: Option<Waited>,
     path_question: Option<FileQuestion>,
@@ -49,7 +49,7 @@ impl Studio {
     pub fn new(world: World, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
-        let (settings, keeper) = Keeper::load(&mut services);
+        let (settings, keeper) = SettingsStore::load(&mut services);
         let begin = |kind: &&dyn ToolKind| (kind.tab(), kind.begin(settings.links(kind.tab())));
         Studio {
             tools: kinds.tools().iter().map(begin).collect(),
@@ -59,7 +59,7 @@ impl Studio {
             diverged: None,
             services,
             devices: Vec::new(),
-            shown: Shown::default(),
+            shown: Selection::default(),
             next_id: 0,
             keeper,
             closing: false,

@@ -37,10 +37,10 @@ enum Argument {
 }
 
 impl Argument {
-    fn said(&self, place: Place) -> String {
+    fn said(&self, place: Output) -> String {
         match self {
-            Argument::Number(number) if matches!(place, Place::Window(Language::German)) => number.replace('.', ","),
-            Argument::Name(_, german) if matches!(place, Place::Window(Language::German)) => german.clone(),
+            Argument::Number(number) if matches!(place, Output::Window(Language::German)) => number.replace('.', ","),
+            Argument::Name(_, german) if matches!(place, Output::Window(Language::German)) => german.clone(),
             Argument::Words(words) | Argument::Number(words) | Argument::Name(words, _) => words.clone(),
             Argument::Text(text) => text.said(place),
             Argument::List(texts) => texts.iter().map(|text| text.said(place)).collect::<Vec<_>>().join(", "),
@@ -69,7 +69,7 @@ struct Row {
 
 /// Where a text is said.
 #[derive(Clone, Copy)]
-enum Place {
+enum Output {
     Window(Language),
     Terminal,
 }
@@ -138,20 +138,20 @@ impl Text {
 
     /// The words in the window, with hints for somebody in front of it.
     pub fn words(&self, language: Language) -> String {
-        self.said(Place::Window(language))
+        self.said(Output::Window(language))
     }
 
     /// The words on the command line, which always speaks English, with hints for its users.
     pub fn terminal(&self) -> String {
-        self.said(Place::Terminal)
+        self.said(Output::Terminal)
     }
 
-    fn said(&self, place: Place) -> String {
+    fn said(&self, place: Output) -> String {
         let Some(row) = self.catalogue.rows().get(self.id) else { return self.id.to_owned() };
         let template = match place {
-            Place::Window(Language::German) => &row.de,
-            Place::Terminal if !row.terminal.is_empty() => &row.terminal,
-            Place::Window(Language::English) | Place::Terminal => &row.en,
+            Output::Window(Language::German) => &row.de,
+            Output::Terminal if !row.terminal.is_empty() => &row.terminal,
+            Output::Window(Language::English) | Output::Terminal => &row.en,
         };
         // One pass over the template: an argument may contain braces of its own.
         let mut words = String::new();
@@ -172,12 +172,12 @@ impl Text {
 
 /// A number in digits with the language's decimal sign.
 pub(crate) fn signed(number: &str, language: Language) -> String {
-    Argument::Number(number.to_owned()).said(Place::Window(language))
+    Argument::Number(number.to_owned()).said(Output::Window(language))
 }
 
 /// A number of so many decimals with the language's decimal sign.
 pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
-    Argument::Number(format!("{value:.decimals$}")).said(Place::Window(language))
+    Argument::Number(format!("{value:.decimals$}")).said(Output::Window(language))
 }
 
 impl From<&'static str> for Text {

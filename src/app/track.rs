@@ -39,7 +39,7 @@ const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
 /// A position, or that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sighting {
+pub struct PositionSample {
     /// When.
     pub at: Moment,
     /// Steps, within the range; `None`: the device has none to give.
@@ -181,7 +181,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records positions, one after the other.
-    pub fn add(&mut self, sightings: &[Sighting], meaning: &Meaning) {
+    pub fn add(&mut self, sightings: &[PositionSample], meaning: &Meaning) {
         self.see(meaning);
         let mut columns = Columns::default();
         for sighting in sightings {
@@ -197,7 +197,7 @@ impl<W: Watchable> Track<W> {
         let _ = self.recorder.append(self.positions, &columns.times, &parts);
     }
 
-    fn sight(&mut self, sighting: &Sighting, columns: &mut Columns) {
+    fn sight(&mut self, sighting: &PositionSample, columns: &mut Columns) {
         let time = Time::from(sighting.at).plus(self.shift);
         if self.newest.is_some_and(|newest| time < newest) {
             // Read on its own between two samples that are recorded already.

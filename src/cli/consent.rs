@@ -8,7 +8,7 @@ use super::output::{Output, say};
 use super::runner::{Ended, Runs};
 use super::{Failure, Result};
 use crate::profile::Consent;
-use crate::worker::commit::{Agreed, Planned};
+use crate::worker::commit::{ApprovedPlan, Planned};
 use crate::worker::{self, NotBegun};
 
 /// Without a terminal nobody can be asked: refused before anything is opened.
@@ -28,7 +28,12 @@ pub(crate) fn can_ask() -> bool {
 
 /// Shows the plan, and what has to be agreed to beside it, and asks for each, unless the command line has consented already.
 /// Returns the plan with the consent to it.
-pub fn agreed<P: Planned>(output: &Output, consent: &Consenting, prepared: P, shown: &[&str]) -> Result<Agreed<P>> {
+pub fn agreed<P: Planned>(
+    output: &Output,
+    consent: &Consenting,
+    prepared: P,
+    shown: &[&str],
+) -> Result<ApprovedPlan<P>> {
     for text in shown.iter().filter(|_| !consent.yes) {
         output.remark(text.trim_end());
         if !ask("Write? [y/N] ") {
@@ -36,7 +41,7 @@ pub fn agreed<P: Planned>(output: &Output, consent: &Consenting, prepared: P, sh
         }
     }
     let granted = Consent::to(prepared.plan().id());
-    Ok(Agreed { prepared, consent: granted, force_wear: consent.force_wear })
+    Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear })
 }
 
 /// Refuses a write into a worn device, or one whose write cycles are not known, before anybody is asked for consent to it.

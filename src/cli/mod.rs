@@ -8,13 +8,13 @@ pub(crate) mod consent;
 pub(crate) mod decode;
 pub(crate) mod number;
 pub(crate) mod output;
-pub(crate) mod patience;
 pub mod plan;
 mod ports;
 pub(crate) mod positions;
 pub(crate) mod profiles;
 pub(crate) mod runner;
 pub(crate) mod simulate;
+pub(crate) mod slow_reply_notice;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -25,11 +25,11 @@ pub use args::{Command, Common, Consenting, Decode, Do, Find, Position, Read, Re
 pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProtocolDecoder};
 pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
-pub use patience::Pace;
 pub use positions::readings;
 pub use profiles::{Left, keep, restore_options, to_restore, write_restore};
 pub use runner::{Ended, Runner, Runs, failed, unexpected};
 pub use simulate::{Simulated, settings};
+pub use slow_reply_notice::Pace;
 
 use crate::app::Given;
 use crate::link::LinkUrl;

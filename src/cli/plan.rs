@@ -11,7 +11,7 @@ use crate::store::LogbookError;
 use crate::worker::Committed;
 
 /// A plan, for a person and for a script.
-pub struct Shown {
+pub struct PlanReport {
     /// The operations, for a script.
     pub operations: Vec<Json>,
     /// The same for a person, with what it costs.
@@ -73,7 +73,7 @@ pub(super) const NOTHING: &str = "nothing to write: it is so already\n";
 
 /// What a write has done.
 #[derive(Default)]
-pub struct Spent {
+pub struct WriteSummary {
     /// Things that were changed.
     pub written: u64,
     /// Those of them that were read back.
@@ -84,13 +84,13 @@ pub struct Spent {
     pub backup: Option<PathBuf>,
 }
 
-impl Spent {
+impl WriteSummary {
     /// What a commit did; what the logbook could not take is told.
     pub fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());
         let Written { written, verified, write_cycles, .. } = written;
-        Spent { written, verified, write_cycles, backup }
+        WriteSummary { written, verified, write_cycles, backup }
     }
 }
 

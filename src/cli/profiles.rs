@@ -10,7 +10,7 @@ use serde_json::{Value as Json, json};
 use super::args::{Common, Diff, Restore};
 use super::consent::require_consent;
 use super::output::{Lines, Output, say};
-use super::plan::{NOTHING, Shown, Spent};
+use super::plan::{NOTHING, PlanReport, WriteSummary};
 use super::runner::failed;
 use super::{Done, Failure, Result};
 use crate::app::{Kinds, explain, review};
@@ -109,9 +109,9 @@ pub(crate) fn say_mounting_left(output: &Output, items: &[impl Display]) {
 pub fn write_restore(
     output: &Output,
     restore: &Restore,
-    plan: &Shown,
+    plan: &PlanReport,
     left: &Left,
-    write: impl FnOnce() -> Result<Spent>,
+    write: impl FnOnce() -> Result<WriteSummary>,
 ) -> Result {
     left.warn(output);
     if restore.dry_run { show_dry_run(output, plan, left) } else { show_restored(output, &write()?, left) }
@@ -180,7 +180,7 @@ impl Left {
 }
 
 /// Prints what a restore would do.
-fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
+fn show_dry_run(output: &Output, plan: &PlanReport, left: &Left) -> Result {
     let json = json!({
         "dry_run": true,
         "operations": plan.operations,
@@ -197,7 +197,7 @@ fn show_dry_run(output: &Output, plan: &Shown, left: &Left) -> Result {
 }
 
 /// Prints what a restore has done.
-fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
+fn show_restored(output: &Output, spent: &WriteSummary, left: &Left) -> Result {
     let json = json!({
         "written": spent.written,
         "unchanged": left.unchanged,
@@ -223,7 +223,7 @@ fn show_restored(output: &Output, spent: &Spent, left: &Left) -> Result {
 }
 
 /// Prints what writing an item has done; `operations` are what was carried out.
-pub(crate) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &Spent) -> Result {
+pub(crate) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &WriteSummary) -> Result {
     show_done(output, item, operations, spent, &[], "")
 }
 
@@ -232,7 +232,7 @@ pub(crate) fn show_done(
     output: &Output,
     item: &str,
     operations: &[Json],
-    spent: &Spent,
+    spent: &WriteSummary,
     results: &[Json],
     said: &str,
 ) -> Result {

@@ -14,7 +14,7 @@ use super::args::Common;
 use super::commands::DeviceCommands;
 use super::consent::{answer, can_ask};
 use super::output::say;
-use super::patience::{Pace, Patience};
+use super::slow_reply_notice::{Pace, SlowReplyNotice};
 use super::{Failure, Result};
 use crate::app::session::Kind;
 use crate::app::{Given, Text, explain};
@@ -25,7 +25,7 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 /// What the command line has to know of a device that it runs jobs on.
 pub trait Runs: Kind {
     /// What is kept of a session when its thread has it.
-    type Kept;
+    type Context;
     /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
     const HAS_ONE_MASTER: bool = false;
     /// Its kind on the command line.
@@ -37,16 +37,16 @@ pub trait Runs: Kind {
     }
 
     /// Makes a session ready, with what the options of every command give.
-    fn begin(session: &mut Session<Self>, given: &Given) -> Self::Kept;
+    fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
     /// Says at once what the device said on the way.
-    fn say(remark: &Self::Remark);
+    fn say(remark: &Self::DeviceMessage);
 
     /// A step, beside the bar at a terminal.
-    fn step(doing: &Self::Doing) -> String;
+    fn step(doing: &Self::JobStep) -> String;
 
     /// What somebody at the terminal should know of a step; told when it changes.
-    fn announce(_doing: &Self::Doing) -> Option<String> {
+    fn announce(_doing: &Self::JobStep) -> Option<String> {
         None
     }
 
@@ -57,7 +57,7 @@ pub trait Runs: Kind {
 
     /// What Ctrl-C does at once, before anything else, each time that it is pressed; the program ends after the second time,
     /// for which it is told `true`.
-    fn interrupt(_kept: &Self::Kept) -> Box<dyn Fn(bool) + Send> {
+    fn interrupt(_kept: &Self::Context) -> Box<dyn Fn(bool) + Send> {
         Box::new(|_| ())
     }
 }
@@ -67,11 +67,11 @@ pub struct Runner<D: Runs> {
     worker: Worker<D>,
     /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
     interrupted: Arc<AtomicBool>,
-    patience: Patience,
+    patience: SlowReplyNotice,
     /// What the device said on the way of the last job.
-    pub remarks: Vec<D::Remark>,
+    pub remarks: Vec<D::DeviceMessage>,
     /// What is known of the session.
-    pub kept: D::Kept,
+    pub kept: D::Context,
 }
 
 /// A job that ended early.
@@ -122,7 +122,7 @@ impl<D: Runs> Runner<D> {
         if let Some(path) = &common.trace {
             record(&mut session, path)?;
         }
-        let patience = Patience::begin(D::reply_pace(&session));
+        let patience = SlowReplyNotice::begin(D::reply_pace(&session));
         let worker = Worker::spawn(session, Arc::new(|| ()))
             .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
         let stopper = worker.stopper();

@@ -48,7 +48,7 @@ impl From<LinkError> for LineError {
 }
 
 /// The host's side of a line, for one job.
-pub(crate) struct Line<'a> {
+pub(crate) struct SerialLine<'a> {
     /// All that the job got.
     pub(crate) ctx: Ctx<'a>,
     /// How long one goes on asking without an answer, where that is not the usual.
@@ -58,10 +58,10 @@ pub(crate) struct Line<'a> {
     passed: Option<Vec<u8>>,
 }
 
-impl<'a> Line<'a> {
+impl<'a> SerialLine<'a> {
     /// The line of a job.
     pub(crate) fn new(ctx: Ctx<'a>) -> Self {
-        Line { ctx, patience: None, shielded: false, passed: None }
+        SerialLine { ctx, patience: None, shielded: false, passed: None }
     }
 
     /// Now.

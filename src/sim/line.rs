@@ -129,7 +129,7 @@ impl Wires {
 }
 
 /// A line with what is on it. It is a [`ByteDevice`] by that.
-pub(crate) trait Line: Send {
+pub(crate) trait VirtualLine: Send {
     /// What happens next; of events at the same moment the least one.
     type Event;
 
@@ -157,7 +157,7 @@ pub(crate) trait Line: Send {
     }
 }
 
-impl<L: Line> ByteDevice for L {
+impl<L: VirtualLine> ByteDevice for L {
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
         self.advance(now);
         let taken = bytes.get(..self.wires_mut().room()).unwrap_or(bytes);

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::file_error::{FileError, FileProblem, FileTask};
-use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Layout, Wishes};
+use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Layout, TableHints};
 
 /// Why a capture could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -34,7 +34,7 @@ const PIECE: usize = 1 << 20;
 /// [`ReadCaptureError`]: the file is missing, is no capture, or `cancel` was set.
 pub fn read_capture(
     path: &Path,
-    wishes: &Wishes,
+    wishes: &TableHints,
     cancel: &AtomicBool,
     progress: OnProgress<'_>,
 ) -> Result<(Layout, Capture), ReadCaptureError> {
@@ -94,7 +94,7 @@ mod tests {
     fn read(path: &Path, cancel: bool) -> (Result<usize, ReadCaptureError>, Vec<(u64, u64)>) {
         let mut told = Vec::new();
         let cancel = AtomicBool::new(cancel);
-        let read = read_capture(path, &Wishes::default(), &cancel, &mut |done, total| told.push((done, total)));
+        let read = read_capture(path, &TableHints::default(), &cancel, &mut |done, total| told.push((done, total)));
         (read.map(|(_, capture)| capture.sine_v.len()), told)
     }
 

@@ -3,18 +3,18 @@
 use egui::{RichText, Ui};
 
 use super::controls::paragraph;
-use super::{Skin, icons};
+use super::{Theme, icons};
 use crate::analysis::check::Verdict;
 use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
 
 /// Draws the lines of the last check, or what one would do.
-pub(crate) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {
+pub(crate) fn lines_ui(ui: &mut Ui, theme: &Theme, lines: Option<&[CheckLine]>, nothing: impl Into<Text>) {
     let Some(lines) = lines else {
-        paragraph(ui, skin.label(skin.words(&nothing.into())));
+        paragraph(ui, theme.label(theme.words(&nothing.into())));
         return;
     };
-    let palette = skin.palette;
+    let palette = theme.palette;
     for line in lines {
         let (icon, colour) = match line.verdict {
             Verdict::Skipped => (icons::INFO, palette.muted),
@@ -23,11 +23,11 @@ pub(crate) fn lines_ui(ui: &mut Ui, skin: &Skin, lines: Option<&[CheckLine]>, no
             Verdict::Bad => (icons::X_CIRCLE, palette.bad),
         };
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icon).color(colour)).on_hover_text(skin.words(&verdict(line.verdict)));
+            ui.label(RichText::new(icon).color(colour)).on_hover_text(theme.words(&verdict(line.verdict)));
             ui.vertical(|ui| {
-                ui.label(skin.words(&line.step));
+                ui.label(theme.words(&line.step));
                 for finding in &line.findings {
-                    ui.add(egui::Label::new(skin.caption(skin.words(finding))).wrap().selectable(true));
+                    ui.add(egui::Label::new(theme.caption(theme.words(finding))).wrap().selectable(true));
                 }
             });
         });

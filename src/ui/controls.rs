@@ -4,7 +4,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-use super::{Skin, icons};
+use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 use crate::app::Text;
 
@@ -21,59 +21,60 @@ pub(crate) fn fill(ui: &mut Ui) {
 }
 
 /// A card with a heading.
-pub fn card<R>(ui: &mut Ui, skin: &Skin, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
-    card_with(ui, skin, title, |_| {}, content)
+pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
+    card_with(ui, theme, title, |_| {}, content)
 }
 
 /// A card with a heading; what stands at the right of the heading comes from `aside`.
 pub(crate) fn card_with<R>(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     title: impl Into<Text>,
     aside: impl FnOnce(&mut Ui),
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
     let title = title.into();
-    skin.card()
+    theme
+        .card()
         .show(ui, |ui| {
             fill(ui);
             ui.horizontal(|ui| {
-                ui.label(skin.heading(skin.words(&title)));
+                ui.label(theme.heading(theme.words(&title)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
             });
-            ui.add_space(skin.space.inside);
+            ui.add_space(theme.space.inside);
             content(ui)
         })
         .inner
 }
 
 /// A label and a value that can be selected, on one line.
-pub fn row(ui: &mut Ui, skin: &Skin, label: &str, value: impl Into<RichText>) {
+pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
         // Values are read, not touched: they stand closer than what has to be hit with a pointer.
         ui.spacing_mut().interact_size.y = 20.0;
-        ui.spacing_mut().item_spacing.y = skin.space.inside;
+        ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.horizontal_top(|ui| {
-            label_ui(ui, skin, label);
+            label_ui(ui, theme, label);
             ui.add(egui::Label::new(value.into()).selectable(true).wrap());
         });
     });
 }
 
 /// A label and something else, on one line.
-pub fn entry<R>(ui: &mut Ui, skin: &Skin, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn entry<R>(ui: &mut Ui, theme: &Theme, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        label_ui(ui, skin, label);
+        label_ui(ui, theme, label);
         content(ui)
     })
     .inner
 }
 
-fn label_ui(ui: &mut Ui, skin: &Skin, label: &str) {
+fn label_ui(ui: &mut Ui, theme: &Theme, label: &str) {
     let width = LABELS.min(ui.available_width() * 0.4).max(0.0);
     ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
         ui.set_min_width(width);
-        ui.add(egui::Label::new(skin.label(label)).truncate());
+        ui.add(egui::Label::new(theme.label(label)).truncate());
     });
 }
 
@@ -83,9 +84,9 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
 }
 
 /// Why an entry cannot be used, below it.
-pub(crate) fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&crate::app::Text>) {
+pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
-        Some(problem) => paragraph(ui, RichText::new(skin.words(problem)).color(skin.palette.bad)),
+        Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
         // Entries below it are the same ones without it: whoever types in one goes on typing.
         None => ui.skip_ahead_auto_ids(1),
     }
@@ -94,12 +95,12 @@ pub(crate) fn problem(ui: &mut Ui, skin: &Skin, problem: Option<&crate::app::Tex
 /// A dialog over the window: what lies below waits.
 pub(super) fn modal<R>(
     ctx: &egui::Context,
-    skin: &Skin,
+    theme: &Theme,
     name: &str,
     width: f32,
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
-    let frame = skin.card().inner_margin(skin.space.groups);
+    let frame = theme.card().inner_margin(theme.space.groups);
     let id = egui::Id::unique(name);
     let shown = egui::Modal::new(id).frame(frame).show(ctx, |ui| {
         ui.set_width(width.max(MODAL));
@@ -135,7 +136,7 @@ pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str)
 /// A button that says why it may not be pressed.
 pub(crate) fn allowed_button(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     allowed: &Result<(), crate::app::Text>,
     icon: &str,
     word: &str,
@@ -143,17 +144,17 @@ pub(crate) fn allowed_button(
     let response = enabled_button(ui, allowed.is_ok(), icon, word);
     match allowed {
         Ok(()) => response,
-        Err(why) => response.on_disabled_hover_text(skin.words(why)),
+        Err(why) => response.on_disabled_hover_text(theme.words(why)),
     }
 }
 
 /// The one button of a screen that the eye ends at.
-pub(crate) fn primary(ui: &mut Ui, skin: &Skin, enabled: bool, icon: &str, word: &str) -> Response {
+pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
-    let ink = if enabled { skin.palette.on_accent } else { skin.palette.muted };
+    let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };
     let mut button = Button::new(RichText::new(shown).color(ink)).min_size(vec2(96.0, 0.0));
     if enabled {
-        button = button.fill(skin.palette.accent).stroke(Stroke::NONE);
+        button = button.fill(theme.palette.accent).stroke(Stroke::NONE);
     }
     name(ui.add_enabled(enabled, button), enabled, word)
 }
@@ -171,9 +172,9 @@ pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
 }
 
 /// A short word in a frame of its colour.
-pub(crate) fn badge(ui: &mut Ui, skin: &Skin, word: &str, colour: impl Into<egui::Color32>) {
+pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<egui::Color32>) {
     let colour = colour.into();
-    let font = egui::FontId::proportional(skin.sizes.caption);
+    let font = egui::FontId::proportional(theme.sizes.caption);
     let words = ui.painter().layout_no_wrap(word.to_owned(), font, colour);
     let (rect, response) = ui.allocate_exact_size(words.size() + vec2(12.0, 6.0), Sense::hover());
     ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.0, colour), egui::StrokeKind::Inside);
@@ -182,16 +183,16 @@ pub(crate) fn badge(ui: &mut Ui, skin: &Skin, word: &str, colour: impl Into<egui
 }
 
 /// What would be here, and the one action that fills it.
-pub(crate) fn empty(ui: &mut Ui, skin: &Skin, words: &str, action: Option<(&str, &str, bool)>) -> bool {
+pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
-        ui.add_space(skin.space.groups);
-        ui.add(egui::Label::new(skin.label(words)).wrap());
+        ui.add_space(theme.space.groups);
+        ui.add(egui::Label::new(theme.label(words)).wrap());
         if let Some((icon, word, enabled)) = action {
-            ui.add_space(skin.space.inside);
+            ui.add_space(theme.space.inside);
             pressed = enabled_button(ui, enabled, icon, word).clicked();
         }
-        ui.add_space(skin.space.groups);
+        ui.add_space(theme.space.groups);
     });
     pressed
 }
@@ -214,8 +215,15 @@ pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint:
 }
 
 /// A one-line entry for what is spelled exactly.
-pub(crate) fn mono_entry(ui: &mut Ui, skin: &Skin, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
-    entry_in(ui, text, width, label, hint, egui::FontId::monospace(skin.sizes.body).into())
+pub(crate) fn mono_entry(
+    ui: &mut Ui,
+    theme: &Theme,
+    text: &mut String,
+    width: f32,
+    label: &str,
+    hint: &str,
+) -> Response {
+    entry_in(ui, text, width, label, hint, egui::FontId::monospace(theme.sizes.body).into())
 }
 
 fn entry_in(
@@ -306,7 +314,7 @@ pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
 }
 
 /// Something is being done. It turns slowly enough to cost nothing.
-pub(crate) fn spinner(ui: &mut Ui, skin: &Skin) {
+pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     const STEPS: f64 = 8.0;
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
     let step = (ui.input(|input| input.time) * STEPS).floor();
@@ -314,7 +322,7 @@ pub(crate) fn spinner(ui: &mut Ui, skin: &Skin) {
         let angle = f64::from(dot) * std::f64::consts::TAU / STEPS;
         let age = (f64::from(dot) - step).rem_euclid(STEPS) / STEPS;
         let place = rect.center() + vec2(angle.cos() as f32, angle.sin() as f32) * 6.0;
-        let colour = egui::Color32::from(skin.palette.accent).gamma_multiply(0.2 + 0.8 * age as f32);
+        let colour = egui::Color32::from(theme.palette.accent).gamma_multiply(0.2 + 0.8 * age as f32);
         ui.painter().circle_filled(place, 1.5, colour);
     }
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
@@ -323,19 +331,19 @@ pub(crate) fn spinner(ui: &mut Ui, skin: &Skin) {
 /// A one-line entry behind its label, which is also its name for screen readers.
 pub(crate) fn labelled_entry(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     what: impl Into<Text>,
     text: &mut String,
     width: f32,
     hint: &str,
 ) -> Response {
-    let word = skin.words(&what.into());
-    entry(ui, skin, &word, |ui| text_entry(ui, text, width, &word, hint))
+    let word = theme.words(&what.into());
+    entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 
 /// A verdict on a signal: icon and colour.
-pub(crate) fn verdict(skin: &Skin, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
-    let palette = skin.palette;
+pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
+    let palette = theme.palette;
     match verdict {
         Verdict::Ok => (icons::CHECK_CIRCLE, palette.good),
         Verdict::Warn => (icons::WARNING, palette.warn),
@@ -344,18 +352,18 @@ pub(crate) fn verdict(skin: &Skin, verdict: Verdict) -> (&'static str, crate::ap
 }
 
 /// A verdict with its words, in its colour.
-pub(crate) fn verdict_ui(ui: &mut Ui, skin: &Skin, own: Verdict, words: &crate::app::Text) {
-    let (icon, colour) = verdict(skin, own);
+pub(crate) fn verdict_ui(ui: &mut Ui, theme: &Theme, own: Verdict, words: &crate::app::Text) {
+    let (icon, colour) = verdict(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, RichText::new(skin.words(words)).color(colour));
+        paragraph(ui, RichText::new(theme.words(words)).color(colour));
     });
 }
 
 /// How much a notice matters: icon and colour.
-pub(crate) fn severity(skin: &Skin, severity: crate::app::Severity) -> (&'static str, crate::app::Rgb) {
+pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'static str, crate::app::Rgb) {
     use crate::app::Severity;
-    let palette = skin.palette;
+    let palette = theme.palette;
     match severity {
         Severity::Note => (icons::INFO, palette.accent),
         Severity::Good => (icons::CHECK_CIRCLE, palette.good),
@@ -367,18 +375,18 @@ pub(crate) fn severity(skin: &Skin, severity: crate::app::Severity) -> (&'static
 /// Two columns of cards where there is room, else one below the other.
 pub(crate) fn two_columns<C>(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     context: C,
     left: impl FnOnce(&mut Ui, &mut C),
     right: impl FnOnce(&mut Ui, &mut C),
 ) {
-    split(ui, skin, (0.5, 640.0), context, left, right);
+    split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
 /// Two columns of cards, the left one with this share of the width, where there is this much; else one below the other.
 pub(crate) fn split<C>(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     (share, least): (f32, f32),
     mut context: C,
     left: impl FnOnce(&mut Ui, &mut C),
@@ -386,18 +394,18 @@ pub(crate) fn split<C>(
 ) {
     if ui.available_width() < least {
         left(ui, &mut context);
-        ui.add_space(skin.space.groups);
+        ui.add_space(theme.space.groups);
         right(ui, &mut context);
         return;
     }
-    let room = (ui.available_width() - skin.space.groups).max(0.0);
+    let room = (ui.available_width() - theme.space.groups).max(0.0);
     let width = (room * share).floor();
     ui.horizontal_top(|ui| {
-        ui.spacing_mut().item_spacing.x = skin.space.between;
+        ui.spacing_mut().item_spacing.x = theme.space.between;
         ui.allocate_ui_with_layout(vec2(width, 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
             left(ui, &mut context);
         });
-        ui.add_space(skin.space.groups - skin.space.between);
+        ui.add_space(theme.space.groups - theme.space.between);
         ui.allocate_ui_with_layout(vec2((room - width).floor(), 0.0), egui::Layout::top_down(egui::Align::Min), |ui| {
             right(ui, &mut context);
         });

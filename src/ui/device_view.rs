@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
-use super::{Skin, workspace};
+use super::{Theme, workspace};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
 /// A page of a tab, as the navigation and the help show it. `word` and `help` name texts of the table.
@@ -72,7 +72,7 @@ pub trait TypedDeviceView: Sync + 'static {
     /// Draws the open page.
     fn page_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         shared: (&Studio, &AnyDevice),
         device: &Self::Device,
         open: (Self::Page, &mut Self::Memory),
@@ -82,22 +82,22 @@ pub trait TypedDeviceView: Sync + 'static {
     /// Draws the progress of the running job, apart from the page.
     fn running_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         any: &AnyDevice,
         _device: &Self::Device,
         _page: Self::Page,
         actions: &mut Vec<Action>,
     ) {
-        workspace::running_ui(ui, skin, any, None, actions);
+        workspace::running_ui(ui, theme, any, None, actions);
     }
 
     /// Draws the position large, in this ink, and the numbers beside it.
-    fn value_ui(ui: &mut Ui, skin: &Skin, device: &Self::Device, ink: Rgb);
+    fn value_ui(ui: &mut Ui, theme: &Theme, device: &Self::Device, ink: Rgb);
 
     /// Draws the menu of the values that are read beside the position, where the device has any.
     fn watch_menu(
         _ui: &mut Ui,
-        _skin: &Skin,
+        _skin: &Theme,
         _device: &Self::Device,
         _memory: &mut Self::Memory,
         _actions: &mut Vec<Action>,
@@ -110,7 +110,7 @@ pub trait TypedDeviceView: Sync + 'static {
     }
 
     /// Draws what the tab offers without a device, below the buttons of every kind.
-    fn empty_ui(_ui: &mut Ui, _skin: &Skin, _actions: &mut Vec<Action>) {}
+    fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 }
 
 /// The view of a kind of device, as the window uses it. A device of another kind is not drawn, and has no edits here.
@@ -128,7 +128,7 @@ pub trait DeviceView: Sync {
     fn motion(&self, device: &AnyDevice) -> Option<Text>;
 
     /// Draws the position large, in this ink, and the numbers beside it.
-    fn value_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, ink: Rgb);
+    fn value_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, ink: Rgb);
 
     /// Begins the form in the connection dialog.
     fn connect_form(&self) -> Box<dyn ConnectForm>;
@@ -137,7 +137,7 @@ pub trait DeviceView: Sync {
     fn session(&self) -> Box<dyn SessionView>;
 
     /// Draws what the tab offers without a device, below the buttons of every kind.
-    fn empty_ui(&self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>);
+    fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>);
 }
 
 /// The view of one session: its open page, text buffers and selections.
@@ -152,13 +152,13 @@ pub trait SessionView {
     fn is_edited(&self, device: &AnyDevice, page: usize) -> bool;
 
     /// Draws the open page.
-    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>);
+    fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>);
 
     /// Draws the progress of the running job, apart from the page.
-    fn running_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>);
+    fn running_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 
     /// Draws the menu of the values that are read beside the position, where the device has any.
-    fn watch_menu(&mut self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>);
+    fn watch_menu(&mut self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 }
 
 impl<V: TypedDeviceView> DeviceView for V {
@@ -178,9 +178,9 @@ impl<V: TypedDeviceView> DeviceView for V {
         device.get::<V::Device>().and_then(V::motion)
     }
 
-    fn value_ui(&self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, ink: Rgb) {
+    fn value_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, ink: Rgb) {
         if let Some(device) = device.get::<V::Device>() {
-            V::value_ui(ui, skin, device, ink);
+            V::value_ui(ui, theme, device, ink);
         }
     }
 
@@ -192,8 +192,8 @@ impl<V: TypedDeviceView> DeviceView for V {
         Box::new(Session::<V> { page: V::Page::default(), memory: Memory::default() })
     }
 
-    fn empty_ui(&self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
-        V::empty_ui(ui, skin, actions);
+    fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
+        V::empty_ui(ui, theme, actions);
     }
 }
 
@@ -237,20 +237,20 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
         device.zip(page).is_some_and(|(device, page)| V::is_edited(device, page))
     }
 
-    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>) {
+    fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>) {
         let Some(device) = shared.1.get::<V::Device>() else { return };
         let memory = self.memory.of(V::serial_number(device));
-        V::page_ui(ui, skin, shared, device, (self.page, memory), actions);
+        V::page_ui(ui, theme, shared, device, (self.page, memory), actions);
     }
 
-    fn running_ui(&self, ui: &mut Ui, skin: &Skin, any: &AnyDevice, actions: &mut Vec<Action>) {
+    fn running_ui(&self, ui: &mut Ui, theme: &Theme, any: &AnyDevice, actions: &mut Vec<Action>) {
         let Some(device) = any.get::<V::Device>() else { return };
-        V::running_ui(ui, skin, any, device, self.page, actions);
+        V::running_ui(ui, theme, any, device, self.page, actions);
     }
 
-    fn watch_menu(&mut self, ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+    fn watch_menu(&mut self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
         let Some(device) = device.get::<V::Device>() else { return };
-        V::watch_menu(ui, skin, device, self.memory.of(V::serial_number(device)), actions);
+        V::watch_menu(ui, theme, device, self.memory.of(V::serial_number(device)), actions);
     }
 }
 
@@ -278,7 +278,7 @@ pub trait ToolPages {
     fn open(&mut self, page: usize);
 
     /// Draws the open page.
-    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>);
+    fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>);
 }
 
 /// The views of all tabs, in the order of the navigation: devices first.
@@ -311,8 +311,8 @@ impl TabViews {
     }
 
     /// Returns the name of a tab.
-    pub(crate) fn title(self, skin: &Skin, tab: Tab) -> String {
-        let title = self.tool(tab).map(|view| skin.say(view.title()));
+    pub(crate) fn title(self, theme: &Theme, tab: Tab) -> String {
+        let title = self.tool(tab).map(|view| theme.say(view.title()));
         title.or_else(|| self.device(tab).map(|view| view.kind().bus().to_owned())).unwrap_or_default()
     }
 

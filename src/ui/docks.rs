@@ -4,7 +4,7 @@
 use egui_tiles::{Container, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
 
-use super::{Skin, Views, panels, workspace};
+use super::{Theme, Views, panels, workspace};
 use crate::app::{Action, Studio};
 
 /// A panel.
@@ -52,12 +52,12 @@ impl Docks {
     pub(super) fn ui(
         &mut self,
         ui: &mut egui::Ui,
-        skin: &Skin,
+        theme: &Theme,
         studio: &Studio,
         views: &mut Views,
         actions: &mut Vec<Action>,
     ) {
-        let mut behaviour = Behaviour { skin, studio, views, actions, edited: false };
+        let mut behaviour = Behaviour { theme, studio, views, actions, edited: false };
         self.tree.ui(&mut behaviour, ui);
         self.edited |= behaviour.edited;
     }
@@ -86,7 +86,7 @@ fn first_layout() -> Tree<Pane> {
 }
 
 struct Behaviour<'a> {
-    skin: &'a Skin,
+    theme: &'a Theme,
     studio: &'a Studio,
     views: &'a mut Views,
     actions: &'a mut Vec<Action>,
@@ -95,22 +95,22 @@ struct Behaviour<'a> {
 
 impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
     fn pane_ui(&mut self, ui: &mut egui::Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
-        let (skin, studio) = (self.skin, self.studio);
+        let (theme, studio) = (self.theme, self.studio);
         let margin = if *pane == Pane::Workspace { 0 } else { 8 };
-        let fill = if *pane == Pane::Workspace { skin.palette.surface } else { skin.palette.raised };
+        let fill = if *pane == Pane::Workspace { theme.palette.surface } else { theme.palette.raised };
         ui.painter().rect_filled(ui.max_rect(), 0.0, fill);
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| match pane {
-            Pane::Workspace => workspace::workspace_ui(ui, skin, studio, self.views, self.actions),
-            Pane::Live => panels::live_ui(ui, skin, studio, self.views, self.actions),
-            Pane::Trace => panels::trace_ui(ui, skin, studio, self.views),
-            Pane::Jobs => panels::jobs_ui(ui, skin, studio),
-            Pane::Log => panels::log_ui(ui, skin, studio),
+            Pane::Workspace => workspace::workspace_ui(ui, theme, studio, self.views, self.actions),
+            Pane::Live => panels::live_ui(ui, theme, studio, self.views, self.actions),
+            Pane::Trace => panels::trace_ui(ui, theme, studio, self.views),
+            Pane::Jobs => panels::jobs_ui(ui, theme, studio),
+            Pane::Log => panels::log_ui(ui, theme, studio),
         });
         UiResponse::None
     }
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> egui::WidgetText {
-        self.skin
+        self.theme
             .say(match pane {
                 Pane::Workspace => "panel.workspace",
                 Pane::Live => "panel.live",
@@ -139,7 +139,7 @@ impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
     }
 
     fn tab_bar_color(&self, _visuals: &egui::Visuals) -> egui::Color32 {
-        self.skin.palette.surface.into()
+        self.theme.palette.surface.into()
     }
 
     fn tab_bg_color(
@@ -149,7 +149,7 @@ impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
         _tile: TileId,
         state: &egui_tiles::TabState,
     ) -> egui::Color32 {
-        if state.active { self.skin.palette.raised.into() } else { egui::Color32::TRANSPARENT }
+        if state.active { self.theme.palette.raised.into() } else { egui::Color32::TRANSPARENT }
     }
 
     fn tab_outline_stroke(
@@ -163,7 +163,7 @@ impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
     }
 
     fn tab_bar_hline_stroke(&self, _visuals: &egui::Visuals) -> egui::Stroke {
-        egui::Stroke::new(1.0, self.skin.palette.line)
+        egui::Stroke::new(1.0, self.theme.palette.line)
     }
 
     fn tab_text_color(
@@ -173,7 +173,7 @@ impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
         _tile: TileId,
         state: &egui_tiles::TabState,
     ) -> egui::Color32 {
-        if state.active { self.skin.palette.text.into() } else { self.skin.palette.muted.into() }
+        if state.active { self.theme.palette.text.into() } else { self.theme.palette.muted.into() }
     }
 
     fn on_edit(&mut self, _edit: egui_tiles::EditAction) {

@@ -4,21 +4,21 @@ use egui::{RichText, Stroke, Ui};
 
 use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
 use super::page::apart;
-use super::stopping::{goes_down, means_motion, pressed_at};
-use super::{Skin, Views, icons};
+use super::stop_debounce::{goes_down, means_motion, pressed_at};
+use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, Language, Notice, Studio, Text, Theme, connect};
+use crate::app::{Action, AnyDevice, ColorScheme, Language, Notice, Studio, Text, connect};
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;
 
 /// Draws the header.
-pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
-        sessions(ui, skin, studio, actions);
+        sessions(ui, theme, studio, actions);
         if let Some(device) = studio.shown() {
             let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
-            status(ui, skin, device, motion);
+            status(ui, theme, device, motion);
         }
         // Drawn from left to right, as the keyboard goes through it; how wide it is is known from the picture before.
         let width_id = ui.scope_id().with("tools");
@@ -30,12 +30,12 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
             |ui| {
                 ui.set_min_width((room - ui.spacing().item_spacing.x).max(0.0));
                 if room > 80.0 {
-                    link(ui, skin, studio);
+                    link(ui, theme, studio);
                 }
             },
         );
         let tools = apart(ui, "tools", |ui| {
-            tools(ui, skin, studio, views, actions);
+            tools(ui, theme, studio, views, actions);
             ui.min_rect().width()
         });
         if (tools - width).abs() > 0.5 {
@@ -46,75 +46,75 @@ pub(super) fn header_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut V
 }
 
 /// What can be done at any time.
-fn tools(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window the icons have to do; their words are the tooltips.
     // A STOP of twice its width needs the room of some.
     let narrow = ui.ctx().content_rect().width() < if studio.moves() { 1140.0 } else { 1000.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
-        let word = skin.say(id);
+        let word = theme.say(id);
         if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }
     };
     if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
         actions.push(Action::AskOpen);
     }
     let savable = studio.shown().is_some_and(AnyDevice::is_savable);
-    if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(skin.say("shell.save_hint")).clicked() {
+    if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(theme.say("shell.save_hint")).clicked() {
         actions.extend(studio.shown().map(|own| Action::Save(own.id())));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::Action::Open));
     }
-    stop(ui, skin, studio, actions);
+    stop(ui, theme, studio, actions);
     let settings = &studio.settings;
     let (other, other_code) = match settings.language {
         Language::English => (Language::German, "DE"),
         Language::German => (Language::English, "EN"),
     };
-    let response = ui.button(other_code).on_hover_text(skin.say("shell.language"));
-    if name(response, true, &skin.say("shell.language")).clicked() {
+    let response = ui.button(other_code).on_hover_text(theme.say("shell.language"));
+    if name(response, true, &theme.say("shell.language")).clicked() {
         actions.push(Action::SetLanguage(other));
     }
-    let (theme_icon, theme) = match settings.theme {
-        Theme::Dark => (icons::SUN, Theme::Light),
-        Theme::Light => (icons::MOON, Theme::Dark),
+    let (theme_icon, other) = match settings.theme {
+        ColorScheme::Dark => (icons::SUN, ColorScheme::Light),
+        ColorScheme::Light => (icons::MOON, ColorScheme::Dark),
     };
-    let theme_word = match theme {
-        Theme::Light => "shell.light",
-        Theme::Dark => "shell.dark",
+    let theme_word = match other {
+        ColorScheme::Light => "shell.light",
+        ColorScheme::Dark => "shell.dark",
     };
-    if icon_button(ui, true, theme_icon, &skin.say(theme_word)).clicked() {
-        actions.push(Action::SetTheme(theme));
+    if icon_button(ui, true, theme_icon, &theme.say(theme_word)).clicked() {
+        actions.push(Action::SetTheme(other));
     }
-    if icon_button(ui, true, icons::QUESTION, &skin.say("shell.help")).clicked() {
+    if icon_button(ui, true, icons::QUESTION, &theme.say("shell.help")).clicked() {
         views.help = !views.help;
     }
-    if icon_button(ui, true, icons::INFO, &skin.say("shell.about")).clicked() {
+    if icon_button(ui, true, icons::INFO, &theme.say("shell.about")).clicked() {
         views.about = true;
     }
 }
 
 /// The sessions, as a menu behind the name of the one that is shown.
-fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
-    let shown = studio.shown().map_or_else(|| skin.say("shell.no_session"), AnyDevice::name);
+fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+    let shown = studio.shown().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
     let text = RichText::new(format!("{}  {}", shortened(&shown, most), icons::CARET_DOWN))
-        .font(skin.strong(skin.sizes.section));
+        .font(theme.strong(theme.sizes.section));
     let menu = ui.menu_button(text, |ui| {
         ui.set_width(320.0);
-        ui.label(skin.caption(skin.say("shell.sessions")));
+        ui.label(theme.caption(theme.say("shell.sessions")));
         for device in studio.devices() {
             ui.horizontal(|ui| {
-                phase_dot(ui, skin, device.as_ref());
+                phase_dot(ui, theme, device.as_ref());
                 let is_shown = studio.shown().is_some_and(|own| own.id() == device.id());
                 if ui.selectable_label(is_shown, device.name()).clicked() {
                     actions.push(Action::Select(device.id()));
                     ui.close();
                 }
                 if device.is_dirty() {
-                    ui.label(RichText::new(icons::PENCIL_SIMPLE).color(skin.palette.staged));
+                    ui.label(RichText::new(icons::PENCIL_SIMPLE).color(theme.palette.staged));
                 }
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if icon_button(ui, true, icons::X, &skin.say("shell.close_session")).clicked() {
+                    if icon_button(ui, true, icons::X, &theme.say("shell.close_session")).clicked() {
                         actions.push(Action::CloseSession(device.id()));
                         ui.close();
                     }
@@ -122,12 +122,12 @@ fn sessions(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>
             });
         }
         ui.separator();
-        if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
+        if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
             actions.push(Action::Connect(connect::Action::Open));
             ui.close();
         }
     });
-    name(menu.response, true, &skin.say("shell.sessions"));
+    name(menu.response, true, &theme.say("shell.sessions"));
 }
 
 /// A name that leaves room for the rest of the header. Of a device the serial number stays: it tells two of a kind apart.
@@ -144,8 +144,8 @@ fn shortened(name: &str, most: usize) -> String {
     }
 }
 
-fn phase_dot(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
-    let palette = skin.palette;
+fn phase_dot(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
+    let palette = theme.palette;
     let (filled, colour) = match device.phase() {
         Phase::Connected => (true, palette.good),
         Phase::Opening => (false, palette.accent),
@@ -156,12 +156,12 @@ fn phase_dot(ui: &mut Ui, skin: &Skin, device: &AnyDevice) {
 }
 
 /// *virtual*, *offline*, *connected*, *moving*, *lost*: each with a word.
-fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice, motion: Option<Text>) {
-    let palette = skin.palette;
+fn status(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) {
+    let palette = theme.palette;
     if device.is_virtual() {
-        badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
+        badge(ui, theme, &theme.say("shell.virtual"), palette.warn);
     }
-    phase_dot(ui, skin, device);
+    phase_dot(ui, theme, device);
     let (text, colour) = match (device.phase(), motion) {
         (Phase::Connected, Some(motion)) => (motion, palette.bad),
         (Phase::Connected, None) if device.is_writing() => (Text::new("shell.writing"), palette.accent),
@@ -172,7 +172,7 @@ fn status(ui: &mut Ui, skin: &Skin, device: &AnyDevice, motion: Option<Text>) {
         (Phase::Offline, _) if is_read_only(device) => (Text::new("shell.read_only"), palette.warn),
         (Phase::Offline, _) => (Text::new("shell.offline"), palette.muted),
     };
-    ui.label(RichText::new(skin.words(&text)).color(colour));
+    ui.label(RichText::new(theme.words(&text)).color(colour));
 }
 
 /// A profile of a newer schema, which is neither saved nor written.
@@ -180,11 +180,11 @@ fn is_read_only(device: &AnyDevice) -> bool {
     matches!(device.source(), Source::File { document, .. } if document.is_newer())
 }
 
-fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let Some(device) = studio.shown() else { return };
     let words = device.place();
-    let label = egui::Label::new(skin.mono(&words).color(skin.palette.muted)).truncate().sense(egui::Sense::click());
-    let hint = format!("{words}\n{}", skin.say("shell.copy_link"));
+    let label = egui::Label::new(theme.mono(&words).color(theme.palette.muted)).truncate().sense(egui::Sense::click());
+    let hint = format!("{words}\n{}", theme.say("shell.copy_link"));
     if ui.add(label).on_hover_text(hint).clicked() {
         ui.copy_text(words);
     }
@@ -192,17 +192,17 @@ fn link(ui: &mut Ui, skin: &Skin, studio: &Studio) {
 
 /// STOP ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide; while one moves
 /// by this window it counts when it is pressed, not when it is let go, and ends nothing but motion.
-fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     // What somebody else moves cannot be stopped from here: that is no reason to let a job run on.
     let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
     let active = moves || studio.can_stop() || studio.is_in_control();
     let (word, hint) = if studio.has_drives() {
-        (skin.say("hd_bar.stop"), skin.say("hd_bar.stop_hint"))
+        (theme.say("hd_bar.stop"), theme.say("hd_bar.stop_hint"))
     } else {
-        (skin.say("shell.stop"), skin.say("shell.stop_hint"))
+        (theme.say("shell.stop"), theme.say("shell.stop_hint"))
     };
     let text = format!("{}  {word}", icons::STOP);
-    let palette = skin.palette;
+    let palette = theme.palette;
     let stop = if active {
         egui::Button::new(RichText::new(text).color(palette.on_bad)).fill(palette.bad).stroke(Stroke::NONE)
     } else {
@@ -221,13 +221,13 @@ fn stop(ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
 }
 
 /// STOP over whatever stands over the window, while a drive moves: where it always is.
-pub(super) fn stop_over_ui(ctx: &egui::Context, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+pub(super) fn stop_over_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     if !studio.moves() || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;
     }
     let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_place())) else { return };
     let area = egui::Area::new(egui::Id::unique("stop over dialogs")).order(egui::Order::Tooltip).fixed_pos(place);
-    area.constrain(false).show(ctx, |ui| ui.horizontal(|ui| stop(ui, skin, studio, actions)));
+    area.constrain(false).show(ctx, |ui| ui.horizontal(|ui| stop(ui, theme, studio, actions)));
 }
 
 fn stop_place() -> egui::Id {
@@ -235,18 +235,18 @@ fn stop_place() -> egui::Id {
 }
 
 /// The notice that stands in the window: a strip that covers nothing, and is closed by a click.
-pub(super) fn notice_ui(ui: &mut Ui, skin: &Skin, notice: &Notice, actions: &mut Vec<Action>) {
-    let (icon, colour) = severity(skin, notice.severity);
+pub(super) fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice, actions: &mut Vec<Action>) {
+    let (icon, colour) = severity(theme, notice.severity);
     let strip = egui::UiBuilder::new().sense(egui::Sense::click());
     let response = ui.scope_builder(strip, |ui| {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, true, icons::X, &skin.say("shell.dismiss")).clicked() {
+            if icon_button(ui, true, icons::X, &theme.say("shell.dismiss")).clicked() {
                 actions.push(Action::Dismiss);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.label(RichText::new(icon).size(skin.sizes.section).color(colour));
-                let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
-                let about = notice.whose(|text| skin.words(text));
+                ui.label(RichText::new(icon).size(theme.sizes.section).color(colour));
+                let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
+                let about = notice.whose(|text| theme.words(text));
                 ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(false));
             });
         });

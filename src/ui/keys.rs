@@ -3,7 +3,7 @@
 
 use egui::{Context, Event, Key};
 
-use super::stopping;
+use super::stop_debounce;
 use super::widgets::{has_hold_button_keyboard, is_hold_button_held};
 use crate::app::{FreshKeys, PressKey};
 
@@ -30,7 +30,7 @@ impl Keys {
         let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
         // Enter ends what is typed into an entry, and presses nothing there.
         let typing = ctx.text_edit_focused();
-        let space_stops = !for_hold_button && (moves || stopping::has_just_stopped(ctx, now));
+        let space_stops = !for_hold_button && (moves || stop_debounce::has_just_stopped(ctx, now));
         let fresh = &mut self.fresh;
         let mut stops = false;
         let mut passes = |event: &Event| match event {
@@ -71,7 +71,7 @@ impl Keys {
             ctx.request_repaint_after_secs(seconds as f32);
         }
         if stops {
-            stopping::means_motion(ctx, true, now);
+            stop_debounce::means_motion(ctx, true, now);
         }
         stops
     }

@@ -2,20 +2,20 @@
 
 use egui::{Button, Ui};
 
-use super::Skin;
+use super::Theme;
 use super::controls::{card, name, paragraph};
 
 /// Revolutions a minute to choose from.
 const SPEEDS: [f64; 5] = [-60.0, -6.0, 0.0, 6.0, 60.0];
 
 /// Draws the card; `turn` is told the speed that is wished, in revolutions a minute.
-pub(crate) fn card_ui(ui: &mut Ui, skin: &Skin, now: f64, mut turn: impl FnMut(f64)) {
-    card(ui, skin, "motor_card.title", |ui| {
-        paragraph(ui, skin.caption(skin.say("motor_card.words")));
+pub(crate) fn card_ui(ui: &mut Ui, theme: &Theme, now: f64, mut turn: impl FnMut(f64)) {
+    card(ui, theme, "motor_card.title", |ui| {
+        paragraph(ui, theme.caption(theme.say("motor_card.words")));
         ui.horizontal_wrapped(|ui| {
             for rpm in SPEEDS {
                 let is_own = (now - rpm).abs() < 1e-9;
-                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
+                let word = if rpm == 0.0 { theme.say("motor_card.rest") } else { format!("{rpm:+.0}") };
                 let response = ui.add(Button::selectable(is_own, &word));
                 if name(response, true, &word).clicked() {
                     turn(rpm);

@@ -6,49 +6,49 @@ use super::controls::{icon_button, name};
 use super::device_view::PageInfo;
 use super::docks::Docks;
 use super::views::shown_in;
-use super::{Skin, Views, icons};
+use super::{Theme, Views, icons};
 use crate::app::{Action, Studio};
 
 /// The tabs, with the pages of the open one.
 pub(super) fn navigation_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     studio: &Studio,
     views: &mut Views,
     docks: &mut Docks,
     actions: &mut Vec<Action>,
 ) {
-    ui.spacing_mut().item_spacing.y = skin.space.inside;
+    ui.spacing_mut().item_spacing.y = theme.space.inside;
     for tab in views.tabs.tabs() {
-        let word = views.tabs.title(skin, tab);
-        let text = egui::RichText::new(&word).font(skin.strong(skin.sizes.body));
+        let word = views.tabs.title(theme, tab);
+        let text = egui::RichText::new(&word).font(theme.strong(theme.sizes.body));
         if entry(ui, false, text, &word).clicked() {
             views.plot.make_small();
             actions.push(Action::ShowTab(tab));
         }
         if tab == studio.settings.tab {
-            open_pages(ui, skin, studio, views);
+            open_pages(ui, theme, studio, views);
         }
     }
     // At the foot, so that it is drawn wherever the rest ends.
     let foot = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
     let mut foot = ui.new_child(egui::UiBuilder::new().max_rect(foot));
-    if icon_button(&mut foot, true, icons::ARROWS_CLOCKWISE, &skin.say("shell.reset_layout")).clicked() {
+    if icon_button(&mut foot, true, icons::ARROWS_CLOCKWISE, &theme.say("shell.reset_layout")).clicked() {
         docks.reset();
     }
 }
 
 /// The pages of the open tab, where it shows something.
-fn open_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
+fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let tab = studio.settings.tab;
     let pages = views.tabs.pages(tab);
     let pressed = if let Some(tool) = views.tool(tab) {
-        let pressed = pages_ui(ui, skin, &pages, tool.page(), |_| false);
+        let pressed = pages_ui(ui, theme, &pages, tool.page(), |_| false);
         pressed.inspect(|page| tool.open(*page))
     } else {
         let Some(device) = shown_in(studio, tab) else { return };
         let Some(session) = views.session(device) else { return };
-        let pressed = pages_ui(ui, skin, &pages, session.page(), |page| session.is_edited(device, page));
+        let pressed = pages_ui(ui, theme, &pages, session.page(), |page| session.is_edited(device, page));
         pressed.inspect(|page| session.open(*page))
     };
     if pressed.is_some() {
@@ -60,17 +60,17 @@ fn open_pages(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views) {
 /// `edited` names.
 fn pages_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     pages: &[PageInfo],
     shown: usize,
     edited: impl Fn(usize) -> bool,
 ) -> Option<usize> {
     let mut pressed = None;
     for (at, page) in pages.iter().enumerate() {
-        let word = skin.say(page.word);
+        let word = theme.say(page.word);
         let mut text = egui::RichText::new(format!("{}  {word}", page.icon));
         if edited(at) {
-            text = text.color(skin.palette.staged);
+            text = text.color(theme.palette.staged);
         }
         if entry(ui, shown == at, text, &word).clicked() {
             pressed = Some(at);

@@ -2,7 +2,7 @@
 
 use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 
-use super::Skin;
+use super::Theme;
 
 /// Width below which a page keeps less room at its sides.
 const NARROW: f32 = 720.0;
@@ -10,20 +10,20 @@ const NARROW: f32 = 720.0;
 const ABOVE: i8 = 16;
 
 /// The room at the sides of a page.
-pub(crate) fn sides(ui: &Ui, skin: &Skin) -> i8 {
+pub(crate) fn sides(ui: &Ui, theme: &Theme) -> i8 {
     let narrow = ui.available_width() < NARROW;
-    (if narrow { skin.space.groups } else { skin.space.around }) as i8
+    (if narrow { theme.space.groups } else { theme.space.around }) as i8
 }
 
 /// The room around a page.
-pub(crate) fn around(ui: &Ui, skin: &Skin) -> Margin {
-    let sides = sides(ui, skin);
+pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
+    let sides = sides(ui, theme);
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }
 }
 
 /// A page that scrolls as a whole; `id` tells it from the others.
-pub fn scrolling(ui: &mut Ui, skin: &Skin, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
-    let frame = Frame::NONE.inner_margin(around(ui, skin));
+pub fn scrolling(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
+    let frame = Frame::NONE.inner_margin(around(ui, theme));
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| frame.show(ui, content));
 }
 

@@ -8,100 +8,106 @@ use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 
 use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
 use super::page::apart;
-use super::{Skin, icons};
-use crate::app::review::{ChangeWords, Manner, OpWords, Question, Sheet, Stage, Toggle};
+use super::{Theme, icons};
+use crate::app::review::{ChangeWords, Manner, OpWords, Question, ReviewSheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 /// Draws the dialog, where a write is on its way.
-pub(super) fn review_ui(ctx: &egui::Context, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let Some(sheet) = device.sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
     // As many operations as there is room for beside all that is said of them.
     let room = (ctx.content_rect().height() - REST).clamp(LEAST, MOST);
-    modal(ctx, skin, "review", width, |ui| {
-        ui.label(skin.heading(skin.words(&sheet.what)));
-        ui.label(skin.label(device.name()));
-        ui.add_space(skin.space.between);
+    modal(ctx, theme, "review", width, |ui| {
+        ui.label(theme.heading(theme.words(&sheet.what)));
+        ui.label(theme.label(device.name()));
+        ui.add_space(theme.space.between);
         // The keyboard on a button of one stage is on none of the next: no key that cancels there writes here.
-        apart(ui, std::mem::discriminant(&sheet.stage), |ui| content(ui, skin, device, (&sheet, room), actions));
+        apart(ui, std::mem::discriminant(&sheet.stage), |ui| content(ui, theme, device, (&sheet, room), actions));
     });
 }
 
-fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet, f32), actions: &mut Vec<Action>) {
+fn content(
+    ui: &mut Ui,
+    theme: &Theme,
+    device: &AnyDevice,
+    (sheet, room): (&ReviewSheet, f32),
+    actions: &mut Vec<Action>,
+) {
     match &sheet.stage {
         Stage::Planning => {
             ui.horizontal(|ui| {
-                spinner(ui, skin);
-                ui.label(skin.label(skin.say("review.planning")));
+                spinner(ui, theme);
+                ui.label(theme.label(theme.say("review.planning")));
             });
-            buttons(ui, skin, device, actions, "review.cancel", |_, _| {});
+            buttons(ui, theme, device, actions, "review.cancel", |_, _| {});
         }
         Stage::Nothing => {
             ui.horizontal(|ui| {
                 // What was answered with *leave* differs still.
                 let (icon, colour, words) = if sheet.questions.is_empty() {
-                    (icons::CHECK_CIRCLE, skin.palette.good, "review.nothing")
+                    (icons::CHECK_CIRCLE, theme.palette.good, "review.nothing")
                 } else {
-                    (icons::INFO, skin.palette.accent, "review.nothing_so")
+                    (icons::INFO, theme.palette.accent, "review.nothing_so")
                 };
                 ui.label(RichText::new(icon).color(colour));
-                ui.label(skin.say(words));
+                ui.label(theme.say(words));
             });
-            remarks(ui, skin, sheet);
-            options(ui, skin, device, sheet, actions);
-            buttons(ui, skin, device, actions, "review.close", |_, _| {});
+            remarks(ui, theme, sheet);
+            options(ui, theme, device, sheet, actions);
+            buttons(ui, theme, device, actions, "review.close", |_, _| {});
         }
         Stage::Ready(plan) => {
-            operations(ui, skin, (&sheet.lines, room), None);
-            remarks(ui, skin, sheet);
-            options(ui, skin, device, sheet, actions);
-            ui.label(skin.label(skin.say(sheet.manner.way())));
-            buttons(ui, skin, device, actions, "review.cancel", |ui, actions| {
+            operations(ui, theme, (&sheet.lines, room), None);
+            remarks(ui, theme, sheet);
+            options(ui, theme, device, sheet, actions);
+            ui.label(theme.label(theme.say(sheet.manner.way())));
+            buttons(ui, theme, device, actions, "review.cancel", |ui, actions| {
                 let icon = if sheet.manner == Manner::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
                 // Without the permit it would be refused.
                 let may_wear = sheet.force_wear != Some(false);
-                if primary(ui, skin, device.is_ready() && may_wear, icon, &skin.say(sheet.manner.word())).clicked() {
+                if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.manner.word())).clicked() {
                     actions.push(Action::Review(device.id(), ReviewAction::Write(*plan)));
                 }
             });
         }
         Stage::Writing(done) => {
-            operations(ui, skin, (&sheet.lines, room), Some(*done));
+            operations(ui, theme, (&sheet.lines, room), Some(*done));
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
-            redo(ui, skin, sheet);
+            redo(ui, theme, sheet);
             let stopping = device.running().is_some_and(|running| running.stopping);
             at_the_right(ui, |ui| {
-                let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+                let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
                 if enabled_button(ui, !stopping, icons::X, &word).clicked() {
                     actions.push(Action::Stop);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    paragraph(ui, skin.label(skin.say("review.writing")));
+                    paragraph(ui, theme.label(theme.say("review.writing")));
                 });
             });
         }
         Stage::Done { verified, backup, logbook } => {
-            operations(ui, skin, (&sheet.lines, room), Some(usize::MAX));
+            operations(ui, theme, (&sheet.lines, room), Some(usize::MAX));
             ui.horizontal(|ui| {
-                ui.label(RichText::new(icons::CHECK_CIRCLE).size(skin.sizes.section).color(skin.palette.good));
-                ui.label(skin.words(verified));
+                ui.label(RichText::new(icons::CHECK_CIRCLE).size(theme.sizes.section).color(theme.palette.good));
+                ui.label(theme.words(verified));
             });
-            redo(ui, skin, sheet);
+            redo(ui, theme, sheet);
             if let Some(backup) = backup {
-                row(ui, skin, &skin.say("review.backup"), skin.mono(backup.display().to_string()));
+                row(ui, theme, &theme.say("review.backup"), theme.mono(backup.display().to_string()));
             }
             if let Some(why) = logbook {
-                remark(ui, icons::WARNING, skin.palette.warn, &skin.words(why));
+                remark(ui, icons::WARNING, theme.palette.warn, &theme.words(why));
             }
-            buttons(ui, skin, device, actions, "review.close", |_, _| {});
+            buttons(ui, theme, device, actions, "review.close", |_, _| {});
         }
         Stage::Failed { texts, begun, done } => {
             if !sheet.lines.is_empty() {
-                operations(ui, skin, (&sheet.lines, room), Some(*done));
+                operations(ui, theme, (&sheet.lines, room), Some(*done));
             }
             let (icon, colour) =
-                if *begun { (icons::WARNING, skin.palette.warn) } else { (icons::X_CIRCLE, skin.palette.bad) };
+                if *begun { (icons::WARNING, theme.palette.warn) } else { (icons::X_CIRCLE, theme.palette.bad) };
             let mut indent = 0.0;
             for (at, text) in texts.iter().enumerate() {
                 ui.horizontal_top(|ui| {
@@ -110,37 +116,37 @@ fn content(ui: &mut Ui, skin: &Skin, device: &AnyDevice, (sheet, room): (&Sheet,
                     } else {
                         ui.add_space(indent);
                     }
-                    ui.add(egui::Label::new(skin.words(text)).wrap().selectable(true));
+                    ui.add(egui::Label::new(theme.words(text)).wrap().selectable(true));
                 });
             }
-            redo(ui, skin, sheet);
-            options(ui, skin, device, sheet, actions);
-            buttons(ui, skin, device, actions, "review.close", |_, _| {});
+            redo(ui, theme, sheet);
+            options(ui, theme, device, sheet, actions);
+            buttons(ui, theme, device, actions, "review.close", |_, _| {});
         }
     }
 }
 
 fn buttons(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     device: &AnyDevice,
     actions: &mut Vec<Action>,
     close: &'static str,
     primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
 ) {
-    ui.add_space(skin.space.groups);
+    ui.add_space(theme.space.groups);
     at_the_right(ui, |ui| {
         primary(ui, actions);
-        if enabled_button(ui, true, "", &skin.say(close)).clicked() {
+        if enabled_button(ui, true, "", &theme.say(close)).clicked() {
             actions.push(Action::Review(device.id(), ReviewAction::Close));
         }
     });
 }
 
 /// The operations; while they are carried out, with the number of those that are done. What is written is never cut off.
-fn operations(ui: &mut Ui, skin: &Skin, (lines, room): (&[OpWords], f32), done: Option<usize>) {
-    let palette = skin.palette;
-    skin.sunken().show(ui, |ui| {
+fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done: Option<usize>) {
+    let palette = theme.palette;
+    theme.sunken().show(ui, |ui| {
         ScrollArea::vertical().id_salt("operations").max_height(room).auto_shrink([false, true]).show(ui, |ui| {
             for (at, line) in lines.iter().enumerate() {
                 if at > 0 {
@@ -151,9 +157,9 @@ fn operations(ui: &mut Ui, skin: &Skin, (lines, room): (&[OpWords], f32), done: 
                 let ink = if is_done { palette.good } else { palette.staged };
                 let (icon, colour) =
                     if is_done { (icons::CHECK, palette.good) } else { (icons::PENCIL_SIMPLE, palette.muted) };
-                let item = skin.words(&line.item);
+                let item = theme.words(&line.item);
                 let short = match line.changes.as_slice() {
-                    [change] if change.part.is_none() => short(ui, skin, &item, change, ink),
+                    [change] if change.part.is_none() => short(ui, theme, &item, change, ink),
                     _ => None,
                 };
                 ui.horizontal(|ui| {
@@ -173,49 +179,49 @@ fn operations(ui: &mut Ui, skin: &Skin, (lines, room): (&[OpWords], f32), done: 
                 } else {
                     ["review.old", "review.new"]
                 };
-                line.changes.iter().for_each(|change| change_ui(ui, skin, change, heads, ink));
+                line.changes.iter().for_each(|change| change_ui(ui, theme, change, heads, ink));
             }
         });
     });
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.between);
 }
 
 /// What is there and what will be, on one line: where they have room beside what they are of.
-fn short(ui: &Ui, skin: &Skin, item: &str, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
+fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
-    let font = FontId::monospace(skin.sizes.body);
+    let font = FontId::monospace(theme.sizes.body);
     let parts = [
-        (skin.words(&change.old), skin.palette.muted),
-        ("  →  ".to_owned(), skin.palette.muted),
-        (skin.words(&change.new), ink),
+        (theme.words(&change.old), theme.palette.muted),
+        ("  →  ".to_owned(), theme.palette.muted),
+        (theme.words(&change.new), ink),
     ];
     for (words, ink) in parts {
         job.append(&words, 0.0, TextFormat::simple(font.clone(), ink.into()));
     }
     job.wrap.max_width = f32::INFINITY;
     let galley = ui.painter().layout_job(job);
-    let item = ui.painter().layout_no_wrap(item.to_owned(), FontId::proportional(skin.sizes.body), ink.into());
-    let beside = item.size().x + ICON + skin.space.groups;
+    let item = ui.painter().layout_no_wrap(item.to_owned(), FontId::proportional(theme.sizes.body), ink.into());
+    let beside = item.size().x + ICON + theme.space.groups;
     (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
 /// One thing that changes: what it is, what is there before, and what after it.
-fn change_ui(ui: &mut Ui, skin: &Skin, change: &ChangeWords, heads: [&'static str; 2], ink: Rgb) {
+fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeWords, heads: [&'static str; 2], ink: Rgb) {
     if let Some(part) = &change.part {
         ui.horizontal(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
-            ui.add_space(skin.space.around);
-            ui.label(skin.mono(skin.words(part)));
+            ui.add_space(theme.space.around);
+            ui.label(theme.mono(theme.words(part)));
         });
     }
-    let words = [(&change.old, skin.palette.muted), (&change.new, ink)];
+    let words = [(&change.old, theme.palette.muted), (&change.new, ink)];
     for (head, (words, colour)) in heads.into_iter().zip(words) {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
-            ui.add_space(skin.space.around);
-            let head = ui.label(skin.caption(skin.say(head)));
+            ui.add_space(theme.space.around);
+            let head = ui.label(theme.caption(theme.say(head)));
             ui.add_space((HEADS - head.rect.width()).max(0.0));
-            paragraph(ui, skin.mono(skin.words(words)).color(colour));
+            paragraph(ui, theme.mono(theme.words(words)).color(colour));
         });
     }
 }
@@ -229,27 +235,27 @@ const ICON: f32 = 24.0;
 /// Width of the column that says which is old and which is new.
 const HEADS: f32 = 56.0;
 
-fn remarks(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
-    let palette = skin.palette;
-    redo(ui, skin, sheet);
+fn remarks(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
+    let palette = theme.palette;
+    redo(ui, theme, sheet);
     for text in &sheet.warnings {
-        remark(ui, icons::WARNING, palette.warn, &skin.words(text));
+        remark(ui, icons::WARNING, palette.warn, &theme.words(text));
     }
     for text in &sheet.needs {
-        remark(ui, icons::INFO, palette.accent, &skin.words(text));
+        remark(ui, icons::INFO, palette.accent, &theme.words(text));
     }
     if let Some(cost) = &sheet.cost {
-        remark(ui, icons::MEMORY, palette.muted, &skin.words(cost));
+        remark(ui, icons::MEMORY, palette.muted, &theme.words(cost));
     }
 }
 
 /// What has to be set up anew: in red, wherever the operations stand.
-fn redo(ui: &mut Ui, skin: &Skin, sheet: &Sheet) {
+fn redo(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let Some(text) = &sheet.redo else { return };
-    let colour = skin.palette.bad;
+    let colour = theme.palette.bad;
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::WARNING).color(colour));
-        paragraph(ui, RichText::new(skin.words(text)).color(colour));
+        paragraph(ui, RichText::new(theme.words(text)).color(colour));
     });
 }
 
@@ -261,12 +267,12 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
 }
 
 /// A question with its two answers; what it is about stands in front of them.
-fn question_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
-    remark(ui, icons::WARNING, skin.palette.warn, &skin.words(&question.what));
+fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
+    remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.what));
     ui.horizontal(|ui| {
         ui.add_space(ICON);
         for (is_on, word) in [(false, &question.no), (true, &question.yes)] {
-            if ui.radio(question.is_on == is_on, skin.words(word)).clicked() && question.is_on != is_on {
+            if ui.radio(question.is_on == is_on, theme.words(word)).clicked() && question.is_on != is_on {
                 actions.push(Action::Review(device.id(), ReviewAction::Toggle(question.permit)));
             }
         }
@@ -274,17 +280,17 @@ fn question_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, question: &Question
 }
 
 /// What may be allowed beyond the usual, and writing although the device counts as worn.
-fn options(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions: &mut Vec<Action>) {
+fn options(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewSheet, actions: &mut Vec<Action>) {
     if !sheet.toggles.is_empty() {
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
     }
     for question in &sheet.questions {
-        question_ui(ui, skin, device, question, actions);
+        question_ui(ui, theme, device, question, actions);
     }
     for Toggle { permit, mut is_on } in sheet.toggles.iter().copied() {
-        let mut response = ui.checkbox(&mut is_on, skin.say(permit.word()));
+        let mut response = ui.checkbox(&mut is_on, theme.say(permit.word()));
         if let Some(hint) = permit.hint() {
-            response = response.on_hover_text(skin.say(hint));
+            response = response.on_hover_text(theme.say(hint));
         }
         if response.changed() {
             actions.push(Action::Review(device.id(), ReviewAction::Toggle(permit)));
@@ -292,7 +298,7 @@ fn options(ui: &mut Ui, skin: &Skin, device: &AnyDevice, sheet: &Sheet, actions:
     }
     let force_wear = if sheet.is_uncounted { "review.force_uncounted" } else { "review.force_wear" };
     if let Some(mut force) = sheet.force_wear
-        && ui.checkbox(&mut force, skin.say(force_wear)).changed()
+        && ui.checkbox(&mut force, theme.say(force_wear)).changed()
     {
         actions.push(Action::Review(device.id(), ReviewAction::ForceWear(force)));
     }

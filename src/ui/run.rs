@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::{TabViews, Window, end, install_fonts};
-use crate::app::{Kinds, Look, Studio, Wake, World, explain};
+use crate::app::{Kinds, Studio, ThemeData, Wake, World, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
@@ -19,7 +19,7 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
     }
     let store = Store::for_user().map_err(|error| explain::store(&error).terminal())?;
     let log = LogFile::begin(&store.log_path());
-    let look = Look::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
+    let look = ThemeData::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
     // The window exists only after the studio: until then nobody has to be woken.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
     let waker = context.clone();
@@ -48,7 +48,7 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
         Box::new(move |cc| {
             install_fonts(&cc.egui_ctx);
             let _ = context.set(cc.egui_ctx.clone());
-            Ok(Box::new(Shown { window: Window::new(studio, look, tabs), began: Some(began) }))
+            Ok(Box::new(StudioApp { window: Window::new(studio, look, tabs), began: Some(began) }))
         }),
     );
     let result = result.map_err(|error| {
@@ -63,13 +63,13 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
 }
 
 /// The window as eframe runs it.
-pub(crate) struct Shown {
+pub(crate) struct StudioApp {
     window: Window,
     /// When the program began, until its first picture has been shown.
     began: Option<Instant>,
 }
 
-impl eframe::App for Shown {
+impl eframe::App for StudioApp {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.window.logic(ctx);
     }

@@ -17,7 +17,7 @@ pub struct Views {
     pub(super) about: bool,
     pub(super) help: bool,
     /// The plot of the encoder that is shown.
-    pub(super) plot: plot::View,
+    pub(super) plot: plot::PlotUiState,
     /// Microseconds from one reading of the position to the next.
     pub(super) rate: u64,
 }
@@ -33,7 +33,7 @@ impl Views {
             file: None,
             about: false,
             help: false,
-            plot: plot::View::in_panel(),
+            plot: plot::PlotUiState::in_panel(),
             rate: 50_000,
         }
     }

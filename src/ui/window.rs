@@ -11,8 +11,8 @@ use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Skin, Views, header, review, stopping};
-use crate::app::{Action, AnyDevice, DeviceCommand, Look, Studio};
+use super::{Theme, Views, header, review, stop_debounce};
+use crate::app::{Action, AnyDevice, DeviceCommand, Studio, ThemeData};
 
 /// The window.
 pub struct Window {
@@ -22,8 +22,8 @@ pub struct Window {
     keys: Keys,
     /// In this picture it was heard already that the window is to close.
     close_heard: bool,
-    look: &'static Look,
-    dressed: Option<crate::app::Theme>,
+    look: &'static ThemeData,
+    dressed: Option<crate::app::ColorScheme>,
     /// Which notice stands, and since when on the window's clock.
     notice_since: Option<(jiff::Zoned, f64)>,
 }
@@ -34,7 +34,7 @@ const TAB_KEYS: [Key; 9] =
 
 impl Window {
     /// A window on a studio, with these tabs.
-    pub fn new(studio: Studio, look: &'static Look, tabs: TabViews) -> Self {
+    pub fn new(studio: Studio, look: &'static ThemeData, tabs: TabViews) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views::new(tabs);
         Window { studio, views, docks, keys: Keys::new(), close_heard: false, look, dressed: None, notice_since: None }
@@ -52,13 +52,13 @@ impl Window {
         let mut actions = Vec::new();
         self.take_input(&ctx, &mut actions);
         let in_use = egui::Popup::is_any_open(&ctx) || ctx.dragged_id().is_some();
-        let skin = Skin::new(self.look, self.studio.settings.theme, self.studio.settings.language);
+        let theme = Theme::new(self.look, self.studio.settings.theme, self.studio.settings.language);
         if self.dressed.replace(self.studio.settings.theme) != Some(self.studio.settings.theme) {
-            skin.dress(&ctx);
+            theme.dress(&ctx);
         }
-        self.shell(ui, &skin, &mut actions);
-        self.dialogs(&ctx, &skin, &mut actions);
-        header::stop_over_ui(&ctx, &skin, &self.studio, &mut actions);
+        self.shell(ui, &theme, &mut actions);
+        self.dialogs(&ctx, &theme, &mut actions);
+        header::stop_over_ui(&ctx, &theme, &self.studio, &mut actions);
         self.take_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
             // What they change is to be seen.
@@ -68,7 +68,7 @@ impl Window {
             self.studio.act(action);
         }
         if let Some(question) = self.studio.take_file_question() {
-            dialogs::ask(question, &skin, self.studio.mailbox());
+            dialogs::ask(question, &theme, self.studio.mailbox());
         }
         if let Some(question) = self.studio.take_path_question() {
             self.type_path(question);
@@ -80,59 +80,59 @@ impl Window {
         self.views.file = Some(FileView::new(question, self.studio.folders()));
     }
 
-    fn shell(&mut self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+    fn shell(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         let flat = |fill: crate::app::Rgb| egui::Frame::NONE.fill(fill.into());
-        let palette = skin.palette;
+        let palette = theme.palette;
         let Window { studio, views, .. } = self;
         Panel::top("header")
             .exact_size(48.0)
             .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
-            .show(ui, |ui| header::header_ui(ui, skin, studio, views, actions));
-        writing_bar(ui, skin, studio);
-        moving_edge(ui, skin, studio);
-        self.notice(ui, skin, actions);
+            .show(ui, |ui| header::header_ui(ui, theme, studio, views, actions));
+        writing_bar(ui, theme, studio);
+        moving_edge(ui, theme, studio);
+        self.notice(ui, theme, actions);
         let Window { studio, views, docks, .. } = self;
         Panel::left("navigation")
             .exact_size(if ui.available_width() < 1000.0 { 140.0 } else { 148.0 })
             .frame(flat(palette.surface).inner_margin(8))
             .show(ui, |ui| {
-                apart(ui, "entries", |ui| navigation_ui(ui, skin, studio, views, docks, actions));
+                apart(ui, "entries", |ui| navigation_ui(ui, theme, studio, views, docks, actions));
             });
         egui::CentralPanel::default().frame(flat(palette.surface)).show(ui, |ui| {
-            docks.ui(ui, skin, studio, views, actions);
+            docks.ui(ui, theme, studio, views, actions);
         });
         if let Some(layout) = docks.changed() {
             actions.push(Action::KeepLayout(layout));
         }
     }
 
-    fn dialogs(&mut self, ctx: &egui::Context, skin: &Skin, actions: &mut Vec<Action>) {
+    fn dialogs(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if let Some(device) = self.studio.shown() {
-            review::review_ui(ctx, skin, device, actions);
+            review::review_ui(ctx, theme, device, actions);
         }
         let forms = (self.views.tabs, &mut self.views.connect);
-        dialogs::connect_ui(ctx, skin, &self.studio, forms, actions);
+        dialogs::connect_ui(ctx, theme, &self.studio, forms, actions);
         if let Some(file) = &mut self.views.file
-            && dialogs::file_ui(ctx, skin, file, actions)
+            && dialogs::file_ui(ctx, theme, file, actions)
         {
             self.views.file = None;
         }
-        if self.views.about && dialogs::about_ui(ctx, skin) {
+        if self.views.about && dialogs::about_ui(ctx, theme) {
             self.views.about = false;
         }
         if self.views.help
             && let Some(page) = self.views.page(&self.studio)
-            && dialogs::help_ui(ctx, skin, (page.word, page.help))
+            && dialogs::help_ui(ctx, theme, (page.word, page.help))
         {
             self.views.help = false;
         }
-        dialogs::diverged_ui(ctx, skin, &self.studio, actions);
-        dialogs::question_ui(ctx, skin, &self.studio, actions);
+        dialogs::diverged_ui(ctx, theme, &self.studio, actions);
+        dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
     /// The standing notice, at the foot and over nothing. What somebody has to act upon waits to be closed, the rest goes
     /// by itself.
-    fn notice(&mut self, ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+    fn notice(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         let Some(notice) = self.studio.services.log.standing() else {
             self.notice_since = None;
             return;
@@ -144,9 +144,9 @@ impl Window {
         };
         self.notice_since = Some((notice.at.clone(), since));
         let margin = egui::Margin { left: 12, right: 12, top: 6, bottom: 6 };
-        let frame = egui::Frame::NONE.fill(skin.palette.raised.into()).inner_margin(margin);
-        let strip = Panel::bottom("notice").frame(frame).show(ui, |ui| header::notice_ui(ui, skin, notice, actions));
-        let (_, colour) = super::controls::severity(skin, notice.severity);
+        let frame = egui::Frame::NONE.fill(theme.palette.raised.into()).inner_margin(margin);
+        let strip = Panel::bottom("notice").frame(frame).show(ui, |ui| header::notice_ui(ui, theme, notice, actions));
+        let (_, colour) = super::controls::severity(theme, notice.severity);
         let place = strip.response.rect;
         ui.painter().hline(place.x_range(), place.top(), egui::Stroke::new(2.0, colour));
         match notice.severity.stands_for(Duration::from_secs_f64(now - since)) {
@@ -259,17 +259,17 @@ impl Window {
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // Whoever presses it while a drive moves by this window means the machine, whatever else is open or dragged.
         let moves = self.studio.moves_by_hand();
-        let goes_down = stopping::escape_goes_down(ctx);
+        let goes_down = stop_debounce::escape_goes_down(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if !is_pressed && goes_down && moves {
             // With Ctrl or Alt it closes nothing, and stops all the same.
-            stopping::means_motion(ctx, true, ctx.input(|input| input.time));
+            stop_debounce::means_motion(ctx, true, ctx.input(|input| input.time));
             actions.push(Action::StopMotion);
         }
         if !is_pressed || (in_use || !goes_down) && !moves {
             return;
         }
-        let means_motion = stopping::means_motion(ctx, moves, ctx.input(|input| input.time));
+        let means_motion = stop_debounce::means_motion(ctx, moves, ctx.input(|input| input.time));
         // A held key stops what has begun since it went down, and nothing else. A further press within the half second means
         // no more than motion either: also what was asked for in this very picture and does not move yet.
         if !goes_down || means_motion && !moves {
@@ -310,16 +310,16 @@ impl Window {
 }
 
 /// While a drive moves, the header has a red edge.
-fn moving_edge(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+fn moving_edge(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if studio.moves() {
         let screen = ui.ctx().content_rect();
         let edge = egui::Rect::from_min_size(screen.min + egui::vec2(0.0, 45.0), egui::vec2(screen.width(), 3.0));
-        ui.ctx().debug_painter().rect_filled(edge, 0.0, skin.palette.bad);
+        ui.ctx().debug_painter().rect_filled(edge, 0.0, theme.palette.bad);
     }
 }
 
 /// While something is written, a bar moves along the top edge.
-fn writing_bar(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+fn writing_bar(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if !studio.devices().iter().any(|device| device.is_writing()) {
         return;
     }
@@ -328,6 +328,6 @@ fn writing_bar(ui: &mut Ui, skin: &Skin, studio: &Studio) {
     let width = screen.width() * 0.25;
     let left = screen.left() + (screen.width() + width) * (time as f32 * 0.6).fract() - width;
     let bar = egui::Rect::from_min_size(egui::pos2(left, screen.top()), egui::vec2(width, 3.0));
-    ui.ctx().debug_painter().rect_filled(bar, 0.0, skin.palette.accent);
+    ui.ctx().debug_painter().rect_filled(bar, 0.0, theme.palette.accent);
     ui.ctx().request_repaint_after(Duration::from_millis(33));
 }

@@ -7,47 +7,47 @@ use super::device_view::DeviceView;
 use super::page::apart;
 use super::panels::plot_ui;
 use super::views::shown_in;
-use super::{Skin, Views, icons};
+use super::{Theme, Views, icons};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, connect};
 
 /// Draws the workspace.
-pub(super) fn workspace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     if views.plot.is_large()
         && let Some(device) = studio.shown()
     {
-        let margin = egui::Margin::same(skin.space.groups as i8);
-        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, skin, device, views, actions));
+        let margin = egui::Margin::same(theme.space.groups as i8);
+        egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, theme, device, views, actions));
         return;
     }
     let tab = studio.settings.tab;
     if let Some(tool) = views.tool(tab) {
-        tool.page_ui(ui, skin, studio, actions);
+        tool.page_ui(ui, theme, studio, actions);
         return;
     }
     let Some(device) = shown_in(studio, tab) else {
-        return nothing(ui, skin, views.tabs.device(tab), actions);
+        return nothing(ui, theme, views.tabs.device(tab), actions);
     };
     let Some(session) = views.session(device) else { return };
-    session.running_ui(ui, skin, device, actions);
-    lost(ui, skin, device, actions);
-    apart(ui, "page", |ui| session.page_ui(ui, skin, (studio, device), actions));
+    session.running_ui(ui, theme, device, actions);
+    lost(ui, theme, device, actions);
+    apart(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
 /// No device is on the desk: the ways to one.
-fn nothing(ui: &mut Ui, skin: &Skin, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
-    if empty(ui, skin, &skin.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &skin.say("shell.connect"), true))) {
+fn nothing(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
+    if empty(ui, theme, &theme.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &theme.say("shell.connect"), true))) {
         actions.push(Action::Connect(connect::Action::Open));
     }
     ui.vertical_centered(|ui| {
-        if button(ui, icons::PLAY, &skin.say("shell.virtual_device")).clicked() {
+        if button(ui, icons::PLAY, &theme.say("shell.virtual_device")).clicked() {
             actions.push(Action::OpenVirtual);
         }
-        if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
             actions.push(Action::AskOpen);
         }
         if let Some(view) = view {
-            view.empty_ui(ui, skin, actions);
+            view.empty_ui(ui, theme, actions);
         }
     });
 }
@@ -55,7 +55,7 @@ fn nothing(ui: &mut Ui, skin: &Skin, view: Option<&dyn DeviceView>, actions: &mu
 /// What runs, how far it is, or what is to be known `instead`, and a way to end it.
 pub(crate) fn running_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     device: &AnyDevice,
     instead: Option<String>,
     actions: &mut Vec<Action>,
@@ -69,24 +69,24 @@ pub(crate) fn running_ui(
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };
     egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
         ui.horizontal(|ui| {
-            spinner(ui, skin);
+            spinner(ui, theme);
             let is_told_below = instead.is_some();
             let words = match &running {
                 _ if is_told_below => instead.unwrap_or_default(),
                 Some(running) => {
-                    let what = skin.words(&running.what);
+                    let what = theme.words(&running.what);
                     match &running.progress {
-                        Some((done, total, doing)) => format!("{what}  {done}/{total}  {}", skin.words(doing)),
+                        Some((done, total, doing)) => format!("{what}  {done}/{total}  {}", theme.words(doing)),
                         None => what,
                     }
                 }
-                None => skin.say("shell.opening"),
+                None => theme.say("shell.opening"),
             };
             // What is pressed stays where it is, however long the words are.
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some(running) = running {
                     let stopping = running.stopping;
-                    let word = skin.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+                    let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
                     if super::controls::enabled_button(ui, !stopping, icons::X, &word).clicked() {
                         actions.push(Action::Stop);
                     }
@@ -96,7 +96,7 @@ pub(crate) fn running_ui(
                     }
                 }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(egui::Label::new(skin.label(words)).truncate());
+                    ui.add(egui::Label::new(theme.label(words)).truncate());
                 });
             });
         });
@@ -104,17 +104,17 @@ pub(crate) fn running_ui(
 }
 
 /// Why there is no connection, and the way back.
-fn lost(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn lost(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let (Phase::Lost(why) | Phase::Silent(why)) = device.phase() else { return };
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };
     egui::Frame::NONE.inner_margin(margin).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::PLUGS).color(skin.palette.bad));
-            paragraph(ui, skin.words(why));
+            ui.label(RichText::new(icons::PLUGS).color(theme.palette.bad));
+            paragraph(ui, theme.words(why));
         });
         ui.horizontal_wrapped(|ui| {
             if device.is_dirty() {
-                ui.label(RichText::new(skin.say("shell.edits_kept")).color(skin.palette.staged));
+                ui.label(RichText::new(theme.say("shell.edits_kept")).color(theme.palette.staged));
             }
             let silent = matches!(device.phase(), Phase::Silent(_));
             if silent
@@ -122,16 +122,16 @@ fn lost(ui: &mut Ui, skin: &Skin, device: &AnyDevice, actions: &mut Vec<Action>)
                     ui,
                     device.is_readable(),
                     icons::ARROW_CLOCKWISE,
-                    &skin.say("memory.read"),
+                    &theme.say("memory.read"),
                 )
                 .clicked()
             {
                 actions.push(device.command(DeviceCommand::Read));
             }
-            if !silent && button(ui, icons::ARROW_CLOCKWISE, &skin.say("shell.reconnect")).clicked() {
+            if !silent && button(ui, icons::ARROW_CLOCKWISE, &theme.say("shell.reconnect")).clicked() {
                 actions.push(device.command(DeviceCommand::Reconnect));
             }
-            if button(ui, icons::PLUGS_CONNECTED, &skin.say("shell.connect")).clicked() {
+            if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
                 actions.push(Action::Connect(connect::Action::Open));
             }
         });

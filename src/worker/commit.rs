@@ -18,7 +18,7 @@ use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome
 
 /// A plan that a person consented to, with what was read for it.
 #[derive(Clone, Debug)]
-pub struct Agreed<P> {
+pub struct ApprovedPlan<P> {
     /// As it was shown.
     pub prepared: P,
     /// The consent to it.
@@ -28,7 +28,7 @@ pub struct Agreed<P> {
 }
 
 /// The before-image is kept, and the logbook has been told.
-struct Intended {
+struct WriteIntent {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
 }
@@ -114,11 +114,11 @@ type Unfinished<P, W, E> =
 pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     store: &Store,
     is_virtual: bool,
-    agreed: &Agreed<P>,
+    agreed: &ApprovedPlan<P>,
     write: &mut W,
     tell: &mut dyn FnMut(Progress<&P::Op>),
 ) -> Result<Committed<W::Written>, Unfinished<P, W, E>> {
-    let Agreed { prepared, consent, force_wear } = agreed;
+    let ApprovedPlan { prepared, consent, force_wear } = agreed;
     let plan = prepared.plan();
     if plan.is_empty() {
         return Ok(Committed::default());
@@ -127,7 +127,7 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), *force_wear)?;
     let confirmed = Confirmed::confirm(plan, *consent, write).ok_or(NotBegun::OtherPlan)?.map_err(JobError::Device)?;
     let items = plan.ops.iter().map(|op| prepared.note(op)).collect::<Vec<_>>().join(", ");
-    let intended = Intended::note(store, &prepared.device(is_virtual), &items, cost, &prepared.before_image());
+    let intended = WriteIntent::note(store, &prepared.device(is_virtual), &items, cost, &prepared.before_image());
     let intended = intended.map_err(NotBegun::NotKept)?;
     if let (Err(why), false) = (&intended.entry, *force_wear || cost == 0) {
         tracing::warn!("{why}");
@@ -198,7 +198,7 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
     }
 }
 
-impl Intended {
+impl WriteIntent {
     /// Keeps the before-image and tells the logbook.
     fn note(store: &Store, device: &DeviceKey, items: &str, cost: u64, before: &str) -> Result<Self, FileError> {
         let backup = store.backups().keep(&device.kind, &device.serial_number, Timestamp::now(), before)?;
@@ -207,7 +207,7 @@ impl Intended {
             Ok((logbook, id))
         };
         let entry = Logbook::open(&store.logbook_path()).and_then(intend);
-        Ok(Intended { backup, entry })
+        Ok(WriteIntent { backup, entry })
     }
 
     /// The before-image, and what the logbook could not take.

@@ -1,6 +1,6 @@
 //! A device that exists in tests alone: it has nothing to say.
 
-use super::{Desk, Device, EndedEarly, Tell, Watched};
+use super::{Device, EndedEarly, SessionContext, Tell, Watched};
 use crate::link::LinkError;
 
 /// The device, which is never asked.
@@ -17,20 +17,20 @@ impl Device for Invented {
     type Job = ();
     type Output = ();
     type Error = ();
-    type Remark = ();
+    type DeviceMessage = ();
     type Sample = ();
     type Watch = ();
-    type Doing = ();
+    type JobStep = ();
 
-    fn run(&mut self, _: &mut Desk, (): (), _: &mut dyn FnMut(Tell<(), ()>)) -> Result<(), ()> {
+    fn run(&mut self, _: &mut SessionContext, (): (), _: &mut dyn FnMut(Tell<(), ()>)) -> Result<(), ()> {
         Err(())
     }
 
-    fn sample(&mut self, _: &mut Desk) -> Result<(), ()> {
+    fn sample(&mut self, _: &mut SessionContext) -> Result<(), ()> {
         Err(())
     }
 
-    fn watch(&mut self, _: &mut Desk, (): &()) -> Result<Watched<()>, ()> {
+    fn watch(&mut self, _: &mut SessionContext, (): &()) -> Result<Watched<()>, ()> {
         Err(())
     }
 

@@ -14,14 +14,14 @@ const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 /// The live wishes of a session. Clones share them.
 #[derive(Clone)]
 pub(super) struct Live {
-    wishes: Arc<Mutex<Wishes>>,
+    wishes: Arc<Mutex<PollRequests>>,
     /// Cuts a sample in its repetitions short.
     sampling: Cancel,
     /// Wakes the thread; a full channel means that it is about to wake.
     changed: Sender<()>,
 }
 
-struct Wishes {
+struct PollRequests {
     /// The end of the running job, or of the last.
     job: Cancel,
     interval: Option<Duration>,
@@ -33,7 +33,7 @@ impl Live {
     /// Nothing is wished; the thread listens for changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
-        let wishes = Arc::new(Mutex::new(Wishes { job: Cancel::default(), interval: None, number: 0 }));
+        let wishes = Arc::new(Mutex::new(PollRequests { job: Cancel::default(), interval: None, number: 0 }));
         (Live { wishes, sampling: Cancel::default(), changed }, changes)
     }
 
@@ -99,7 +99,7 @@ impl Live {
         let _ = self.changed.try_send(());
     }
 
-    fn lock(&self) -> MutexGuard<'_, Wishes> {
+    fn lock(&self) -> MutexGuard<'_, PollRequests> {
         self.wishes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

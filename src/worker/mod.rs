@@ -7,14 +7,14 @@
 //! Events about a job are never lost. Progress is coalesced: while nobody reads, only the newest is kept. Nobody waits
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
-mod agenda;
 pub mod commit;
+mod event_sender;
 mod interruption;
 #[cfg(test)]
 mod invented;
 mod live;
 pub mod open;
-mod outbox;
+mod poll_scheduler;
 mod ring;
 mod session;
 pub mod stream;
@@ -32,10 +32,10 @@ pub use interruption::{EndedEarly, JobError};
 pub use live::Stopper;
 pub use open::OpenError;
 pub use ring::Ring;
-pub use session::{Desk, Session};
+pub use session::{Session, SessionContext};
 
+use event_sender::{CAPACITY, EventSender};
 use live::{Live, Watches};
-use outbox::{CAPACITY, Outbox};
 use thread::{Bench, Never, Order};
 
 use crate::link::{Cancel, LinkError};
@@ -49,13 +49,13 @@ pub trait Device: Send + 'static {
     /// Why a job ends early.
     type Error: EndedEarly + Send + fmt::Debug;
     /// What the device says on the way, whatever it is asked.
-    type Remark: Send + fmt::Debug;
+    type DeviceMessage: Send + fmt::Debug;
     /// What is taken again and again while it is polled; what belongs to a watched value says so.
     type Sample: Send + fmt::Debug + 'static;
     /// A value that can be watched: asked for between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
     /// The steps that its jobs tell.
-    type Doing: Clone + Send + fmt::Debug;
+    type JobStep: Clone + Send + fmt::Debug;
 
     /// Carries out a job.
     ///
@@ -63,29 +63,29 @@ pub trait Device: Send + 'static {
     /// When it ended early.
     fn run(
         &mut self,
-        desk: &mut Desk,
+        desk: &mut SessionContext,
         job: Self::Job,
-        tell: &mut dyn FnMut(Tell<Self::Remark, Self::Doing>),
+        tell: &mut dyn FnMut(Tell<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
     /// Samples are wished at this interval from now on, or none any more: what the device sends by itself begins with the
     /// next sample and ends here.
-    fn pace(&mut self, _desk: &mut Desk, _interval: Option<Duration>) {}
+    fn pace(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
     /// Takes one sample: as few exchanges as it needs. What the device says on the way belongs to the sample.
     ///
     /// # Errors
     /// When there is none: polling ends.
-    fn sample(&mut self, desk: &mut Desk) -> Result<Self::Sample, Self::Error>;
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
     /// Asks for a value that is watched. What the device says on the way belongs to the sample.
     ///
     /// # Errors
     /// When it does not answer: polling ends. A refusal is an answer.
-    fn watch(&mut self, desk: &mut Desk, what: &Self::Watch) -> Result<Watched<Self::Sample>, Self::Error>;
+    fn watch(&mut self, desk: &mut SessionContext, what: &Self::Watch) -> Result<Watched<Self::Sample>, Self::Error>;
 
     /// Takes what the device said since the last time.
-    fn take_remark(&mut self) -> Option<Self::Remark> {
+    fn take_remark(&mut self) -> Option<Self::DeviceMessage> {
         None
     }
 
@@ -101,7 +101,7 @@ pub trait Device: Send + 'static {
     }
 
     /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
-    fn idle(&mut self, _desk: &mut Desk) -> Option<Self::Remark> {
+    fn idle(&mut self, _desk: &mut SessionContext) -> Option<Self::DeviceMessage> {
         None
     }
 
@@ -111,7 +111,7 @@ pub trait Device: Send + 'static {
     }
 
     /// The session ends: what must not be left as it is.
-    fn leave(&mut self, _desk: &mut Desk) {}
+    fn leave(&mut self, _desk: &mut SessionContext) {}
 }
 
 /// How often an idle worker looks after a device of which nothing is under way.
@@ -163,9 +163,9 @@ pub enum Event<D: Device> {
     /// A job has begun.
     Started(JobId),
     /// How far it is.
-    Progress(JobId, Progress<D::Doing>),
+    Progress(JobId, Progress<D::JobStep>),
     /// What the device said on the way, while the job runs or at its end.
-    Remark(D::Remark),
+    Remark(D::DeviceMessage),
     /// It is done.
     Finished(JobId, Box<D::Output>),
     /// It failed.
@@ -227,7 +227,7 @@ impl<D: Device> Worker<D> {
             live: live.clone(),
             watches: watches.clone(),
             samples: samples.clone(),
-            outbox: Outbox::new(outgoing, wake),
+            outbox: EventSender::new(outgoing, wake),
             busy: busy.clone(),
         };
         thread::start(bench, alive)?;

@@ -8,7 +8,7 @@ use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
 /// What a job finds on its desk, whatever the device: time, the user's wish to end, who watches, and the folders.
-pub struct Desk {
+pub struct SessionContext {
     /// The time of the session.
     pub clock: Arc<dyn Clock>,
     pub(super) cancel: Cancel,
@@ -19,7 +19,7 @@ pub struct Desk {
     pub is_virtual: bool,
 }
 
-impl Desk {
+impl SessionContext {
     /// The context of a procedure on `wire`.
     pub fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
@@ -28,7 +28,7 @@ impl Desk {
 
 /// One wire, from opening to closing. A test runs jobs on it inline; a worker runs them on a thread of its own.
 pub struct Session<D> {
-    desk: Desk,
+    desk: SessionContext,
     pub(crate) device: D,
 }
 
@@ -36,7 +36,7 @@ impl<D: Device> Session<D> {
     /// A session with a device.
     pub fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (Cancel::default(), Trace::default());
-        Session { desk: Desk { clock, cancel, trace, store, is_virtual }, device }
+        Session { desk: SessionContext { clock, cancel, trace, store, is_virtual }, device }
     }
 
     /// The wish to end what runs.
@@ -73,7 +73,7 @@ impl<D: Device> Session<D> {
     }
 
     /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
-    pub fn idle(&mut self) -> Option<D::Remark> {
+    pub fn idle(&mut self) -> Option<D::DeviceMessage> {
         self.device.idle(&mut self.desk)
     }
 
@@ -126,7 +126,7 @@ impl<D: Device> Session<D> {
     }
 
     /// What the device said since the last time, where no event tells it.
-    pub(super) fn take_remark(&mut self) -> Option<D::Remark> {
+    pub(super) fn take_remark(&mut self) -> Option<D::DeviceMessage> {
         self.device.take_remark()
     }
 

@@ -19,7 +19,7 @@ pub use analogue::{Analogue, Forgotten};
 use super::has_ended;
 use super::thread::Never;
 use crate::analysis::Time;
-use crate::analysis::wires::Wires;
+use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
 /// How long a producer may wait at once: after so long at most a stop or a change is heard.
@@ -52,14 +52,14 @@ pub trait Counted: Send + 'static {
 /// Where samples come from: a virtual source, an adapter.
 pub trait Producer: Send + 'static {
     /// What can be changed while it runs.
-    type Wish: Send + 'static;
+    type Request: Send + 'static;
     /// What a batch holds.
     type Samples: Counted;
     /// Why it ends by itself.
     type Error: Send + 'static;
 
     /// Works by this wish from the next sample on.
-    fn change(&mut self, wish: Self::Wish);
+    fn change(&mut self, wish: Self::Request);
 
     /// Waits for samples, no longer than `patience`; `None` where none have come.
     ///
@@ -96,7 +96,7 @@ pub struct Stream<P: Producer> {
 struct Shared<P: Producer> {
     ring: Mutex<Ring<P::Samples>>,
     /// The latest, until it is taken.
-    wish: Mutex<Option<P::Wish>>,
+    wish: Mutex<Option<P::Request>>,
     error: Mutex<Option<P::Error>>,
     stop: AtomicBool,
 }
@@ -136,7 +136,7 @@ impl<P: Producer> Stream<P> {
     }
 
     /// Changes what the producer does, from its next sample on. Of several changes the latest counts.
-    pub fn change(&self, wish: P::Wish) {
+    pub fn change(&self, wish: P::Request) {
         *lock(&self.shared.wish) = Some(wish);
     }
 

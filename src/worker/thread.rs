@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
-use super::agenda::{Agenda, Due};
+use super::event_sender::EventSender;
 use super::live::{Live, Watches};
-use super::outbox::Outbox;
+use super::poll_scheduler::{Due, PollScheduler};
 use super::{Device, EndedEarly as _, Event, JobId, Ring, Session, Watched};
 use crate::link::Cancel;
 
@@ -35,7 +35,7 @@ pub(super) struct Bench<D: Device> {
     pub(super) live: Live,
     pub(super) watches: Watches<D::Watch>,
     pub(super) samples: Ring<D::Sample>,
-    pub(super) outbox: Outbox<D>,
+    pub(super) outbox: EventSender<D>,
     pub(super) busy: Arc<AtomicBool>,
 }
 
@@ -62,7 +62,7 @@ impl Drop for Slot {
 }
 
 fn work<D: Device>(mut bench: Bench<D>) {
-    let mut agenda = Agenda::default();
+    let mut agenda = PollScheduler::default();
     let mut known = 0;
     let mut paced = None;
     let mut lost = false;

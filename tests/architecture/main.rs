@@ -306,7 +306,7 @@ fn no_view_holds_a_literal_text() {
         "id_salt(",
         "make_persistent_id(",
         "make_persistent_id((",
-        "modal(ctx, skin,",
+        "modal(ctx, theme,",
         "apart(ui,",
         "add_filter(filter, &[",
         "Panel::top(",
@@ -336,7 +336,7 @@ fn no_view_holds_a_literal_text() {
         "nWARN",
     ];
     /// No views: what the terminal is told, and the names of fonts.
-    const NO_VIEWS: [&str; 2] = ["src/ui/run.rs", "src/ui/skin.rs"];
+    const NO_VIEWS: [&str; 2] = ["src/ui/run.rs", "src/ui/theme.rs"];
     let sources = sources();
     let known = Known::read(&sources);
     let mut texts = Vec::new();
@@ -359,7 +359,7 @@ fn every_text_that_is_asked_for_is_in_the_table() {
     let known = Known::read(&sources);
     for source in sources.iter().filter(|source| source.place.floor() >= 5 && !source.is_test()) {
         for literal in literals(&source.text) {
-            let asked = ["Text::new(", "TEXTS.text(", "skin.say(", "say(skin,"]
+            let asked = ["Text::new(", "TEXTS.text(", "theme.say(", "say(theme,"]
                 .iter()
                 .any(|before| literal.before.ends_with(before))
                 && !literal.before.ends_with("RichText::new(");

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, open};
 use encoder_studio::devices::hiperdrive::procedures::cyclic::CyclicLost;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, MotionRequest};
 use encoder_studio::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Percent, State};
 use encoder_studio::store::Store;
 use encoder_studio::worker::{Event, Session, Worker};
@@ -29,7 +29,7 @@ const RPI: &str = "rpi=50";
 /// Eight intervals, and the way in which it brakes.
 const WATCHDOG: Duration = Duration::from_millis(500);
 const FAST: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
-const JOG: Wish = Wish::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
+const JOG: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
 
 /// A drive that somebody looks at.
 struct Drive {

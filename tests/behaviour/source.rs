@@ -6,7 +6,7 @@ use encoder_studio::analysis::nonlinearity::nonlinearity;
 use encoder_studio::analysis::position_error::Samples;
 use encoder_studio::analysis::quality::Limits;
 use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
-use encoder_studio::analysis::wires::{Wire, Wires};
+use encoder_studio::analysis::wiring::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{References, Settings, Source};
 
 /// A second and a half of a revolution a second, 512 periods each, 50 kHz.

@@ -85,10 +85,10 @@ fn frames(layout: &Layout) -> Vec<u64> {
 }
 
 fn told(layout: &Layout, reading: Reading) -> String {
-    use encoder_studio::devices::ssi::protocol::Place;
+    use encoder_studio::devices::ssi::protocol::Location;
     let (turns, steps) = match layout.descriptor().range.place(reading.position) {
-        Place::Shaft { turns, steps, .. } => (turns, steps),
-        Place::Length { .. } => (0, reading.position),
+        Location::Shaft { turns, steps, .. } => (turns, steps),
+        Location::Length { .. } => (0, reading.position),
     };
     format!("{} {turns} {steps} {}", reading.position, u8::from(layout.is_valid(reading)))
 }

@@ -8,7 +8,7 @@ use encoder_studio::analysis::history::Value;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{
-    Action as StudioAction, DeviceCommand, DeviceModel, Language, Look, ReviewAction, Severity, Text,
+    Action as StudioAction, DeviceCommand, DeviceModel, Language, ReviewAction, Severity, Text, ThemeData,
 };
 use encoder_studio::devices::interbus::state::Action as Interbus;
 use encoder_studio::profile::{Body, Document};
@@ -182,7 +182,7 @@ fn the_window_shows_its_tab_and_its_values() {
     let Desk { studio, folder: _folder } = desk;
     let mut harness = Harness::builder().with_size([1200.0, 800.0]).build_eframe(|cc| {
         install_fonts(&cc.egui_ctx);
-        Shown(Window::new(studio, Look::built_in().unwrap(), program().tabs))
+        Shown(Window::new(studio, ThemeData::built_in().unwrap(), program().tabs))
     });
     (0..4).for_each(|_| harness.step());
     assert!(harness.query_all_by_label("NOVO").next().is_some(), "the navigation has its tab");

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use encoder_studio::devices::hiperface::jobs::{HiperfaceJob, HiperfaceOutput, Remark};
+use encoder_studio::devices::hiperface::jobs::{DeviceMessage, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
 use encoder_studio::devices::hiperface::protocol::LineSettings;
 use encoder_studio::link::{Cancel, Clock};
@@ -141,7 +141,7 @@ fn encoders_are_told_as_they_answer() {
     let mut progress = 0;
     let end =
         desk.session.run(JobId::default(), HiperfaceJob::Find(FindOptions::default()), &mut |event| match event {
-            Event::Remark(Remark::Found(found)) => told.push((found, progress)),
+            Event::Remark(DeviceMessage::Found(found)) => told.push((found, progress)),
             Event::Progress(_, step) => progress = step.done,
             _ => {}
         });

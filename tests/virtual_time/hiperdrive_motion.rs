@@ -7,7 +7,7 @@ mod model;
 mod watch;
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    Effort, Ended, Goal, Lock, Motive, Permit, Phase, Refusal, Wish,
+    Effort, Ended, Goal, Lock, MotionRequest, Motive, Permit, Phase, Refusal,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd};
 use encoder_studio::devices::hiperdrive::sim::Load;
@@ -17,16 +17,16 @@ use bench::Bench;
 const FULL: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
 const TURN: i32 = 65_536;
 
-fn jog(direction: Direction) -> Wish {
-    Wish::Jog { direction, effort: Effort::JOG, outward: false }
+fn jog(direction: Direction) -> MotionRequest {
+    MotionRequest::Jog { direction, effort: Effort::JOG, outward: false }
 }
 
-fn run_endless() -> Wish {
-    Wish::Run { direction: Direction::Clockwise, end: RunEnd::Endless, effort: FULL }
+fn run_endless() -> MotionRequest {
+    MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::Endless, effort: FULL }
 }
 
-fn to(target: i32) -> Wish {
-    Wish::Move { target, effort: FULL }
+fn to(target: i32) -> MotionRequest {
+    MotionRequest::Move { target, effort: FULL }
 }
 
 /// The words that were sent, each once, in the order of their sending.
@@ -46,11 +46,11 @@ fn the_published_words_lead_to_a_target() {
     assert_eq!(words(&mut bench), "0000 0400 0401 0409 0439 0479 0449");
     assert_eq!((bench.position(), bench.man.phase()), (163_840, Phase::Idle));
     bench.run(100);
-    bench.act(Wish::Step { by: -TURN, effort: FULL });
+    bench.act(MotionRequest::Step { by: -TURN, effort: FULL });
     assert_eq!(bench.until_over(), Ended::Arrived);
     assert_eq!(words(&mut bench), "0449 0479 0439 0409");
     assert_eq!(bench.position(), 163_840 - TURN);
-    bench.act(Wish::Lead(Goal::Off));
+    bench.act(MotionRequest::Lead(Goal::Off));
     assert_eq!(bench.until_over(), Ended::Done);
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0409 0000", 0x2A30));
 }
@@ -59,7 +59,7 @@ fn the_published_words_lead_to_a_target() {
 #[test]
 fn a_jog_runs_while_it_is_held() {
     let mut bench = Bench::new();
-    bench.act(Wish::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(Goal::Enabled));
     assert_eq!(bench.until_over(), Ended::Done);
     words(&mut bench);
     for (direction, sent, sign) in [
@@ -73,7 +73,7 @@ fn a_jog_runs_while_it_is_held() {
         // 10 % of 35 rpm, in tenths.
         assert_eq!(bench.actual().speed, sign * 35);
         assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
-        bench.act(Wish::Stop);
+        bench.act(MotionRequest::Stop);
         bench.run(500);
         assert_eq!(words(&mut bench), sent);
         assert_eq!((bench.man.phase(), bench.man.ended().map(|ended| ended.1)), (Phase::Idle, Some(Ended::Stopped)));
@@ -92,7 +92,7 @@ fn a_jog_pressed_again_and_again() {
     for times in 1..60 {
         bench.act(jog(if times % 3 == 0 { Direction::Clockwise } else { Direction::Counterclockwise }));
         bench.run(times * 10);
-        bench.act(Wish::Stop);
+        bench.act(MotionRequest::Stop);
         bench.run(600 / times);
     }
     bench.run(500);
@@ -109,7 +109,7 @@ fn a_job_waits_and_goes_on() {
     let mut bench = Bench::new();
     let job = bench.act(to(3 * TURN));
     bench.run(1000);
-    let pause = bench.act(Wish::Pause);
+    let pause = bench.act(MotionRequest::Pause);
     bench.run(300);
     assert_eq!(bench.man.phase(), Phase::Paused { target: 3 * TURN });
     assert_eq!((bench.status() & 0x2000, bench.man.act()), (0x2000, pause));
@@ -117,27 +117,27 @@ fn a_job_waits_and_goes_on() {
     let waited = bench.position();
     bench.run(1000);
     assert_eq!(bench.position(), waited);
-    bench.act(Wish::Resume);
+    bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), Ended::Arrived);
     assert_eq!(bench.position(), 3 * TURN);
     // There is nothing to pause now, nor to resume.
-    bench.act(Wish::Pause);
+    bench.act(MotionRequest::Pause);
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToPause));
-    bench.act(Wish::Resume);
+    bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToResume));
     // One that is stopped while it waits is gone.
     bench.act(to(0));
     bench.run(1000);
-    bench.act(Wish::Pause);
+    bench.act(MotionRequest::Pause);
     bench.run(300);
-    bench.act(Wish::Stop);
+    bench.act(MotionRequest::Stop);
     bench.run(300);
-    bench.act(Wish::Resume);
+    bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToResume));
     // A jog is not paused but ended.
     bench.act(jog(Direction::Clockwise));
     bench.run(500);
-    bench.act(Wish::Pause);
+    bench.act(MotionRequest::Pause);
     bench.run(500);
     assert_eq!(bench.man.phase(), Phase::Idle);
 }
@@ -162,8 +162,8 @@ fn what_may_not_be_is_refused() {
         ("not requested", to(1), permit(Some((0, 9)), &[Lock::NotRequested]), Refusal::Locked(Lock::NotRequested)),
         ("above", to(TURN + 1), free(), outside(TURN + 1)),
         ("below", to(i32::MIN), free(), outside(i32::MIN)),
-        ("a step beyond", Wish::Step { by: i32::MAX, effort: FULL }, free(), outside(i32::MAX)),
-        ("no speed", Wish::Move { target: 1, effort: none }, free(), Refusal::NoEffort),
+        ("a step beyond", MotionRequest::Step { by: i32::MAX, effort: FULL }, free(), outside(i32::MAX)),
+        ("no speed", MotionRequest::Move { target: 1, effort: none }, free(), Refusal::NoEffort),
         ("endless", run_endless(), free(), Refusal::Endless),
     ] {
         let mut bench = Bench::new();
@@ -194,10 +194,10 @@ fn a_fault_is_acknowledged_before_anything_moves() {
     let stood = bench.position();
     bench.act(to(0));
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
-    bench.act(Wish::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(Goal::Enabled));
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::Fault));
     words(&mut bench);
-    bench.act(Wish::Acknowledge);
+    bench.act(MotionRequest::Acknowledge);
     assert_eq!(bench.until_over(), Ended::Done);
     assert_eq!((words(&mut bench).as_str(), bench.status()), ("0401 0481 0401 0400", 0x2A31));
     bench.run(1000);
@@ -221,12 +221,12 @@ fn a_blocked_drive_ends_the_act() {
 fn a_run_ends_with_the_range() {
     let mut bench = Bench::new();
     bench.write(160, TURN.into());
-    bench.act(Wish::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
+    bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
     assert_eq!(bench.until_over(), Ended::RangeEnd);
     bench.run(500);
     assert_eq!((bench.position(), bench.status(), bench.man.phase()), (TURN, 0x2A31, Phase::Idle));
     // Once more, where there is nowhere to go.
-    bench.act(Wish::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
+    bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
     assert_eq!(bench.until_over(), Ended::RangeEnd);
 }
 

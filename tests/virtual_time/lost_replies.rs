@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Remark};
+use encoder_studio::devices::hiperface::jobs::{Change, DeviceMessage, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, DeviceAddress, StatusCode};
 use encoder_studio::link::Clock;
 use encoder_studio::worker::{Event, JobId};
@@ -162,8 +162,8 @@ fn no_status_code_is_lost_without_a_word() {
         desk.tap().swallow_reply = Some(already + lost);
         let (mut codes, mut unheard) = (Vec::new(), 0);
         let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| match event {
-            Event::Remark(Remark::Codes(own)) => codes.extend(own),
-            Event::Remark(Remark::CodesUnheard(count)) => unheard += count,
+            Event::Remark(DeviceMessage::Codes(own)) => codes.extend(own),
+            Event::Remark(DeviceMessage::CodesUnheard(count)) => unheard += count,
             _ => {}
         });
         let Event::Finished(_, output) = end else { panic!("{lost}: {end:?}") };

@@ -2,7 +2,7 @@
 
 use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
-use encoder_studio::devices::hiperface::procedures::check::{Finding, Line, Step};
+use encoder_studio::devices::hiperface::procedures::check::{Finding, HiperfaceStepResult, Step};
 use encoder_studio::devices::hiperface::procedures::{Error, Sample, Survey};
 use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, DataFieldStatus, StatusCode};
 use encoder_studio::store::{DeviceKey, Logbook, Store};
@@ -66,7 +66,7 @@ fn two_fields() -> Desk {
     desk
 }
 
-fn check(desk: &mut Desk) -> Vec<Line> {
+fn check(desk: &mut Desk) -> Vec<HiperfaceStepResult> {
     match desk.run(HiperfaceJob::Check { restart: false }).unwrap() {
         HiperfaceOutput::Check(lines) => lines,
         other => panic!("{other:?}"),

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Severity, Theme};
+use encoder_studio::app::{Action, ColorScheme, Severity};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
@@ -115,7 +115,7 @@ fn a_disk_that_does_not_answer_does_not_keep_the_window_open() {
     desk.settle();
     fs::remove_file(&settings).unwrap();
     pipe(&settings);
-    desk.act(Action::SetTheme(Theme::Light));
+    desk.act(Action::SetTheme(ColorScheme::Light));
     desk.act(Action::Close);
     assert!(!desk.studio.may_close());
     let before = desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);

@@ -15,7 +15,7 @@ use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
 };
 use encoder_studio::devices::hiperdrive::state::axis::{
-    Action as Run, Button, End, Place, Power, Reached, Restart, Step, words,
+    Action as Run, Button, End, Power, Reached, Restart, Step, TestTarget, words,
 };
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
 use encoder_studio::sim::Faults;
@@ -246,7 +246,7 @@ fn a_reconnection_is_no_restart() {
 #[test]
 fn a_fault_in_the_test_is_told_and_acknowledged() {
     let mut desk = until_test(FRESH, 1, false);
-    go(&mut desk, Place::Lower, |own| own.state(own.drive()) == Some(State::Moving));
+    go(&mut desk, TestTarget::Lower, |own| own.state(own.drive()) == Some(State::Moving));
     let drive = unit(&desk).drive();
     let clock = Moment::default();
     unit(&desk).target.clone().unwrap().with(|own| own.drive(drive).unwrap().fail(clock, ErrorCode::BLOCK_FORWARD));
@@ -254,8 +254,8 @@ fn a_fault_in_the_test_is_told_and_acknowledged() {
         let own = studio.hiperdrive().unwrap();
         words::fault(&own.seen(own.drive())).is_some_and(|text| text.words(Language::English).starts_with("Fault 8301"))
     });
-    assert_eq!(axis(&desk).ask(Button::Go(Place::Lower), &seen(&desk)).unwrap_err().id(), "hd_refused.fault");
-    assert!(axis(&desk).outcome(Place::Lower).is_some_and(|own| !own.is_good()));
+    assert_eq!(axis(&desk).ask(Button::Go(TestTarget::Lower), &seen(&desk)).unwrap_err().id(), "hd_refused.fault");
+    assert!(axis(&desk).outcome(TestTarget::Lower).is_some_and(|own| !own.is_good()));
     desk.until("it can be acknowledged", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.axis().unwrap().ask(Button::Acknowledge, &own.seen(own.drive())).is_ok()
@@ -267,7 +267,7 @@ fn a_fault_in_the_test_is_told_and_acknowledged() {
         |studio| {
             let own = studio.hiperdrive().unwrap();
             let seen = own.seen(own.drive());
-            !seen.has_failed() && own.axis().unwrap().ask(Button::Go(Place::Lower), &seen).is_ok()
+            !seen.has_failed() && own.axis().unwrap().ask(Button::Go(TestTarget::Lower), &seen).is_ok()
         },
     );
     assert!(words::fault(&seen(&desk)).is_none());

@@ -6,7 +6,7 @@ use encoder_studio::app::{DeviceCommand, DeviceModel as _};
 use std::fs;
 
 use encoder_studio::app::recorder::Recorder;
-use encoder_studio::app::{Action, Desk as Whose, FileQuestion, Severity};
+use encoder_studio::app::{Action, FileQuestion, RecorderOwner as Whose, Severity};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure};
 use encoder_studio::units::Moment;

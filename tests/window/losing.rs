@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Desk as Of, JobEnd, Language, PendingEdits, Severity, Studio, recorder};
+use encoder_studio::app::{Action, JobEnd, Language, PendingEdits, RecorderOwner as Of, Severity, Studio, recorder};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::protocol::CodeNumber;
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};

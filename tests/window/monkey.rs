@@ -2,7 +2,7 @@
 //! and nothing is written that nobody consented to. The same seeds give the same days.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
-use encoder_studio::app::{Action, Language, Theme};
+use encoder_studio::app::{Action, ColorScheme, Language};
 use encoder_studio::devices::hiperface::state::ReviewState;
 
 use crate::screen::Screen;
@@ -33,7 +33,7 @@ fn day(seed: u64, steps: usize) {
     let (language, theme) = (random.bool(), random.bool());
     let mut screen = Screen::opened(Outside::new("rpm=60"), None, [1024.0, 640.0]);
     screen.act(Action::SetLanguage(if language { Language::German } else { Language::English }));
-    screen.act(Action::SetTheme(if theme { Theme::Dark } else { Theme::Light }));
+    screen.act(Action::SetTheme(if theme { ColorScheme::Dark } else { ColorScheme::Light }));
     let mut size = Vec2::new(1024.0, 640.0);
     let mut pointer = Pos2::ZERO;
     for _ in 0..steps {

@@ -5,7 +5,7 @@ use encoder_studio::app::DeviceCommand;
 use std::fs;
 
 use encoder_studio::app::diverged::Resolve;
-use encoder_studio::app::review::{Permit, Sheet, Stage};
+use encoder_studio::app::review::{Permit, ReviewSheet, Stage};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, PendingEdits, Severity, Studio};
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
@@ -205,7 +205,7 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
 }
 
 /// The sheet of the review that is shown.
-fn sheet(desk: &Desk) -> Sheet {
+fn sheet(desk: &Desk) -> ReviewSheet {
     desk.studio.shown().unwrap().sheet().unwrap()
 }
 

@@ -6,8 +6,8 @@ use std::fs;
 use std::time::Duration;
 
 use encoder_studio::analysis::history::Flags;
-use encoder_studio::app::recorder::{self, Line, Recorder};
-use encoder_studio::app::{Action, Desk as Of, FileQuestion, Picture, Severity, Studio};
+use encoder_studio::app::recorder::{self, Recorder, Series};
+use encoder_studio::app::{Action, FileQuestion, Picture, RecorderOwner as Of, Severity, Studio};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 
 use crate::losing::lost;
@@ -28,7 +28,7 @@ fn recorder(desk: &Desk) -> &Recorder {
     desk.encoder().record().recorder()
 }
 
-fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Line {
+fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Series {
     recorder.lines().iter().find(|line| line.heading == name).unwrap()
 }
 

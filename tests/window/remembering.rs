@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use encoder_studio::app::{Action, Language, Settings, Severity, Theme};
+use encoder_studio::app::{Action, ColorScheme, Language, Settings, Severity};
 
 use crate::support::{Desk, OTHER_PORT, PORT};
 
@@ -19,8 +19,8 @@ fn kept(desk: &mut Desk) {
 fn looks_language_layout_and_links_survive() {
     let mut desk = Desk::begun("");
     let first = (desk.studio.settings.theme, desk.studio.settings.language);
-    assert_eq!(first, (Theme::Dark, Language::English));
-    desk.act(Action::SetTheme(Theme::Light));
+    assert_eq!(first, (ColorScheme::Dark, Language::English));
+    desk.act(Action::SetTheme(ColorScheme::Light));
     desk.act(Action::SetLanguage(Language::German));
     desk.act(Action::KeepLayout("(a layout)".to_owned()));
     desk.act(Action::KeepSize(1500, 900));
@@ -36,7 +36,10 @@ fn looks_language_layout_and_links_survive() {
         settings.links(crate::tabs::HIPERFACE),
         [format!("serial:{OTHER_PORT}"), format!("serial:{PORT}"), "sim:".to_owned()]
     );
-    assert_eq!((settings.theme, settings.language, settings.size), (Theme::Light, Language::German, Some((1500, 900))));
+    assert_eq!(
+        (settings.theme, settings.language, settings.size),
+        (ColorScheme::Light, Language::German, Some((1500, 900)))
+    );
     assert_eq!(settings.layout.as_deref(), Some("(a layout)"));
 }
 
@@ -67,7 +70,7 @@ fn broken_settings_are_told_and_left_until_something_changes() {
         expected.language = language;
         assert_eq!(desk.studio.settings, expected);
         assert_eq!(fs::read(&path).unwrap(), broken);
-        desk.act(Action::SetTheme(Theme::Light));
+        desk.act(Action::SetTheme(ColorScheme::Light));
         kept(&mut desk);
         assert_eq!(fs::read(&aside).unwrap(), broken);
     }
@@ -80,7 +83,7 @@ fn settings_that_cannot_be_read_are_left() {
     fs::create_dir_all(&path).unwrap();
     let mut desk = desk.crash();
     assert_eq!(desk.told(Severity::Warning), ["session.settings_unread"]);
-    desk.act(Action::SetTheme(Theme::Light));
+    desk.act(Action::SetTheme(ColorScheme::Light));
     desk.settle();
     assert!(path.is_dir());
     assert_eq!(desk.told(Severity::Warning).len(), 1);
@@ -93,7 +96,7 @@ fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     let mut settings = Settings::of(encoder_studio::kinds::program().studio);
-    (settings.theme, settings.size) = (Theme::Light, Some((1500, 900)));
+    (settings.theme, settings.size) = (ColorScheme::Light, Some((1500, 900)));
     settings.use_link(crate::tabs::HIPERFACE, "tcp:host:1");
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
@@ -104,7 +107,7 @@ fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     assert!(!path.is_file(), "nothing was written in its place");
     fs::write(&path, settings.emit()).unwrap();
     fs::remove_file(&path).unwrap();
-    desk.until("they are read", |studio| studio.settings.theme == Theme::Light);
+    desk.until("they are read", |studio| studio.settings.theme == ColorScheme::Light);
     assert!(desk.studio.services.log.standing().is_none(), "they are here");
     settings.language = Language::German;
     assert_eq!(desk.studio.settings, settings);
@@ -126,7 +129,7 @@ fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
 fn settings_that_cannot_be_kept_are_told_once() {
     let mut desk = Desk::fresh("");
     fs::write(desk.outside.path("config"), "a file in the way").unwrap();
-    for theme in [Theme::Light, Theme::Dark, Theme::Light] {
+    for theme in [ColorScheme::Light, ColorScheme::Dark, ColorScheme::Light] {
         desk.act(Action::SetTheme(theme));
         desk.until("it is told", |studio| studio.services.log.standing().is_some());
         desk.settle();

@@ -8,7 +8,7 @@ use egui::{Key, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use encoder_studio::app::connect::Action as Connect;
-use encoder_studio::app::{Action, Language, Look, Studio, Tab, Text};
+use encoder_studio::app::{Action, Language, Studio, Tab, Text, ThemeData};
 use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder};
 use encoder_studio::kinds::program;
 use encoder_studio::link::LinkUrl;
@@ -44,7 +44,7 @@ impl Screen {
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
-            Shown(Window::new(studio, Look::built_in().unwrap(), program().tabs))
+            Shown(Window::new(studio, ThemeData::built_in().unwrap(), program().tabs))
         });
         Screen { harness, outside }
     }

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use encoder_studio::analysis::capture::{Delimiter, TimeUnit};
 use encoder_studio::analysis::diagnosis::{Finding, What};
 use encoder_studio::analysis::quality::{Family, Finding as Parameter};
-use encoder_studio::analysis::wires::Wire;
+use encoder_studio::analysis::wiring::Wire;
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
-use encoder_studio::signals::state::{Action as Signals, Column, Example, Origin, Place, SourceAction};
+use encoder_studio::signals::state::{Action as Signals, Column, Example, Origin, SourceAction, TableSource};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::support::{Desk, Outside};
@@ -66,7 +66,7 @@ fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
     desk.open_capture(&path);
     assert_eq!(
         (desk.studio.settings.tab, shown(&desk.studio)),
-        (crate::tabs::SIGNALS, Some(&Origin::Table(Place::File(path.clone()))))
+        (crate::tabs::SIGNALS, Some(&Origin::Table(TableSource::File(path.clone()))))
     );
     let measurement = desk.studio.signals().measurement().unwrap().clone();
     let analysis = measurement.analysis.as_ref().unwrap();
@@ -79,7 +79,7 @@ fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
     let other = desk.file("table.txt", &circle(2));
     desk.act(Action::Typed(FileQuestion::OpenCapture, other.clone()));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(other))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::File(other))));
     desk.act(Action::ShowTab(crate::tabs::HIPERFACE));
     desk.act(Action::AskOpen);
     assert_eq!(desk.studio.take_file_question(), Some(FileQuestion::Open));
@@ -131,7 +131,7 @@ fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
         let path = desk.file(name, text);
         desk.open_capture(&path);
         assert_eq!(desk.problem(), told, "{name}");
-        assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::Healthy))), "{name}");
+        assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::Healthy))), "{name}");
         let lines = text.lines().next().map(str::to_owned).into_iter().collect::<Vec<_>>();
         assert_eq!(desk.studio.signals().table().unwrap().head.first().cloned().unwrap_or_default(), lines.concat());
     }
@@ -183,7 +183,7 @@ fn what_was_found_out_is_corrected_and_found_out_again() {
     assert_eq!(desk.problem(), "signal.not_a_number");
     desk.signals(Signals::SetDelimiter(Delimiter::Tab));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(path))), "what was read last is still shown");
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::File(path))), "what was read last is still shown");
     desk.signals(Signals::Detect);
     desk.until_measured();
     assert!(desk.studio.signals().problem().is_none());
@@ -219,20 +219,20 @@ fn reading_is_given_up_and_a_stale_capture_is_dropped() {
     desk.act(Action::Escape);
     assert!(desk.studio.signals().reading().is_some_and(encoder_studio::signals::state::Reading::is_cancelled));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::Healthy))));
-    assert_eq!(desk.studio.signals().table().unwrap().place, Place::Example(Example::Healthy));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::Healthy))));
+    assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(Example::Healthy));
     assert_eq!(desk.told(Severity::Note), ["signal.cancelled"]);
     assert!(!desk.studio.can_stop());
     // The later one counts, whichever is read sooner.
     desk.act(Action::Open(large));
     desk.signals(Signals::Example(Example::WithErrors));
     desk.until_measured();
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::WithErrors))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::WithErrors))));
     for _ in 0..50 {
         desk.studio.poll();
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::WithErrors))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::WithErrors))));
 }
 
 #[test]
@@ -255,8 +255,8 @@ fn a_capture_is_put_aside_and_stays_while_others_come() {
     desk.signals(Signals::Example(Example::WithErrors));
     desk.until_measured();
     let kept = |studio: &Studio| studio.signals().comparison().map(|own| own.origin.clone());
-    assert_eq!(kept(&desk.studio), Some(Origin::Table(Place::Example(Example::Healthy))));
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::Example(Example::WithErrors))));
+    assert_eq!(kept(&desk.studio), Some(Origin::Table(TableSource::Example(Example::Healthy))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::WithErrors))));
     desk.signals(Signals::DropComparison);
     assert_eq!(kept(&desk.studio), None);
 }
@@ -384,7 +384,7 @@ fn a_file_takes_the_place_of_the_virtual_encoder() {
     desk.act(Action::Open(path.clone()));
     desk.until_measured();
     assert!(!desk.studio.signals().source().is_running());
-    assert_eq!(shown(&desk.studio), Some(&Origin::Table(Place::File(path))));
+    assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::File(path))));
     desk.source(SourceAction::Start);
     desk.until_live("it is measured again", |_| true);
     assert!(desk.studio.signals().table().is_none());
@@ -395,14 +395,15 @@ fn the_scope_shows_a_capture_and_the_virtual_encoder_and_is_written_as_a_table_t
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
-    let recorder =
-        |studio: &Studio| studio.recorder(encoder_studio::app::Desk::Tool(crate::tabs::SIGNALS)).unwrap().recorded();
+    let recorder = |studio: &Studio| {
+        studio.recorder(encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS)).unwrap().recorded()
+    };
     let (from, to) = recorder(&desk.studio).unwrap();
     // 401 rows with a header: 400 samples 5 µs apart.
     assert_eq!(to.nanoseconds_since(from), 399 * 5_000);
     let path = desk.outside.path("scope.csv");
     let question = FileQuestion::Table {
-        desk: encoder_studio::app::Desk::Tool(crate::tabs::SIGNALS),
+        desk: encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS),
         visible: false,
         suggested: path.clone(),
     };

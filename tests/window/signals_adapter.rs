@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
-use encoder_studio::app::{Action, Desk as Of, Severity, Studio};
+use encoder_studio::app::{Action, RecorderOwner as Of, Severity, Studio};
 use encoder_studio::buses::bridge::protocol::Request;
 use encoder_studio::signals::state::{Action as Signals, Origin, SourceAction, SourceKind};
 

@@ -3,7 +3,7 @@
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
-use encoder_studio::app::{Action, Desk as Of, Studio};
+use encoder_studio::app::{Action, RecorderOwner as Of, Studio};
 use encoder_studio::signals::state::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 

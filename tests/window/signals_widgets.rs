@@ -3,7 +3,7 @@
 use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
-use encoder_studio::app::{Action, Language, Theme};
+use encoder_studio::app::{Action, ColorScheme, Language};
 use encoder_studio::signals::state::{Action as Signals, Example, Origin, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
@@ -21,7 +21,7 @@ impl Screen {
     #[track_caller]
     pub(crate) fn look_at_signals(&mut self) {
         for language in [Language::English, Language::German] {
-            for theme in [Theme::Dark, Theme::Light] {
+            for theme in [ColorScheme::Dark, ColorScheme::Light] {
                 self.act(Action::SetLanguage(language));
                 self.act(Action::SetTheme(theme));
                 for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::SIGNALS) {

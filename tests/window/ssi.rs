@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
-use encoder_studio::devices::ssi::protocol::{Code, Doubt, Place, Range};
+use encoder_studio::devices::ssi::protocol::{Code, Doubt, Location, Range};
 use encoder_studio::devices::ssi::state::strip::Handle;
 use encoder_studio::devices::ssi::state::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
 
@@ -74,7 +74,10 @@ fn a_layout_needs_no_device() {
     act(&mut desk, Ssi::Try(Try::Bits("000110110010011111011101100".to_owned())));
     assert_eq!(
         encoder(&desk).shown().place,
-        Some((0x123 << 14 | 0x2A5B, Place::Shaft { turns: 0x123, steps: 0x2A5B, degrees: 10843.0 * 360.0 / 16384.0 }))
+        Some((
+            0x123 << 14 | 0x2A5B,
+            Location::Shaft { turns: 0x123, steps: 0x2A5B, degrees: 10843.0 * 360.0 / 16384.0 }
+        ))
     );
     // Every step has a way back.
     assert!(encoder(&desk).is_dirty());

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, Patience, ReviewAction, Severity, Studio, World, connect};
+use encoder_studio::app::{Action, GracePeriods, ReviewAction, Severity, Studio, World, connect};
 use encoder_studio::devices::biss::jobs as biss;
 use encoder_studio::devices::biss::procedures::Way;
 use encoder_studio::devices::hiperdrive::jobs as hiperdrive;
@@ -43,7 +43,7 @@ pub(crate) struct Outside {
     pub(crate) wakes: Arc<AtomicUsize>,
     /// [`SLOW`] opens from now on.
     pub(crate) opens: Arc<AtomicBool>,
-    pub(crate) patience: Patience,
+    pub(crate) patience: GracePeriods,
     /// Who answers when all in the network are asked.
     pub(crate) found: Vec<Found>,
     /// What kinds of devices there are.
@@ -90,7 +90,7 @@ impl Outside {
         for (server, port) in SERVERS {
             wires.insert(server.to_owned(), wires[port].clone());
         }
-        let (wakes, opens, patience) = (Arc::default(), Arc::default(), Patience::default());
+        let (wakes, opens, patience) = (Arc::default(), Arc::default(), GracePeriods::default());
         Outside {
             folder: tempfile::tempdir().unwrap(),
             wires,
@@ -214,7 +214,7 @@ impl Desk {
     pub(crate) fn impatient(query: &str) -> Self {
         let mut outside = Outside::new(query);
         let milliseconds = Duration::from_millis;
-        outside.patience = Patience {
+        outside.patience = GracePeriods {
             drives: milliseconds(50),
             disk: milliseconds(50),
             job: milliseconds(100),

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use encoder_studio::app::{Action, Language, Settings, Studio, Theme, World};
+use encoder_studio::app::{Action, ColorScheme, Language, Settings, Studio, World};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure, Motor};
@@ -86,7 +86,7 @@ fn is_locked(desk: &Desk) -> bool {
 #[test]
 fn what_each_window_has_changed_survives_the_others_write() {
     let (mut first, mut second) = two();
-    first.act(Action::SetTheme(Theme::Light));
+    first.act(Action::SetTheme(ColorScheme::Light));
     first.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:first:1");
     second.act(Action::SetLanguage(Language::German));
     second.act(Action::KeepSize(1500, 900));
@@ -96,13 +96,13 @@ fn what_each_window_has_changed_survives_the_others_write() {
     first.act(Action::KeepLayout("(a layout)".to_owned()));
     together([&mut first, &mut second], "it is kept", |first, _| says(first, &["(a layout)"]));
     let kept = found(&first);
-    assert_eq!((kept.theme, kept.language, kept.size), (Theme::Light, Language::German, Some((1500, 900))));
+    assert_eq!((kept.theme, kept.language, kept.size), (ColorScheme::Light, Language::German, Some((1500, 900))));
     assert_eq!(kept.layout.as_deref(), Some("(a layout)"));
     let mut links = kept.links(crate::tabs::HIPERFACE).to_vec();
     links.sort();
     assert_eq!(links, ["tcp:first:1", "tcp:second:1"]);
     // Nothing changes under the hands of a person.
-    assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, Theme::Dark));
+    assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, ColorScheme::Dark));
 }
 
 /// Issue 21.11: limits that one window has marked are locked in another one that has the drives in hand, without its
@@ -121,7 +121,7 @@ fn limits_that_another_window_marks_are_locked_here() {
     together([&mut first, &mut second], "the other one is locked", |_, second| is_locked(second));
     drive(&mut second, Motor::Step { by: 64 });
     assert_eq!(unit(&second).may_move(ONE).unwrap_err().id(), "hd_lock.limits");
-    second.act(Action::SetTheme(Theme::Light));
+    second.act(Action::SetTheme(ColorScheme::Light));
     together([&mut first, &mut second], "that is kept", |first, _| says(first, &["Light"]));
     bystander.act(Action::SetLanguage(Language::German));
     first.until("that is kept", |_| fs::read_to_string(&path).is_ok_and(|text| text.contains("German")));
@@ -145,7 +145,7 @@ fn limits_are_confirmed_in_each_window() {
     together([&mut first, &mut second], "that is kept", |first, _| says(first, &["unconfirmed: []"]));
     assert!(is_locked(&first) && !is_locked(&second));
     // Whatever is written on either side.
-    first.act(Action::SetTheme(Theme::Light));
+    first.act(Action::SetTheme(ColorScheme::Light));
     second.act(Action::SetLanguage(Language::German));
     together([&mut first, &mut second], "that is kept", |first, _| says(first, &["Light", "German"]));
     let began = Instant::now();

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::connect::Action as Connect;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, FileQuestion, Language, Studio, Theme};
+use encoder_studio::app::{Action, ColorScheme, FileQuestion, Language, Studio};
 use encoder_studio::devices::hiperface::state::Action as Hiperface;
 use encoder_studio::devices::hiperface::state::LinkForm;
 use encoder_studio::devices::interbus::state::Action as Interbus;
@@ -24,7 +24,7 @@ const ALWAYS: [&str; 5] = ["shell.stop", "shell.connect", "shell.open", "shell.h
 fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
     let window = Rect::from_min_size(egui::Pos2::ZERO, Vec2::from(size));
     for language in [Language::English, Language::German] {
-        for theme in [Theme::Dark, Theme::Light] {
+        for theme in [ColorScheme::Dark, ColorScheme::Light] {
             screen.act(Action::SetLanguage(language));
             screen.act(Action::SetTheme(theme));
             for page in encoder_studio::kinds::program().tabs.page_words(screen.studio().settings.tab) {
@@ -310,9 +310,9 @@ fn the_language_and_the_theme_are_a_click_away() {
     screen.click("shell.language");
     assert_eq!(screen.studio().settings.language, Language::English);
     screen.click("shell.light");
-    assert_eq!(screen.studio().settings.theme, Theme::Light);
+    assert_eq!(screen.studio().settings.theme, ColorScheme::Light);
     screen.click("shell.dark");
-    assert_eq!(screen.studio().settings.theme, Theme::Dark);
+    assert_eq!(screen.studio().settings.theme, ColorScheme::Dark);
 }
 
 /// Where the system has no dialogs, a path is typed.

@@ -8,7 +8,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::recorder::{Cursor, Recorder, TriggerState, When};
 use encoder_studio::app::{Action, FileQuestion};
-use encoder_studio::app::{Desk as Of, Language, recorder};
+use encoder_studio::app::{Language, RecorderOwner as Of, recorder};
 
 use crate::screen::Screen;
 use crate::support::Outside;

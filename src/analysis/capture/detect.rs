@@ -22,7 +22,7 @@ pub enum Delimiter {
 
 /// What is known about a table; what is `None` is to be found out.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wishes {
+pub struct TableHints {
     /// Delimiter.
     pub delimiter: Option<Delimiter>,
     /// Numbers have a decimal comma.
@@ -80,7 +80,7 @@ impl Delimiter {
 }
 
 /// A line of the head: its number in the file, its fields.
-struct Line {
+struct HeaderLine {
     row: u64,
     fields: Vec<Vec<u8>>,
 }
@@ -90,7 +90,7 @@ impl Layout {
     ///
     /// # Errors
     /// [`CaptureError`] where they hold no table with sine and cosine.
-    pub fn detect(head: &[u8], wishes: &Wishes) -> Result<Self, CaptureError> {
+    pub fn detect(head: &[u8], wishes: &TableHints) -> Result<Self, CaptureError> {
         let decoded = decode_head(head);
         let text = whole_lines(&decoded, head.len());
         if text.iter().all(u8::is_ascii_whitespace) {
@@ -142,7 +142,7 @@ impl Layout {
 }
 
 /// A column that is taken by its name only holds what its name says: a position in metres is no absolute position.
-fn fitting(columns: Columns, first: Option<&Line>, decimal_comma: bool) -> Columns {
+fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
     let read = |column: usize| {
         let field = first.and_then(|line| line.fields.get(column.checked_sub(1)?));
         field.map_or(Number::Text, |field| number(field, decimal_comma))
@@ -163,9 +163,9 @@ fn whole_lines(head: &[u8], read: usize) -> &[u8] {
 
 /// The columns `Start` and `Increment` of a header, and what the line below it says of them: the first column counts
 /// samples then (as oscilloscopes of Rigol write it).
-fn sample_clock(before: &[Line], decimal_comma: bool) -> Result<Option<SampleClock>, CaptureError> {
-    let at = |line: &Line, name: &[u8]| line.fields.iter().position(|field| field.eq_ignore_ascii_case(name));
-    let places = |line: &Line| at(line, b"start").zip(at(line, b"increment"));
+fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<SampleClock>, CaptureError> {
+    let at = |line: &HeaderLine, name: &[u8]| line.fields.iter().position(|field| field.eq_ignore_ascii_case(name));
+    let places = |line: &HeaderLine| at(line, b"start").zip(at(line, b"increment"));
     let named = before.iter().enumerate().find_map(|(row, line)| Some((row, places(line)?)));
     let Some((row, (start, increment))) = named else { return Ok(None) };
     let below = before.get(row + 1);
@@ -191,11 +191,11 @@ fn has_numbers(text: &[u8]) -> bool {
     text.split(|byte| *byte == b'\n').any(|line| !matches!(number(line.trim_ascii(), true), Number::Text))
 }
 
-fn lines(text: &[u8], delimiter: Delimiter) -> Vec<Line> {
+fn lines(text: &[u8], delimiter: Delimiter) -> Vec<HeaderLine> {
     let lines = text.split(|byte| *byte == b'\n').enumerate();
     lines
         .filter(|(_, line)| !line.trim_ascii().is_empty())
-        .map(|(at, line)| Line { row: at as u64 + 1, fields: fields(line, delimiter) })
+        .map(|(at, line)| HeaderLine { row: at as u64 + 1, fields: fields(line, delimiter) })
         .collect()
 }
 
@@ -218,7 +218,7 @@ fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
 }
 
 /// Some number has a comma, and none has a point.
-fn decimal_comma(lines: &[Line]) -> bool {
+fn decimal_comma(lines: &[HeaderLine]) -> bool {
     let numeric = |field: &&Vec<u8>| matches!(number(field, true), Number::Finite(_));
     let has = |byte: u8| lines.iter().flat_map(|line| &line.fields).filter(numeric).any(|field| field.contains(&byte));
     has(b',') && !has(b'.')
@@ -226,25 +226,25 @@ fn decimal_comma(lines: &[Line]) -> bool {
 
 /// All fields are numbers; or half of them, in a row as wide as the others: a broken number in the first row is an error
 /// and not a header, while a line about the instrument may hold a number as well.
-fn is_data(line: &Line, usual: usize, decimal_comma: bool) -> bool {
+fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
 }
 
 /// A row of a time and of fields without a value.
-fn is_gap(line: &Line, width: usize, decimal_comma: bool) -> bool {
+fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
     let is_text = |field: &Vec<u8>| matches!(number(field, decimal_comma), Number::Text);
     line.fields.len() >= width
         && line.fields.iter().any(|field| !is_text(field))
         && line.fields.iter().all(|field| !is_text(field) || is_no_value(field))
 }
 
-fn numbers(line: &Line, decimal_comma: bool) -> usize {
+fn numbers(line: &HeaderLine, decimal_comma: bool) -> usize {
     line.fields.iter().filter(|field| !matches!(number(field, decimal_comma), Number::Text)).count()
 }
 
 /// The width of most rows that are numbers by half or more; the larger of two.
-fn usual_width(lines: &[Line], decimal_comma: bool) -> usize {
+fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     let mut counts = std::collections::BTreeMap::<usize, usize>::new();
     for line in lines.iter().filter(|line| 2 * numbers(line, decimal_comma) >= filled(&line.fields)) {
         *counts.entry(filled(&line.fields)).or_default() += 1;
@@ -258,8 +258,8 @@ fn filled(fields: &[Vec<u8>]) -> usize {
 }
 
 /// Names, and a line of units where there is one: the last lines before the numbers that are as wide as these.
-fn header(before: &[Line], width: usize) -> Vec<Vec<String>> {
-    let wide = |line: &&Line| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
+fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
+    let wide = |line: &&HeaderLine| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&latin(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();

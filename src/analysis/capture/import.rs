@@ -3,7 +3,7 @@
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
-use super::detect::{HEAD, Layout, Wishes};
+use super::detect::{HEAD, Layout, TableHints};
 use super::encoding::Decoder;
 use super::header::Columns;
 use super::{Capture, CaptureError, Wires};
@@ -59,7 +59,7 @@ impl Import {
     ///
     /// # Errors
     /// As [`Layout::detect`].
-    pub fn begin(head: &[u8], wishes: &Wishes) -> Result<Self, CaptureError> {
+    pub fn begin(head: &[u8], wishes: &TableHints) -> Result<Self, CaptureError> {
         let head = head.get(..HEAD).unwrap_or(head);
         let import = Import::with(Layout::detect(head, wishes)?);
         Ok(Import { decoder: Decoder::of(head), ..import })

@@ -9,12 +9,12 @@ mod encoding;
 mod header;
 mod import;
 
-pub use detect::{Delimiter, HEAD, Layout, SampleClock, Wishes};
+pub use detect::{Delimiter, HEAD, Layout, SampleClock, TableHints};
 pub use encoding::decode_head;
 pub use header::{Columns, TimeUnit, VoltUnit};
 pub use import::Import;
 
-use super::wires::Wires;
+use super::wiring::Wires;
 
 /// Samples of a sine/cosine signal.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ use super::super::import::Import;
 use super::*;
 use crate::analysis::capture::Capture;
 
-fn read_in(pieces: usize, text: &[u8], wishes: &Wishes) -> Result<(Layout, Capture), CaptureError> {
+fn read_in(pieces: usize, text: &[u8], wishes: &TableHints) -> Result<(Layout, Capture), CaptureError> {
     let mut import = Import::begin(text, wishes)?;
     for piece in text.chunks(pieces) {
         import.feed(piece)?;
@@ -15,9 +15,9 @@ fn read_in(pieces: usize, text: &[u8], wishes: &Wishes) -> Result<(Layout, Captu
 #[track_caller]
 fn read(text: impl AsRef<[u8]>) -> Result<(Layout, Capture), CaptureError> {
     let text = text.as_ref();
-    let whole = read_in(1 << 20, text, &Wishes::default());
+    let whole = read_in(1 << 20, text, &TableHints::default());
     for pieces in [1, 7] {
-        assert_eq!(read_in(pieces, text, &Wishes::default()), whole, "in pieces of {pieces}");
+        assert_eq!(read_in(pieces, text, &TableHints::default()), whole, "in pieces of {pieces}");
     }
     whole
 }
@@ -74,10 +74,10 @@ fn what_was_found_out_is_told_and_can_be_corrected() {
         clock: None,
     };
     assert_eq!(layout, expected);
-    let wishes = Wishes {
+    let wishes = TableHints {
         columns: Some(Columns { time: None, sine: 3, cosine: 2, ..Columns::PLAIN }),
         volts_per_unit: Some(2.0),
-        ..Wishes::default()
+        ..TableHints::default()
     };
     let (_, capture) = read_in(99, text, &wishes).unwrap();
     assert_eq!((capture.sine_v, capture.cosine_v, capture.time_s), (vec![4.0, 8.0], vec![3.0, 6.0], vec![]));
@@ -120,12 +120,12 @@ fn errors_name_row_and_column() {
 #[test]
 fn a_table_longer_than_the_head_keeps_its_row_numbers() {
     let mut text: String = (0..20_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
-    let (_, capture) = read_in(4096, text.as_bytes(), &Wishes::default()).unwrap();
+    let (_, capture) = read_in(4096, text.as_bytes(), &TableHints::default()).unwrap();
     assert_eq!(capture.sine_v.len(), 20_000);
     assert!((capture.time_s[19_999] - 0.019_999).abs() < 1e-12);
     text.push_str("0,?,0\n");
     let expected = CaptureError::NotANumber { row: 20_001, column: 2, text: "?".to_owned() };
-    assert_eq!(read_in(4096, text.as_bytes(), &Wishes::default()).unwrap_err(), expected);
+    assert_eq!(read_in(4096, text.as_bytes(), &TableHints::default()).unwrap_err(), expected);
 }
 
 #[test]
@@ -145,9 +145,9 @@ fn a_reference_and_an_absolute_position_are_taken_where_they_fit() {
         assert_eq!((capture.reference_deg, capture.absolute), expected, "{text}");
         assert_eq!(layout.columns.reference_angle.is_some(), expected.0.is_some(), "{text}");
     }
-    let wishes = Wishes {
+    let wishes = TableHints {
         columns: Some(Columns { reference_angle: Some(4), absolute: Some(5), ..Columns::PLAIN }),
-        ..Wishes::default()
+        ..TableHints::default()
     };
     let (_, capture) = read_in(99, b"0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", &wishes).unwrap();
     assert_eq!((capture.reference_deg, capture.absolute), both);
@@ -177,7 +177,7 @@ fn start_and_increment_give_the_times() {
         assert_eq!(read(text).unwrap_err(), CaptureError::NoSampleClock { row: 2 }, "{second}");
     }
     // Who says what the column is in is right.
-    let wishes = Wishes { time_unit: Some(TimeUnit::Milliseconds), ..Wishes::default() };
+    let wishes = TableHints { time_unit: Some(TimeUnit::Milliseconds), ..TableHints::default() };
     assert_eq!(read_in(99, text.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 1e-3, 2e-3]);
 }
 
@@ -264,7 +264,7 @@ fn an_open_quotation_mark_swallows_no_rows() {
         assert_eq!(read(text).unwrap_err(), CaptureError::OpenQuote { row: 8 }, "{column}");
     }
     let long = format!("t,sin,cos\n{six}6,3,4,\"{}", "7,8,9\n".repeat(400_000));
-    assert_eq!(read_in(4096, long.as_bytes(), &Wishes::default()).unwrap_err(), CaptureError::OpenQuote { row: 8 });
+    assert_eq!(read_in(4096, long.as_bytes(), &TableHints::default()).unwrap_err(), CaptureError::OpenQuote { row: 8 });
     // Closed at the end of the file, over two lines.
     let (_, capture) = read(format!("t,sin,cos,note\n{six}6,7,8,\"two\nlines\"")).unwrap();
     assert_eq!((capture.sine_v.len(), capture.left_out), (7, 0));
@@ -278,7 +278,7 @@ fn sample_numbers_are_whole_and_in_the_first_column() {
     let times = "X,CH1,CH2,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n0.5,3,4,,\n";
     let expected = CaptureError::NotASampleNumber { row: 4, column: 1, text: "0.5".to_owned() };
     assert_eq!(read(times).unwrap_err(), expected);
-    let wishes = Wishes { time_unit: Some(TimeUnit::Seconds), ..Wishes::default() };
+    let wishes = TableHints { time_unit: Some(TimeUnit::Seconds), ..TableHints::default() };
     assert_eq!(read_in(99, times.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 0.5]);
 }
 

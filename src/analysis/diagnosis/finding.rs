@@ -2,7 +2,7 @@
 
 use super::OutOfLimits;
 use crate::analysis::ellipse::Channel;
-use crate::analysis::wires::Wire;
+use crate::analysis::wiring::Wire;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

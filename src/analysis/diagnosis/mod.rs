@@ -19,7 +19,7 @@ use super::ellipse::{Channel, FitError};
 use super::position_error::Samples;
 use super::quality::{Finding as OutOfLimits, Limits, Verdict, within};
 use super::signal_analysis::{Analysis, AnalysisError};
-use super::wires::Wire;
+use super::wiring::Wire;
 
 /// Hum and interference below this share of the amplitude are not told.
 pub const LEAST_LINE: f64 = 0.002;

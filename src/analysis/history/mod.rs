@@ -20,7 +20,7 @@ use std::ops::Range;
 
 pub use flags::Flags;
 pub use number::Value;
-pub use picture::{Cut, Grid, Picture, Pixel, Reduced};
+pub use picture::{Grid, GridCut, Picture, Pixel, Reduced};
 pub use statistics::Statistics;
 
 use number::Number;

@@ -54,7 +54,7 @@ impl Grid {
 /// Where a [`Grid`] cuts the samples of a history; the same for all of its columns. Samples that are appended later are
 /// not in it, and what is evicted is not drawn.
 #[derive(Clone, Debug)]
-pub struct Cut {
+pub struct GridCut {
     /// The beginning of each pixel column, and the end of the last one.
     edges: Vec<Edge>,
 }
@@ -119,7 +119,7 @@ const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as 
 impl History {
     /// Finds the samples of each pixel column. A column of many samples begins where a bucket of the pyramid does, up to a
     /// sixteenth of its width before its edge; which samples it has depends on nothing but them and the edge.
-    pub fn cut(&self, grid: &Grid) -> Cut {
+    pub fn cut(&self, grid: &Grid) -> GridCut {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.edge(pixel));
             // The first and the last one are the picture's own.
@@ -127,7 +127,7 @@ impl History {
             let before = index.checked_sub(1).and_then(|before| self.times.get(before));
             Edge { index, before, after: self.times.get(index) }
         };
-        Cut { edges: (0..=grid.pixels()).map(edge).collect() }
+        GridCut { edges: (0..=grid.pixels()).map(edge).collect() }
     }
 
     /// The beginning of a bucket in place of the first sample behind an edge, where it is hardly earlier.
@@ -138,7 +138,7 @@ impl History {
     }
 
     /// What there is to draw of a column, into `picture`, whose memory is used again.
-    pub fn picture(&self, column: usize, cut: &Cut, picture: &mut Picture) {
+    pub fn picture(&self, column: usize, cut: &GridCut, picture: &mut Picture) {
         picture.pixels.clear();
         match self.columns.get(column) {
             Some(Column::Real(series)) => Painter { history: self, series, last: None, picture }.paint(cut),
@@ -157,7 +157,7 @@ struct Painter<'a, T> {
 }
 
 impl<T: Number> Painter<'_, T> {
-    fn paint(&mut self, cut: &Cut) {
+    fn paint(&mut self, cut: &GridCut) {
         let all = self.history.all();
         let (Some(from), Some(to)) = (cut.edges.first(), cut.edges.last()) else { return };
         let (from, to) = (from.index.max(all.start), to.index.min(all.end));

@@ -8,7 +8,7 @@ use super::model::DeviceMemory;
 use crate::app::Text;
 use crate::app::action::{ReadError, ReviewAction};
 use crate::app::closing::MUCH;
-use crate::app::review::Sheet;
+use crate::app::review::ReviewSheet;
 use crate::app::services::Services;
 use crate::app::session::{Listed, Opening, Phase, Source};
 use crate::app::studio::SessionId;
@@ -95,7 +95,7 @@ impl AnyDevice {
     }
 
     /// The review of a write, where one is on its way.
-    pub fn sheet(&self) -> Option<Sheet> {
+    pub fn sheet(&self) -> Option<ReviewSheet> {
         self.memory()?.sheet()
     }
 

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use crate::app::action::{Opened, ReadError, ReviewAction};
 use crate::app::documents::only_looked_at;
 use crate::app::recorder::Recorder;
-use crate::app::review::Sheet;
+use crate::app::review::ReviewSheet;
 use crate::app::services::{Services, World};
-use crate::app::session::{Drafted, Kind, Listed, OnDesk, OnLine, Saved, WithMemory};
+use crate::app::session::{Drafted, HasSession, Kind, Listed, Saved, SessionEvents, WithMemory};
 use crate::app::studio::SessionId;
 use crate::app::{
     AnyDevice, DeviceAction, DeviceCommand, EditStep, Recording, RemembersDrives, Severity, SineCosineSource, Tab, Text,
@@ -18,10 +18,10 @@ use crate::profile::{Body, Document, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker;
 
-type Job<T> = <<T as OnDesk>::Device as worker::Device>::Job;
+type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
 
 /// A device, or a profile of one, with everything that is known of it.
-pub trait DeviceModel: OnLine + Drafted + 'static {
+pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// The tab that shows it.
     const TAB: Tab;
 
@@ -265,7 +265,7 @@ pub trait DeviceMemory {
     fn is_reviewing(&self) -> bool;
 
     /// Returns the review of a write, where one is on its way.
-    fn sheet(&self) -> Option<Sheet>;
+    fn sheet(&self) -> Option<ReviewSheet>;
 
     /// Does what is asked of the review.
     fn act_review(&mut self, action: ReviewAction, services: &mut Services);
@@ -313,7 +313,7 @@ impl<T: Saved> DeviceMemory for T {
         self.review().is_some()
     }
 
-    fn sheet(&self) -> Option<Sheet> {
+    fn sheet(&self) -> Option<ReviewSheet> {
         let running = self.session().line().and_then(|line| line.running());
         let done = running.and_then(|running| running.progress.as_ref()).map_or(0, |progress| progress.done);
         WithMemory::sheet(self, usize::try_from(done).unwrap_or(usize::MAX))

@@ -9,10 +9,10 @@ use crossbeam_channel::Receiver;
 use super::command::DeviceCommand;
 use super::model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
 use crate::app::action::{AnyOpened, Attempt, Done, OpenFailed};
-use crate::app::line::Progressing;
+use crate::app::live_session::Progressing;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{DraftDone, Drafted, Kind, OnLine, ProfileFile, Saving, SessionState, Source};
+use crate::app::session::{DraftDone, Drafted, Kind, ProfileFile, Saving, SessionEvents, SessionState, Source};
 use crate::app::{Payload, RemembersDrives, SineCosineSource, Tab, Text, WrongKind};
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
@@ -311,7 +311,7 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn pump(&mut self, services: &mut Services) {
-        OnLine::pump(self, services);
+        SessionEvents::pump(self, services);
     }
 
     fn stop(&mut self, services: &mut Services) {
@@ -319,11 +319,11 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn lose(&mut self, why: Text, services: &mut Services) {
-        OnLine::lose(self, why, services);
+        SessionEvents::lose(self, why, services);
     }
 
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
-        OnLine::let_go(self, end, services);
+        SessionEvents::let_go(self, end, services);
     }
 
     fn may_have_changed(&mut self) {

@@ -270,7 +270,7 @@ pub fn setting(error: &SettingError) -> Text {
 mod tests {
     use super::*;
     use crate::analysis::diagnosis::Severity;
-    use crate::analysis::wires::Wire;
+    use crate::analysis::wiring::Wire;
     use crate::app::Language;
     use crate::sim::sine_cosine::Settings;
 

@@ -1,6 +1,6 @@
 //! Two cursors, and what lies between them: from the raw samples, not from what was reduced for a picture.
 
-use super::{Line, Recorder};
+use super::{Recorder, Series};
 use crate::analysis::Time;
 use crate::analysis::history::Sample;
 
@@ -71,7 +71,7 @@ impl Recorder {
     }
 
     /// What the cursors tell of a line; `None` without a cursor.
-    pub fn measure(&self, line: &Line) -> Option<Measured> {
+    pub fn measure(&self, line: &Series) -> Option<Measured> {
         let [a, b] = self.cursors;
         if a.is_none() && b.is_none() {
             return None;
@@ -89,7 +89,7 @@ impl Recorder {
         })
     }
 
-    fn between(&self, line: &Line, from: Time, to: Time) -> Option<Between> {
+    fn between(&self, line: &Series, from: Time, to: Time) -> Option<Between> {
         let history = self.history(line)?;
         let statistics = history.statistics(line.column, history.indices(from, to.plus(1)))?;
         let factor = line.factor();
@@ -106,7 +106,7 @@ impl Recorder {
     }
 
     /// The raw sample of a line at a point in time: the nearest, where it was recorded then.
-    pub fn at(&self, line: &Line, time: Time) -> Option<Sample> {
+    pub fn at(&self, line: &Series, time: Time) -> Option<Sample> {
         /// By so much of what is visible a cursor may stand beside the first or the last sample.
         const BESIDE: i64 = 200;
         let history = self.history(line)?;

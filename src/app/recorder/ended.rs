@@ -1,13 +1,13 @@
 //! Lines that end, because what comes has another meaning or does not come any more: they keep their samples and units, and
 //! stand behind those that go on.
 
-use super::{Line, LineId, Recorder, Scale};
+use super::{LineId, Recorder, Scale, Series};
 use crate::app::Text;
 
 impl Recorder {
     /// A line that goes on in the place of another one, which has other samples: with its colour, and in its unit where it has
     /// that. The other one ends with this name.
-    pub(in crate::app) fn succeed(&mut self, old: LineId, new: Line, (name, heading): (Text, String)) -> LineId {
+    pub(in crate::app) fn succeed(&mut self, old: LineId, new: Series, (name, heading): (Text, String)) -> LineId {
         let id = self.add_line(new);
         if let (Some(before), Some(at)) = (self.line(old).cloned(), self.lines.iter().position(|line| line.id == old)) {
             let unit = before.chosen();
@@ -25,7 +25,7 @@ impl Recorder {
         id
     }
 
-    fn take(&mut self, id: LineId) -> Option<Line> {
+    fn take(&mut self, id: LineId) -> Option<Series> {
         let at = self.lines.iter().position(|line| line.id == id)?;
         Some(self.lines.remove(at))
     }
@@ -33,7 +33,7 @@ impl Recorder {
     /// Nothing is added to a line any more. It stands behind those that go on.
     pub(in crate::app) fn end_line(&mut self, id: LineId, name: Text, heading: String) {
         if let Some(line) = self.take(id) {
-            self.lines.push(Line { ended: true, remark: None, name, heading, ..line });
+            self.lines.push(Series { ended: true, remark: None, name, heading, ..line });
         }
         self.forget_trigger(id);
     }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
-use super::{GroupId, Line, Recorder, SAMPLE};
+use super::{GroupId, Recorder, SAMPLE, Series};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, History};
 use crate::store::{FileError, write_by};
@@ -265,7 +265,7 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
 }
 
 /// The name and unit as a column of a table has them, which do not depend on the window's language.
-fn heading(line: &Line) -> String {
+fn heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal()),
         None => line.heading.clone(),

@@ -28,7 +28,7 @@ impl Scale {
 
 /// A column of samples over time.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct Series {
     /// Its number.
     pub id: LineId,
     /// What it shows.
@@ -53,10 +53,10 @@ pub struct Line {
     pub(super) scale: usize,
 }
 
-impl Line {
+impl Series {
     /// The column of a group as a line; the first of the scales, which are one at least, is shown.
     pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
-        Line {
+        Series {
             id: LineId::default(),
             name,
             heading: heading.into(),
@@ -76,13 +76,13 @@ impl Line {
     /// The same, hidden.
     #[must_use]
     pub(crate) fn hidden(self) -> Self {
-        Line { shown: false, ..self }
+        Series { shown: false, ..self }
     }
 
     /// The same, calculated from another line.
     #[must_use]
     pub(crate) fn derived(self) -> Self {
-        Line { derived: true, ..self }
+        Series { derived: true, ..self }
     }
 
     /// The column of its history.

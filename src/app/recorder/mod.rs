@@ -16,9 +16,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 pub use cursors::{Cursor, Measured};
 pub use export::{Export, Exported};
-pub use line::{Line, LineId, Scale};
+pub use line::{LineId, Scale, Series};
 pub use trigger::{Trigger, TriggerState, When};
-pub use view::View;
+pub use view::TimeWindow;
 
 use trigger::Watch;
 
@@ -111,9 +111,9 @@ impl Group {
 #[derive(Debug, Default)]
 pub struct Recorder {
     groups: BTreeMap<GroupId, Group>,
-    lines: Vec<Line>,
+    lines: Vec<Series>,
     next: u32,
-    view: View,
+    view: TimeWindow,
     counts: bool,
     finished: bool,
     one_axis: bool,
@@ -127,7 +127,7 @@ pub struct Recorder {
 impl Recorder {
     /// Nothing is recorded yet; this many nanoseconds are shown while it follows.
     pub fn new(span: i64) -> Self {
-        Recorder { view: View::Follow { span: span.max(1) }, ..Recorder::default() }
+        Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
 
     /// The same for samples of which nobody knows when they were taken: their times are their numbers times
@@ -156,11 +156,11 @@ impl Recorder {
     }
 
     /// A line for a column of a group. The first of its scales is shown.
-    pub fn add_line(&mut self, line: Line) -> LineId {
+    pub fn add_line(&mut self, line: Series) -> LineId {
         let id = LineId(self.new_number());
         let taken = |colour: &usize| self.lines.iter().all(|own| own.colour != *colour);
         let colour = (0..).find(taken).unwrap_or(0);
-        self.lines.push(Line { id, colour, ..line });
+        self.lines.push(Series { id, colour, ..line });
         id
     }
 
@@ -244,36 +244,36 @@ impl Recorder {
     }
 
     /// All lines, in the order in which they came.
-    pub fn lines(&self) -> &[Line] {
+    pub fn lines(&self) -> &[Series] {
         &self.lines
     }
 
     /// The line of that number.
-    pub fn line(&self, id: LineId) -> Option<&Line> {
+    pub fn line(&self, id: LineId) -> Option<&Series> {
         self.lines.iter().find(|line| line.id == id)
     }
 
     /// The lines that are shown; those that have ended, where there are samples of them in what is visible.
-    pub fn shown(&self) -> impl Iterator<Item = &Line> {
+    pub fn shown(&self) -> impl Iterator<Item = &Series> {
         let (from, to) = self.window();
-        let is_visible = move |line: &&Line| {
+        let is_visible = move |line: &&Series| {
             !line.ended || self.history(line).is_some_and(|history| !history.indices(from, to.plus(1)).is_empty())
         };
         self.wanted().filter(is_visible)
     }
 
     /// The lines that are to be shown, whatever is visible.
-    fn wanted(&self) -> impl Iterator<Item = &Line> {
+    fn wanted(&self) -> impl Iterator<Item = &Series> {
         self.lines.iter().filter(|line| line.shown)
     }
 
     /// The samples of a line: the history that it is a column of.
-    pub fn history(&self, line: &Line) -> Option<&History> {
+    pub fn history(&self, line: &Series) -> Option<&History> {
         self.groups.get(&line.group).map(|group| &group.history)
     }
 
     /// Whose samples those of a line are.
-    pub fn stamp(&self, line: &Line) -> Option<Stamp> {
+    pub fn stamp(&self, line: &Series) -> Option<Stamp> {
         self.groups.get(&line.group).map(|group| group.stamp)
     }
 
@@ -288,7 +288,7 @@ impl Recorder {
     }
 
     /// The raw sample of a line that is nearest to a point in time.
-    pub fn nearest(&self, line: &Line, time: Time) -> Option<Sample> {
+    pub fn nearest(&self, line: &Series, time: Time) -> Option<Sample> {
         let history = self.history(line)?;
         history.sample(line.column, history.nearest(time)?)
     }
@@ -335,7 +335,7 @@ impl Recorder {
         self.forget_trigger(id);
     }
 
-    fn with_line(&mut self, id: LineId, change: impl FnOnce(&mut Line)) {
+    fn with_line(&mut self, id: LineId, change: impl FnOnce(&mut Series)) {
         if let Some(line) = self.lines.iter_mut().find(|line| line.id == id) {
             change(line);
         }

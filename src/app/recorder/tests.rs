@@ -17,8 +17,8 @@ fn recorder(span: i64) -> (Recorder, GroupId, [LineId; 2]) {
     let degrees = Scale::new("unit.degrees", 360.0 / 4096.0, 3);
     let scales = vec![Scale::new("unit.steps", 1.0, 0), degrees];
     let name = || Text::new("recorder.position");
-    let counts = recorder.add_line(Line::of(group, 0, name(), "position", scales));
-    let volts = recorder.add_line(Line::of(group, 1, name(), "sine", vec![Scale::new("unit.steps", 1.0, 4)]));
+    let counts = recorder.add_line(Series::of(group, 0, name(), "position", scales));
+    let volts = recorder.add_line(Series::of(group, 1, name(), "sine", vec![Scale::new("unit.steps", 1.0, 4)]));
     (recorder, group, [counts, volts])
 }
 
@@ -112,7 +112,7 @@ fn a_cursor_where_nothing_was_recorded_reads_nothing() {
     let (mut recorder, group, [counts, _]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Whole], 100, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
-    let late = recorder.add_line(Line::of(slow, 0, Text::new("recorder.speed"), "counter", scales));
+    let late = recorder.add_line(Series::of(slow, 0, Text::new("recorder.speed"), "counter", scales));
     ramp(&mut recorder, group, 0, 1000);
     recorder.append(slow, &[at(700), at(900)], &[Part::whole(&[7, 9])]).unwrap();
     recorder.act(Action::SetCursor(Cursor::A, Some(at(500))));
@@ -132,7 +132,7 @@ fn a_held_picture_is_not_lost_for_newer_samples() {
     let mut recorder = Recorder::new(100 * MILLISECOND);
     let group = recorder.add_group(&[Kind::Whole], 10_000, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
-    let line = recorder.add_line(Line::of(group, 0, Text::new("recorder.position"), "position", scales));
+    let line = recorder.add_line(Series::of(group, 0, Text::new("recorder.position"), "position", scales));
     let feed = |recorder: &mut Recorder, from: i64, to: i64| {
         let times: Vec<Time> = (from..to).map(at).collect();
         let values: Vec<i64> = (from..to).collect();
@@ -286,7 +286,7 @@ fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
     let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Real], 100, None);
     let celsius = vec![Scale::new("unit.degrees", 1.0, 1)];
-    recorder.add_line(Line::of(slow, 0, Text::new("recorder.position"), "temperature, \"inside\"", celsius));
+    recorder.add_line(Series::of(slow, 0, Text::new("recorder.position"), "temperature, \"inside\"", celsius));
     add(&mut recorder, group, -1, 4096, 0.5, Flags::NONE);
     add(&mut recorder, group, 2, 1024, f64::NAN, Flags::NONE);
     add(&mut recorder, group, 3, 7, 0.25, Flags::BAD);
@@ -312,7 +312,7 @@ fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
 fn samples_without_times_are_counted() {
     let mut recorder = Recorder::counting(100);
     let group = recorder.add_group(&[Kind::Real], 100, None);
-    recorder.add_line(Line::of(
+    recorder.add_line(Series::of(
         group,
         0,
         Text::new("recorder.position"),

@@ -1,6 +1,6 @@
 //! Waiting for something to happen in a line, and a picture of it with what was before.
 
-use super::{GroupId, LineId, Recorder, View};
+use super::{GroupId, LineId, Recorder, TimeWindow};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, Sample};
 
@@ -112,7 +112,7 @@ impl Recorder {
     }
 
     pub(super) fn arm(&mut self, trigger: Trigger) {
-        let Some(factor) = self.line(trigger.line).map(super::Line::factor) else { return };
+        let Some(factor) = self.line(trigger.line).map(super::Series::factor) else { return };
         let level = trigger.level / factor;
         if trigger.when.has_level() && !level.is_finite() {
             return;
@@ -132,7 +132,7 @@ impl Recorder {
         if self.finished {
             self.search();
         } else {
-            self.view = View::Follow { span };
+            self.view = TimeWindow::Follow { span };
         }
     }
 
@@ -149,7 +149,7 @@ impl Recorder {
         self.watch = Some(watch);
         if let Some(at) = found {
             let (from, to) = watch.window(at);
-            self.view = View::Fixed { from, to };
+            self.view = TimeWindow::Fixed { from, to };
         }
     }
 
@@ -192,7 +192,7 @@ impl Recorder {
         self.watch = Some(watch);
         if let Some(at) = shown {
             let (from, to) = watch.window(at);
-            self.view = View::Fixed { from, to };
+            self.view = TimeWindow::Fixed { from, to };
         }
     }
 }

@@ -10,7 +10,7 @@ const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
 
 /// Which stretch of time is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum View {
+pub enum TimeWindow {
     /// The newest samples, over this many nanoseconds.
     Follow {
         /// Nanoseconds, at least 1.
@@ -25,28 +25,28 @@ pub enum View {
     },
 }
 
-impl Default for View {
+impl Default for TimeWindow {
     fn default() -> Self {
-        View::Follow { span: 10_000_000_000 }
+        TimeWindow::Follow { span: 10_000_000_000 }
     }
 }
 
 impl Recorder {
     /// How it is looked at.
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> TimeWindow {
         self.view
     }
 
     /// It goes on with the newest samples.
     pub fn follows(&self) -> bool {
-        matches!(self.view, View::Follow { .. })
+        matches!(self.view, TimeWindow::Follow { .. })
     }
 
     /// The stretch of time that is shown. While there is less than that, it begins with the first sample.
     pub fn window(&self) -> (Time, Time) {
         match self.view {
-            View::Fixed { from, to } => (from, to),
-            View::Follow { span } => match self.recorded() {
+            TimeWindow::Fixed { from, to } => (from, to),
+            TimeWindow::Follow { span } => match self.recorded() {
                 Some((first, last)) if last.nanoseconds_since(first) >= span => (last.plus(-span), last),
                 Some((first, _)) => (first, first.plus(span)),
                 None => (Time::ORIGIN, Time::ORIGIN.plus(span)),
@@ -62,13 +62,13 @@ impl Recorder {
 
     pub(super) fn follow(&mut self) {
         // As long as what was looked at.
-        self.view = View::Follow { span: self.span() };
+        self.view = TimeWindow::Follow { span: self.span() };
         self.lines.iter_mut().for_each(|line| line.range = None);
     }
 
     pub(super) fn pause(&mut self) {
         let (from, to) = self.window();
-        self.view = View::Fixed { from, to };
+        self.view = TimeWindow::Fixed { from, to };
     }
 
     pub(super) fn fit(&mut self) {
@@ -76,20 +76,20 @@ impl Recorder {
         let Some((first, last)) = self.recorded() else { return };
         // A little more to the right, so that the last sample is to be seen.
         let span = last.nanoseconds_since(first).max(SHORTEST);
-        self.view = View::Fixed { from: first, to: last.plus(span / 200 + 1) };
+        self.view = TimeWindow::Fixed { from: first, to: last.plus(span / 200 + 1) };
     }
 
     pub(super) fn look(&mut self, from: Time, to: Time) {
         let (from, to) = (from.min(to), from.max(to));
         let span = to.nanoseconds_since(from).clamp(SHORTEST, LONGEST);
-        self.view = View::Fixed { from, to: from.plus(span) };
+        self.view = TimeWindow::Fixed { from, to: from.plus(span) };
     }
 
     pub(super) fn set_span(&mut self, span: i64) {
         let span = span.clamp(SHORTEST, LONGEST);
         self.view = match self.view {
-            View::Follow { .. } => View::Follow { span },
-            View::Fixed { to, .. } => View::Fixed { from: to.plus(-span), to },
+            TimeWindow::Follow { .. } => TimeWindow::Follow { span },
+            TimeWindow::Fixed { to, .. } => TimeWindow::Fixed { from: to.plus(-span), to },
         };
     }
 
@@ -101,12 +101,12 @@ impl Recorder {
         let longer = |nanoseconds: i64| (nanoseconds as f64 * factor).round() as i64;
         let span = longer(self.span()).clamp(SHORTEST, LONGEST);
         match self.view {
-            View::Follow { .. } => self.view = View::Follow { span },
-            View::Fixed { from, to } => {
+            TimeWindow::Follow { .. } => self.view = TimeWindow::Follow { span },
+            TimeWindow::Fixed { from, to } => {
                 let share = about.seconds_since(from) / to.seconds_since(from);
                 let before = (span as f64 * share.clamp(0.0, 1.0)).round() as i64;
                 let from = about.clamp(from, to).plus(-before);
-                self.view = View::Fixed { from, to: from.plus(span) };
+                self.view = TimeWindow::Fixed { from, to: from.plus(span) };
             }
         }
     }

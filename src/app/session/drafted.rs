@@ -2,7 +2,7 @@
 //! draft is looked for, kept and forgotten is the same for all.
 
 use super::drafts::DRAFT_BACK;
-use super::{DraftDone, DraftEdits, DraftKey, Kind, OnDesk, Phase, ProfileFile, Saving, Source};
+use super::{DraftDone, DraftEdits, DraftKey, HasSession, Kind, Phase, ProfileFile, Saving, Source};
 use crate::app::services::Services;
 use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::profile::Document;
@@ -12,10 +12,10 @@ use crate::store::FileError;
 const NOT_SAVED: &str = "session.not_saved";
 
 /// What is kept of a device's edits.
-type Edits<T> = <<T as OnDesk>::Device as Kind>::Edits;
+type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// Whoever is shown in a session and can be edited.
-pub trait Drafted: OnDesk {
+pub trait Drafted: HasSession {
     /// The type and the serial number of the device that was read: another type may have the same number. An empty number
     /// where the device does not say who it is; `None` where nothing has been read.
     fn type_and_serial(&self) -> Option<(String, String)>;

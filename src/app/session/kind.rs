@@ -17,13 +17,13 @@ pub trait Kind: Device + Sized {
     type Edits: DraftEdits;
 
     /// What is kept of a session beside its thread.
-    type Aside: Send;
+    type SessionHandle: Send;
 
     /// A write on its way: the [`Review`](crate::app::review::Review) of a kind with a memory.
     type Review;
 
     /// Takes that before the session goes to its thread.
-    fn aside(session: &Session<Self>) -> Self::Aside;
+    fn aside(session: &Session<Self>) -> Self::SessionHandle;
 
     /// Opens links to such devices.
     ///
@@ -53,7 +53,7 @@ pub trait Kind: Device + Sized {
     fn survey() -> Self::Job;
 
     /// A step of a job in words.
-    fn doing(what: &Self::Doing) -> Text;
+    fn doing(what: &Self::JobStep) -> Text;
 
     /// What a job that writes came to; `None` of any other.
     fn told(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {

@@ -1,26 +1,26 @@
 //! A device whose memory is written through a review: from a wish to a plan, from the plan and the consent to it to the job
 //! that carries it out, and what came of it. A kind says what its changes, plans and jobs are, and what else hangs on them.
 
-use super::{Cut, Drafted, Kind, OnDesk, OnLine};
-use crate::app::review::{self, OpWords, Permit, Review, ReviewState, Reviewed, Sheet, told};
+use super::{Drafted, EarlyEnd, HasSession, Kind, SessionEvents};
+use crate::app::review::{self, OpWords, Permit, Review, ReviewSheet, ReviewState, Reviewed, told};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
 use crate::worker::commit::Planned as _;
 use crate::worker::{self, Device, EndedEarly as _};
 
-type Job<T> = <<T as OnDesk>::Device as Device>::Job;
-type Error<T> = <<T as OnDesk>::Device as Device>::Error;
-type Change<T> = <<T as OnDesk>::Device as Reviewed>::Change;
-type Op<T> = review::Op<<T as OnDesk>::Device>;
-type Prepared<T> = <<T as OnDesk>::Device as Reviewed>::Prepared;
-type Committed<T> = worker::Committed<<<T as OnDesk>::Device as Reviewed>::Written>;
+type Job<T> = <<T as HasSession>::Device as Device>::Job;
+type Error<T> = <<T as HasSession>::Device as Device>::Error;
+type Change<T> = <<T as HasSession>::Device as Reviewed>::Change;
+type Op<T> = review::Op<<T as HasSession>::Device>;
+type Prepared<T> = <<T as HasSession>::Device as Reviewed>::Prepared;
+type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewed>::Written>;
 
 /// A plan that a person consented to.
-pub type Agreed<K> = worker::commit::Agreed<<K as Reviewed>::Prepared>;
+pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewed>::Prepared>;
 
 /// Whoever has a memory.
-pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
+pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// A write on its way.
     fn review(&self) -> Option<&Review<Self::Device>> {
         self.session().review.as_ref()
@@ -37,7 +37,7 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     }
 
     /// The review as a person sees it; `done` operations have been carried out.
-    fn sheet(&self, done: usize) -> Option<Sheet> {
+    fn sheet(&self, done: usize) -> Option<ReviewSheet> {
         self.review().map(|review| review.sheet_with(done, |prepared, op| self.op(prepared, op)))
     }
 
@@ -59,7 +59,7 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     fn prepare(change: Change<Self>) -> Job<Self>;
 
     /// The job that carries a plan out.
-    fn commit(&mut self, agreed: Agreed<Self::Device>) -> Job<Self>;
+    fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
     /// Forgets what it knows of the device: another one answers.
     fn forget_device(&mut self);
@@ -181,11 +181,11 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
     }
 
     /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
-    fn agree(&self, shown: PlanId) -> Option<Agreed<Self::Device>> {
+    fn agree(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
         let review = self.review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
         let is_shown = prepared.plan().id() == shown;
-        is_shown.then(|| worker::commit::Agreed {
+        is_shown.then(|| worker::commit::ApprovedPlan {
             prepared: (**prepared).clone(),
             consent: Consent::to(shown),
             force_wear: review.force_wear,
@@ -240,17 +240,17 @@ pub trait WithMemory: OnLine + Drafted + OnDesk<Device: Reviewed> {
 
     /// A plan, or carrying it out, has ended early; true where the review says so. One that was given up while it was made
     /// is no review any more.
-    fn cut_write(&mut self, how: Cut<Error<Self>>, texts: &[Text]) -> bool {
+    fn cut_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
-            (_, false, false) | (Cut::Lost, _, false) => return false,
-            (Cut::Cancelled(_), true, _) => {
+            (_, false, false) | (EarlyEnd::Lost, _, false) => return false,
+            (EarlyEnd::Cancelled(_), true, _) => {
                 *self.review_mut() = None;
                 return false;
             }
             // How far it came is not known.
-            (Cut::Lost, ..) => (true, 0),
-            (Cut::Failed(error) | Cut::Cancelled(error), ..) => {
+            (EarlyEnd::Lost, ..) => (true, 0),
+            (EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error), ..) => {
                 let done = error.done();
                 if done.is_some() {
                     self.reads_again();

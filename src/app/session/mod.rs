@@ -3,13 +3,13 @@
 
 mod drafted;
 mod drafts;
+mod has_session;
 mod kind;
 mod memory;
-mod on_desk;
-mod on_line;
 mod profiles;
 mod saved;
 mod saving;
+mod session_events;
 mod state;
 
 use std::ops::{Deref, DerefMut};
@@ -19,22 +19,22 @@ use std::time::Duration;
 pub use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
+pub use has_session::HasSession;
 pub use kind::{Kind, LastWords};
-pub use memory::{Agreed, WithMemory};
-pub use on_desk::OnDesk;
-pub(crate) use on_line::first;
-pub use on_line::{Cut, OnLine};
+pub use memory::{ApprovedPlanOf, WithMemory};
 pub use profiles::Listed;
 pub(crate) use saved::some;
 pub use saved::{Known, Saved, without_edits};
 pub(in crate::app) use saving::Found;
 pub use saving::{Guard, ProfileFile, Saving};
+pub(crate) use session_events::first;
+pub use session_events::{EarlyEnd, SessionEvents};
 pub use state::SessionState;
 
 use super::action::Opened;
-use super::leaving::Leaver;
-use super::line::Line;
+use super::live_session::LiveSession;
 use super::services::{JobEnd, Services};
+use super::shutdown::Leaver;
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Scheme};
@@ -108,7 +108,7 @@ pub(in crate::app) fn without_codes(url: &LinkUrl) -> String {
 /// A device on the desk, or a profile of one: its state, its line and its draft.
 pub struct Session<D: Kind> {
     state: SessionState,
-    pub(crate) line: Option<Line<D>>,
+    pub(crate) line: Option<LiveSession<D>>,
     /// How it stands with the draft of its edits.
     pub(crate) drafting: Drafting<D::Edits>,
     /// A write on its way.
@@ -151,7 +151,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// The line to the device, while it is connected.
-    pub fn line(&self) -> Option<&Line<D>> {
+    pub fn line(&self) -> Option<&LiveSession<D>> {
         self.line.as_ref()
     }
 
@@ -168,7 +168,7 @@ impl<D: Kind> Session<D> {
 
     /// Its memory is being changed.
     pub fn is_writing(&self) -> bool {
-        self.line.as_ref().and_then(Line::running).is_some_and(|running| running.writes)
+        self.line.as_ref().and_then(LiveSession::running).is_some_and(|running| running.writes)
     }
 
     /// It is read all the time.
@@ -200,7 +200,7 @@ impl<D: Kind> Session<D> {
     pub fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
         self.opening = None;
         self.trace.begin(opened.began.clone());
-        self.line = Some(Line::new(opened));
+        self.line = Some(LiveSession::new(opened));
         self.phase = Phase::Connected;
         services.log.settle("session.not_connected", Some(&self.name()));
         self.just_connected = true;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{OnDesk, Phase, Source, WithMemory};
+use super::{HasSession, Phase, Source, WithMemory};
 use crate::app::Text;
 use crate::app::action::ReadError;
 use crate::app::documents::{document_of, only_looked_at, read_error};
@@ -11,7 +11,7 @@ use crate::profile::{Body, Document, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker::Device;
 
-type Job<T> = <<T as OnDesk>::Device as Device>::Job;
+type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
 /// What was read as a profile, with what is to be said of it; or what is missing for one, a text each.
 pub type Known = Result<(Body, Vec<Text>), Vec<Text>>;

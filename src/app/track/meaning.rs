@@ -1,7 +1,7 @@
 //! What positions mean: in which range they go round, how much a step is, and the units in which they are seen.
 
 use crate::app::Text;
-use crate::app::recorder::{GroupId, Line, Scale};
+use crate::app::recorder::{GroupId, Scale, Series};
 
 /// What the positions of a device are.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,11 +78,11 @@ impl Meaning {
         [("recorder.position", "position"), (speed, "speed"), ("recorder.acceleration", "acceleration")]
     }
 
-    pub(super) fn lines(&self, group: GroupId) -> [Line; 3] {
+    pub(super) fn lines(&self, group: GroupId) -> [Series; 3] {
         let [position, speed, acceleration] = self.scales.clone();
         let [own_position, own_speed, own_acceleration] = self.headings();
         let line = |column, (name, heading): (&'static str, &'static str), scales| {
-            Line::of(group, column, Text::new(name), heading, scales)
+            Series::of(group, column, Text::new(name), heading, scales)
         };
         [
             line(0, own_position, position),

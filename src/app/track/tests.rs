@@ -1,7 +1,7 @@
 //! Positions of a stream: many at once, and nothing of them is joined that does not belong together.
 
 use super::*;
-use crate::app::recorder::{Line, Scale};
+use crate::app::recorder::{Scale, Series};
 
 #[derive(Clone, Debug, PartialEq)]
 struct Nothing;
@@ -11,15 +11,15 @@ impl Watchable for Nothing {
         true
     }
 
-    fn line(&self, group: GroupId) -> Line {
-        Line::of(group, 0, Text::new("recorder.position"), "nothing", vec![Scale::new("unit.steps", 1.0, 0)])
+    fn line(&self, group: GroupId) -> Series {
+        Series::of(group, 0, Text::new("recorder.position"), "nothing", vec![Scale::new("unit.steps", 1.0, 0)])
     }
 }
 
 /// A revolution of 1000 steps, 50 steps a sample, 20 000 of them a second: 1000 revolutions.
-fn stream(from: u64, count: u64) -> Vec<Sighting> {
+fn stream(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
-        .map(|number| Sighting {
+        .map(|number| PositionSample {
             at: Moment::after_start(Duration::from_micros(50 * number)),
             position: Some((number * 50 % 1000) as i64),
             is_bad: false,
@@ -124,9 +124,9 @@ fn a_shaft_that_may_have_come_round_unseen_is_not_followed() {
 }
 
 /// Positions once a second: so many, from a second on.
-fn seconds(from: u64, count: u64) -> Vec<Sighting> {
+fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
-        .map(|second| Sighting {
+        .map(|second| PositionSample {
             at: Moment::after_start(Duration::from_secs(second)),
             position: Some(second as i64 * 10),
             is_bad: false,

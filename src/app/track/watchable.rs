@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 use crate::analysis::history::Value;
 use crate::app::Text;
-use crate::app::recorder::{GroupId, Line};
+use crate::app::recorder::{GroupId, Series};
 use crate::units::Moment;
 
 /// What can be watched.
@@ -13,7 +13,7 @@ pub trait Watchable: Clone + PartialEq {
     fn is_whole(&self) -> bool;
 
     /// What it is called, and in which units it is seen.
-    fn line(&self, group: GroupId) -> Line;
+    fn line(&self, group: GroupId) -> Series;
 
     /// Samples of this go on as samples of the other, which may be seen in other units.
     fn continues(&self, other: &Self) -> bool {
@@ -27,7 +27,7 @@ impl Watchable for Infallible {
         match *self {}
     }
 
-    fn line(&self, _group: GroupId) -> Line {
+    fn line(&self, _group: GroupId) -> Series {
         match *self {}
     }
 }

@@ -10,7 +10,7 @@ use clap::{ArgMatches, Args};
 use serde_json::{Value as Json, json};
 
 use self::args::Analyse;
-use crate::analysis::capture::{Capture, Layout, Wishes};
+use crate::analysis::capture::{Capture, Layout, TableHints};
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
 use crate::analysis::position_error::{Basis, Samples, harmonics};
 use crate::analysis::quality::Family;
@@ -40,7 +40,8 @@ impl OwnCommand for AnalyseCommand {
 
 fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let path = &arguments.file;
-    let wishes = Wishes { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..Wishes::default() };
+    let wishes =
+        TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
     let bar = Bar::default();
     let mut progress = |done, total| bar.show(done, total, &"bytes");
     // Ctrl-C ends a command that only reads.
@@ -63,7 +64,7 @@ fn analyse(output: &Output, arguments: &Analyse) -> Result {
         Failure::Failed(std::iter::once(told).chain(more).collect())
     })?;
     let revolution = revolution(output, &capture, &analysis, arguments.periods);
-    let told = Told {
+    let told = CaptureReport {
         family,
         analysis: &analysis,
         diagnosis: &diagnosis,
@@ -100,7 +101,7 @@ fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: 
 }
 
 /// All that is told of a capture.
-struct Told<'a> {
+struct CaptureReport<'a> {
     family: Family,
     analysis: &'a Analysis,
     diagnosis: &'a Diagnosis,
@@ -110,7 +111,7 @@ struct Told<'a> {
     rows_left_out: u64,
 }
 
-impl Told<'_> {
+impl CaptureReport<'_> {
     fn speed_rpm(&self) -> Option<f64> {
         Some(self.analysis.frequency_hz()? * 60.0 / f64::from(self.periods?))
     }

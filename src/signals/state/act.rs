@@ -6,9 +6,10 @@ use std::sync::Arc;
 use super::reading::{self, Reading};
 use super::synchronise::Synchronise;
 use super::{
-    Action, Done, Failed, Judge, Measurement, Place, Read, Results, Scope, Source, SourceAction, Table, promise,
+    Action, Done, Failed, Judge, Measurement, Read, Results, Scope, Source, SourceAction, Table, TableSource,
+    task_guard,
 };
-use crate::analysis::capture::Wishes;
+use crate::analysis::capture::TableHints;
 use crate::analysis::diagnosis::{Changes, Finding, compare};
 use crate::analysis::quality::Family;
 use crate::app::number::MOST_PERIODS;
@@ -219,8 +220,8 @@ impl Signals {
     /// Does what is asked.
     pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
         match action {
-            Action::Open(path) => self.open_at(Place::File(path), services),
-            Action::Example(example) => self.open_at(Place::Example(example), services),
+            Action::Open(path) => self.open_at(TableSource::File(path), services),
+            Action::Example(example) => self.open_at(TableSource::Example(example), services),
             Action::SetDelimiter(delimiter) => self.wish(services, |wishes| wishes.delimiter = Some(delimiter)),
             Action::SetDecimalComma(comma) => self.wish(services, |wishes| wishes.decimal_comma = Some(comma)),
             Action::SetTimeUnit(unit) => self.wish(services, |wishes| wishes.time_unit = Some(unit)),
@@ -228,7 +229,7 @@ impl Signals {
                 self.wish(services, |wishes| wishes.volts_per_unit = Some(volts));
             }
             Action::SetVolts(_) => {}
-            Action::Detect => self.wish(services, |wishes| *wishes = Wishes::default()),
+            Action::Detect => self.wish(services, |wishes| *wishes = TableHints::default()),
             Action::SetColumn(column, number) => {
                 let settled = self.settled();
                 if self.table.as_mut().is_some_and(|table| table.choose(column, number)) {
@@ -288,7 +289,7 @@ impl Signals {
     /// Other samples: a table of those before that is still being written cannot be ended.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.act(recorder::Action::CancelExport);
-        promise::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
+        task_guard::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
     fn show(&mut self, measurement: Measurement, services: &Services) {
@@ -297,7 +298,7 @@ impl Signals {
         if let Some(before) = self.measurement.replace(Arc::new(measurement))
             && before.capture.sine_v.len() > LARGE
         {
-            promise::let_go(&services.tasks, before);
+            task_guard::let_go(&services.tasks, before);
         }
     }
 
@@ -342,7 +343,7 @@ impl Signals {
     }
 
     /// Reads the table again with another wish.
-    fn wish(&mut self, services: &mut Services, change: impl FnOnce(&mut Wishes)) {
+    fn wish(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
         let settled = self.settled();
         if let Some(table) = &mut self.table {
             change(&mut table.wishes);
@@ -356,12 +357,12 @@ impl Signals {
         }
     }
 
-    fn open_at(&mut self, place: Place, services: &mut Services) {
+    fn open_at(&mut self, place: TableSource, services: &mut Services) {
         let settled = self.settled();
         if std::mem::take(&mut self.periods_of_source) {
             self.periods = None;
         }
-        self.read(place, Wishes::default(), settled, services);
+        self.read(place, TableHints::default(), settled, services);
     }
 
     pub(super) fn judge(&self) -> Judge {
@@ -373,20 +374,20 @@ impl Signals {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
         let (number, judge) = (self.judgements, self.judge());
-        promise::run(&services.tasks, "judge", Done::Failed(Failed::Judge), move || Done::Judged {
+        task_guard::run(&services.tasks, "judge", Done::Failed(Failed::Judge), move || Done::Judged {
             number,
             measurement: Box::new(measurement.judged(judge)),
         });
     }
 
     /// Begins to read; what was being read is given up.
-    fn read(&mut self, place: Place, wishes: Wishes, settled: Option<Table>, services: &mut Services) {
+    fn read(&mut self, place: TableSource, wishes: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;
         let (reading, progress) = Reading::new(number, place.clone(), settled);
         self.reading = Some(reading);
         let judge = self.judge();
-        promise::run(&services.tasks, "capture", Done::Failed(Failed::Read(number)), move || Done::Read {
+        task_guard::run(&services.tasks, "capture", Done::Failed(Failed::Read(number)), move || Done::Read {
             number,
             read: Box::new(reading::read(place, wishes, judge, &progress)),
         });

@@ -7,7 +7,7 @@ use crate::signals::state::TEXTS;
 
 use crossbeam_channel::Receiver;
 
-use crate::analysis::wires::Wires;
+use crate::analysis::wiring::Wires;
 use crate::app::services::Services;
 use crate::app::{Text, explain};
 use crate::buses::bridge::jobs::{Bridge, BridgeError, Open, Pair, SineCosine, open_adapter};

@@ -9,12 +9,12 @@ use crossbeam_channel::Receiver;
 
 use super::feed::{AdapterLink, Feed};
 use super::recent::{MOST, Recent};
-use super::{Done, Failed, Measurement, Origin, Scope, Signals, promise};
+use super::{Done, Failed, Measurement, Origin, Scope, Signals, task_guard};
 use crate::analysis::Time;
 use crate::analysis::quality::Family;
-use crate::analysis::wires::Wire;
-use crate::app::leaving::same_wire;
+use crate::analysis::wiring::Wire;
 use crate::app::services::Services;
+use crate::app::shutdown::same_wire;
 use crate::app::{Severity, Text, explain};
 use crate::buses::bridge::procedures::Streaming;
 use crate::link::LinkUrl;
@@ -397,7 +397,7 @@ impl Signals {
         let Some((window, origin)) = live.recent.window(window_ms).zip(live.origin()) else { return };
         live.measuring = true;
         live.measured = live.recent.newest();
-        promise::run(&services.tasks, "measure", Done::Failed(Failed::Measure(number)), move || {
+        task_guard::run(&services.tasks, "measure", Done::Failed(Failed::Measure(number)), move || {
             let measurement = Measurement::of(origin, Arc::new(window.capture()), judge);
             Done::Measured { number, measurement: Box::new(measurement) }
         });

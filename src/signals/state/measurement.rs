@@ -5,7 +5,7 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{AbsoluteOffset, Example, NoOffset, Nonlinearities, Spectra, beside};
+use super::{AbsoluteOffset, Example, NoOffset, Nonlinearities, Spectra, reference_comparison};
 use crate::analysis::capture::Capture;
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
 use crate::analysis::ellipse::Correction;
@@ -22,7 +22,7 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// A table.
-    Table(Place),
+    Table(TableSource),
     /// The virtual encoder.
     Virtual,
     /// An adapter.
@@ -36,7 +36,7 @@ pub enum Origin {
 
 /// Where a table lies.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum TableSource {
     /// A file.
     File(PathBuf),
     /// One that ships with the program.
@@ -55,7 +55,7 @@ impl Origin {
     }
 }
 
-impl Place {
+impl TableSource {
     /// The name of the file, without folders.
     pub fn name(&self) -> Text {
         let path = self.path();
@@ -65,8 +65,8 @@ impl Place {
 
     pub(super) fn path(&self) -> PathBuf {
         match self {
-            Place::File(path) => path.clone(),
-            Place::Example(example) => example.file_name().into(),
+            TableSource::File(path) => path.clone(),
+            TableSource::Example(example) => example.file_name().into(),
         }
     }
 }
@@ -136,7 +136,7 @@ impl Measurement {
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::of(samples),
             nonlinearities: beside_reference(&capture, &analysis, judge),
-            absolute_offset: beside::absolute_offset(&capture, analysis.as_ref().ok()),
+            absolute_offset: reference_comparison::absolute_offset(&capture, analysis.as_ref().ok()),
             raw: density(samples, None),
             corrected: analysis.as_ref().ok().and_then(|own| density(samples, Some(own.ellipse.correction()))),
             analysis,
@@ -194,7 +194,7 @@ fn beside_reference(
     analysis: &Result<Analysis, AnalysisError>,
     judge: Judge,
 ) -> Option<Result<Nonlinearities, RevolutionError>> {
-    beside::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
+    reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
 /// A picture of all samples, around zero, corrected or as they are.

@@ -4,21 +4,21 @@
 
 mod act;
 mod action;
-mod beside;
 mod feed;
 pub mod forms;
 pub mod input_circuit;
 pub mod interpolation;
 mod live;
 mod measurement;
-mod promise;
 mod quantities;
 mod reading;
 mod recent;
+mod reference_comparison;
 mod scope;
 mod spectra;
 pub mod synchronise;
 mod table;
+mod task_guard;
 mod texts;
 
 pub use texts::TEXTS;
@@ -47,11 +47,11 @@ impl ToolAction for Action {
 
 pub use act::Signals;
 pub use action::{Action, Done, Failed, Read};
-pub use beside::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};
 pub use live::{Source, SourceAction, SourceKind, VIRTUAL_ADAPTER};
-pub use measurement::{Judge, Measurement, Origin, Place, Results};
+pub use measurement::{Judge, Measurement, Origin, Results, TableSource};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
+pub use reference_comparison::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};
 pub use scope::{NoTimes, Scope};
 pub use spectra::{ChannelSpectrum, Spectra, dbv};
 pub use table::{Column, Table};

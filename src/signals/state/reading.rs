@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::{Judge, Measurement, Origin, Place, Read, Scope, Table};
-use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Wishes};
+use super::{Judge, Measurement, Origin, Read, Scope, Table, TableSource};
+use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, TableHints};
 use crate::store::{ReadCaptureError, capture_head, read_capture};
 
 /// A capture that ships with the program.
@@ -50,7 +50,7 @@ pub struct Reading {
     /// Which attempt.
     pub(super) number: u32,
     /// What is read.
-    pub place: Place,
+    pub place: TableSource,
     /// The table before, for when this one is given up.
     pub(super) settled: Option<Table>,
     progress: Arc<Progress>,
@@ -65,7 +65,7 @@ pub(super) struct Progress {
 }
 
 impl Reading {
-    pub(super) fn new(number: u32, place: Place, settled: Option<Table>) -> (Self, Arc<Progress>) {
+    pub(super) fn new(number: u32, place: TableSource, settled: Option<Table>) -> (Self, Arc<Progress>) {
         let progress = Arc::<Progress>::default();
         (Reading { number, place, settled, progress: progress.clone() }, progress)
     }
@@ -94,13 +94,13 @@ impl Drop for Reading {
 }
 
 /// Reads and measures; takes as long as the file is large.
-pub(super) fn read(place: Place, wishes: Wishes, judge: Judge, progress: &Progress) -> Read {
+pub(super) fn read(place: TableSource, wishes: TableHints, judge: Judge, progress: &Progress) -> Read {
     let (head, result) = match &place {
-        Place::Example(example) => {
+        TableSource::Example(example) => {
             let bytes = example.bytes();
             (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import(bytes, &wishes))
         }
-        Place::File(path) => match capture_head(path) {
+        TableSource::File(path) => match capture_head(path) {
             Ok(head) => (head, read_file(path, &wishes, progress)),
             Err(error) => (Vec::new(), Err(error.into())),
         },
@@ -113,7 +113,7 @@ pub(super) fn read(place: Place, wishes: Wishes, judge: Judge, progress: &Progre
     Read { table, result }
 }
 
-fn read_file(path: &Path, wishes: &Wishes, progress: &Progress) -> Result<Capture, ReadCaptureError> {
+fn read_file(path: &Path, wishes: &TableHints, progress: &Progress) -> Result<Capture, ReadCaptureError> {
     let mut tell = |done, total| {
         progress.done.store(done, Ordering::Relaxed);
         progress.total.store(total, Ordering::Relaxed);
@@ -121,7 +121,7 @@ fn read_file(path: &Path, wishes: &Wishes, progress: &Progress) -> Result<Captur
     read_capture(path, wishes, &progress.cancel, &mut tell).map(|(_, capture)| capture)
 }
 
-fn import(bytes: &[u8], wishes: &Wishes) -> Result<Capture, ReadCaptureError> {
+fn import(bytes: &[u8], wishes: &TableHints) -> Result<Capture, ReadCaptureError> {
     let read = || -> Result<Capture, CaptureError> {
         let mut import = Import::begin(bytes.get(..HEAD.min(bytes.len())).unwrap_or_default(), wishes)?;
         import.feed(bytes)?;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::feed::Channels;
 use crate::analysis::Time;
 use crate::analysis::capture::Capture;
-use crate::analysis::wires::Wires;
+use crate::analysis::wiring::Wires;
 use crate::worker::stream::Batch;
 
 /// The newest samples without a gap.

@@ -5,8 +5,8 @@ use super::feed::Channels;
 use crate::analysis::Time;
 use crate::analysis::capture::Capture;
 use crate::analysis::history::{Kind, Part, Refused};
-use crate::analysis::wires::Wires;
-use crate::app::recorder::{self, GroupId, Line, Recorder, SAMPLE, Scale};
+use crate::analysis::wiring::Wires;
+use crate::app::recorder::{self, GroupId, Recorder, SAMPLE, Scale, Series};
 use crate::signals::state::TEXTS;
 use crate::worker::stream::Batch;
 
@@ -80,7 +80,7 @@ impl Scope {
         let group = recorder.add_group(&columns, capacity, None);
         for (column, (name, heading)) in DIFFERENCES.iter().chain(wires).enumerate() {
             let scales = vec![Scale::new("unit.volts", 1.0, 4), Scale::new("unit.millivolts", 1e3, 1)];
-            let line = Line::of(group, column, TEXTS.text(name), *heading, scales);
+            let line = Series::of(group, column, TEXTS.text(name), *heading, scales);
             let derived = *name == "scope.vector";
             let line = if derived { line.derived() } else { line };
             recorder.add_line(if column < DIFFERENCES.len() { line } else { line.hidden() });

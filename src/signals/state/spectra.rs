@@ -2,7 +2,7 @@
 //! peak is lost.
 
 use crate::analysis::position_error::Samples;
-use crate::analysis::spectrum::{Line, Spectrum, SpectrumError, sample_rate_hz};
+use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};
 
 /// Both spectra.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct ChannelSpectrum {
     /// (hertz, peak amplitude in volts), growing in frequency.
     pub lines: Vec<(f64, f64)>,
     /// The highest peaks, the highest first.
-    pub peaks: Vec<Line>,
+    pub peaks: Vec<SpectralLine>,
 }
 
 /// Most samples of a transform.

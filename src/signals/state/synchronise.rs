@@ -75,7 +75,7 @@ pub struct Synchronise {
 
 /// What the entries come to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Told {
+pub struct Synchronisation {
     /// The absolute position.
     pub absolute: u64,
     /// The analogue one.
@@ -122,13 +122,13 @@ impl Form {
     ///
     /// # Errors
     /// The first entry that cannot be used, in words.
-    pub fn told(&self) -> Result<Told, Text> {
+    pub fn told(&self) -> Result<Synchronisation, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
         let absolute = number_or_hex(TEXTS.text("synchronise.absolute"), &self.absolute, last)?;
         let phase = self.phase()?;
         let step = absolute % STEPS;
-        Ok(Told {
+        Ok(Synchronisation {
             absolute,
             phase,
             period: absolute / STEPS,
@@ -190,7 +190,7 @@ impl Form {
     }
 }
 
-impl Told {
+impl Synchronisation {
     /// The fine position in degrees of the shaft within a revolution, where there is one.
     pub fn degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;

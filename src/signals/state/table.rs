@@ -1,17 +1,17 @@
 //! The table that a capture comes from: its first lines, what was found out about it, and what a person says instead.
 
-use super::Place;
-use crate::analysis::capture::{Columns, Delimiter, Layout, Wishes, decode_head};
+use super::TableSource;
+use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_head};
 
 /// The beginning of a table, and how it is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// Where it comes from.
-    pub place: Place,
+    pub place: TableSource,
     /// Its first lines as text; long ones are cut.
     pub head: Vec<String>,
     /// What was said about it.
-    pub wishes: Wishes,
+    pub wishes: TableHints,
     /// How it is read; `None` where that cannot be found out.
     pub layout: Option<Layout>,
     /// REFSIN and REFCOS while only one of them is chosen.
@@ -46,7 +46,7 @@ const MOST_COLUMNS: usize = 64;
 
 impl Table {
     /// The beginning of a table, from its first bytes.
-    pub(super) fn of(place: Place, head: &[u8], wishes: Wishes) -> Self {
+    pub(super) fn of(place: TableSource, head: &[u8], wishes: TableHints) -> Self {
         let text = decode_head(head);
         let shown = |line: &[u8]| {
             let text = String::from_utf8_lossy(line.trim_ascii_end()).replace('\t', "  →  ");
@@ -132,7 +132,7 @@ mod tests {
     use crate::signals::state::Example;
 
     fn table(text: &str) -> Table {
-        Table::of(Place::Example(Example::Healthy), text.as_bytes(), Wishes::default())
+        Table::of(TableSource::Example(Example::Healthy), text.as_bytes(), TableHints::default())
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::app::Action;
 use crate::signals::state::{Action as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
 use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Samples a second to choose from; the adapter takes what it can.
 const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
@@ -15,17 +15,17 @@ const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 
 const LINK: f32 = 280.0;
 
 /// Draws the card. True: it is not needed any more.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut Vec<Action>) -> bool {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) -> bool {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);
     let aside = |ui: &mut Ui| {
-        closed = icon_button(ui, true, icons::X, &say(skin, "adapter.close")).clicked();
+        closed = icon_button(ui, true, icons::X, &say(theme, "adapter.close")).clicked();
     };
-    card_with(ui, skin, TEXTS.text("adapter.title"), aside, |ui| {
-        let word = say(skin, "adapter.link_label");
-        entry(ui, skin, &word, |ui| {
+    card_with(ui, theme, TEXTS.text("adapter.title"), aside, |ui| {
+        let word = say(theme, "adapter.link_label");
+        entry(ui, theme, &word, |ui| {
             let mut link = source.link().to_owned();
-            let width = LINK.min(ui.available_width() - skin.space.between);
+            let width = LINK.min(ui.available_width() - theme.space.between);
             let response = text_entry(ui, &mut link, width, &word, VIRTUAL_ADAPTER);
             if response.changed() {
                 ask(SourceAction::SetLink(link));
@@ -34,28 +34,29 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
                 started = true;
             }
         });
-        let word = say(skin, "adapter.rate");
-        entry(ui, skin, &word, |ui| {
+        let word = say(theme, "adapter.rate");
+        entry(ui, theme, &word, |ui| {
             let mut rate = source.sample_hz();
-            let rates = RATES.map(|hz| (hz, skin.words(&TEXTS.text("adapter.kilohertz").with("count", hz / 1_000))));
+            let rates = RATES.map(|hz| (hz, theme.words(&TEXTS.text("adapter.kilohertz").with("count", hz / 1_000))));
             if choice(ui, &word, &mut rate, rates) {
                 ask(SourceAction::SetSampleRate(rate));
             }
         });
-        let word = say(skin, "adapter.supply");
-        entry(ui, skin, &word, |ui| {
+        let word = say(theme, "adapter.supply");
+        entry(ui, theme, &word, |ui| {
             let mut supply = source.supply();
-            let families = Family::ALL.map(|family| (Some(family), supply_of(skin, family)));
-            let elsewhere = (None, say(skin, "adapter.supply_elsewhere"));
+            let families = Family::ALL.map(|family| (Some(family), supply_of(theme, family)));
+            let elsewhere = (None, say(theme, "adapter.supply_elsewhere"));
             if choice(ui, &word, &mut supply, std::iter::once(elsewhere).chain(families)) {
                 ask(SourceAction::SetSupply(supply));
             }
         });
-        paragraph(ui, skin.caption(say(skin, "adapter.link_hint")));
-        problem(ui, skin, source.adapter_problem());
+        paragraph(ui, theme.caption(say(theme, "adapter.link_hint")));
+        problem(ui, theme, source.adapter_problem());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
-            started |= primary(ui, skin, true, icons::PLAY, &say(skin, "adapter.start")).clicked();
-            if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &say(skin, "adapter.use_virtual")).clicked() {
+            started |= primary(ui, theme, true, icons::PLAY, &say(theme, "adapter.start")).clicked();
+            if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &say(theme, "adapter.use_virtual")).clicked()
+            {
                 ask(SourceAction::SetLink(VIRTUAL_ADAPTER.to_owned()));
             }
         });
@@ -70,10 +71,10 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
 }
 
 /// What an encoder of a family is supplied with.
-fn supply_of(skin: &Skin, family: Family) -> String {
+fn supply_of(theme: &Theme, family: Family) -> String {
     let voltage = family.supply();
     let volts = |millivolt: u16| f64::from(millivolt) / 1000.0;
     let text = TEXTS.text("adapter.supply_of").with("family", family.name());
     let text = text.with_number("volts", volts(voltage.given), 1).with_number("least", volts(voltage.least), 1);
-    skin.words(&text.with_number("greatest", volts(voltage.greatest), 1))
+    theme.words(&text.with_number("greatest", volts(voltage.greatest), 1))
 }

@@ -2,50 +2,56 @@
 
 use egui::Ui;
 
-use super::{View, nonlinearity, numbers, octant, quality, source};
+use super::{SignalsUiState, nonlinearity, numbers, octant, quality, source};
 use crate::analysis::position_error::{Basis, PositionError, harmonics};
 use crate::app::{Action, Text};
 use crate::signals::state::{Results, Signals, TEXTS, error_quantities};
 use crate::signals::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    signals: &Signals,
+    view: &mut SignalsUiState,
+    actions: &mut Vec<Action>,
+) {
     let Some(measurement) = signals.measurement() else { return };
-    source::settings_ui(ui, skin, signals, &view.source, actions);
+    source::settings_ui(ui, theme, signals, &view.source, actions);
     let Ok(analysis) = &measurement.analysis else {
-        quality::refused_ui(ui, skin, measurement);
-        ui.add_space(skin.space.groups);
-        octant::card_ui(ui, skin, &mut view.octant);
+        quality::refused_ui(ui, theme, measurement);
+        ui.add_space(theme.space.groups);
+        octant::card_ui(ui, theme, &mut view.octant);
         return;
     };
     let compared = signals.comparison();
-    curves(ui, skin, &analysis.error, compared.map(AsRef::as_ref));
-    ui.add_space(skin.space.groups);
+    curves(ui, theme, &analysis.error, compared.map(AsRef::as_ref));
+    ui.add_space(theme.space.groups);
     split(
         ui,
-        skin,
+        theme,
         (0.5, 560.0),
         (&mut view.periods, actions),
         |ui, (periods, actions)| {
-            card(ui, skin, TEXTS.text("error.numbers"), |ui| {
-                quality::periods_ui(ui, skin, signals, periods, actions);
-                ui.add_space(skin.space.inside);
+            card(ui, theme, TEXTS.text("error.numbers"), |ui| {
+                quality::periods_ui(ui, theme, signals, periods, actions);
+                ui.add_space(theme.space.inside);
                 let of = |own: &Results| own.analysis.as_ref().ok().map(|own| error_quantities(own, signals.periods()));
                 let others = compared.and_then(|own| of(own));
                 let own = error_quantities(analysis, signals.periods());
-                numbers::rows_ui(ui, skin, "error.numbers", &own, others.as_deref());
-                ui.add_space(skin.space.inside);
-                paragraph(ui, skin.caption(skin.words(&basis(analysis.error.basis))));
+                numbers::rows_ui(ui, theme, "error.numbers", &own, others.as_deref());
+                ui.add_space(theme.space.inside);
+                paragraph(ui, theme.caption(theme.words(&basis(analysis.error.basis))));
             });
         },
-        |ui, _| bars(ui, skin, &analysis.error, compared.map(AsRef::as_ref)),
+        |ui, _| bars(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
     );
-    ui.add_space(skin.space.groups);
-    nonlinearity::card_ui(ui, skin, measurement, compared.map(AsRef::as_ref));
-    ui.add_space(skin.space.groups);
-    octant::card_ui(ui, skin, &mut view.octant);
+    ui.add_space(theme.space.groups);
+    nonlinearity::card_ui(ui, theme, measurement, compared.map(AsRef::as_ref));
+    ui.add_space(theme.space.groups);
+    octant::card_ui(ui, theme, &mut view.octant);
 }
 
 /// What the corrected error was measured against.
@@ -61,14 +67,14 @@ fn other(compared: Option<&Results>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
 
-fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Results>) {
+fn curves(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let step = 360.0 / curve.len().max(1) as f64;
         let points = curve.iter().enumerate().map(|(at, error)| (at as f64 * step, *error)).collect();
-        Trace { name: say(skin, id), points, colour, dashed }
+        Trace { name: say(theme, id), points, colour, dashed }
     };
     let traces = series(error, other(compared), trace);
-    card(ui, skin, TEXTS.text("error.curve"), |ui| {
+    card(ui, theme, TEXTS.text("error.curve"), |ui| {
         let value = TEXTS.text("error.curve_value").with_number("raw", error.raw_pp_deg(), 3).with_number(
             "corrected",
             error.corrected_pp_deg,
@@ -76,8 +82,8 @@ fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Res
         );
         let own = Chart {
             traces: &traces,
-            label: &say(skin, "error.curve"),
-            value: &skin.words(&value),
+            label: &say(theme, "error.curve"),
+            value: &theme.words(&value),
             height: 180.0,
             x_unit: "°",
             y_unit: "°",
@@ -85,22 +91,22 @@ fn curves(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Res
             x_step: Some(45.0),
             ..Chart::default()
         };
-        chart(ui, skin, &own);
-        paragraph(ui, skin.caption(say(skin, "error.axes")));
+        chart(ui, theme, &own);
+        paragraph(ui, theme.caption(say(theme, "error.axes")));
     });
 }
 
-fn bars(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Results>) {
+fn bars(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
-        Trace { name: say(skin, id), points, colour, dashed }
+        Trace { name: say(theme, id), points, colour, dashed }
     };
     let traces = series(error, other(compared), trace);
-    card(ui, skin, TEXTS.text("error.harmonics"), |ui| {
-        let peaks: Vec<String> = harmonics(&error.raw_deg).iter().map(|peak| skin.number(*peak, 3)).collect();
+    card(ui, theme, TEXTS.text("error.harmonics"), |ui| {
+        let peaks: Vec<String> = harmonics(&error.raw_deg).iter().map(|peak| theme.number(*peak, 3)).collect();
         let own = Chart {
             traces: &traces,
-            label: &say(skin, "error.harmonics"),
+            label: &say(theme, "error.harmonics"),
             value: &peaks.join("; "),
             height: 150.0,
             y_unit: "°",
@@ -109,8 +115,8 @@ fn bars(ui: &mut Ui, skin: &Skin, error: &PositionError, compared: Option<&Resul
             bars: true,
             ..Chart::default()
         };
-        chart(ui, skin, &own);
-        paragraph(ui, skin.caption(say(skin, "error.harmonics_axes")));
+        chart(ui, theme, &own);
+        paragraph(ui, theme.caption(say(theme, "error.harmonics_axes")));
     });
 }
 

@@ -9,7 +9,7 @@ use crate::signals::state::{TEXTS, Unit};
 use crate::signals::views::say;
 use crate::ui::controls::{card, labelled_entry, paragraph, problem, row, split};
 use crate::ui::widgets::{Chart, Trace, chart};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Width of an entry.
 const ENTRY: f32 = 112.0;
@@ -20,93 +20,94 @@ const POINTS: u32 = 100;
 const HEIGHT: f32 = 220.0;
 
 /// Draws the page.
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, form: &mut Form) {
+pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     // What is drawn beside the entries is what they come to now.
     let circuit = form.circuit();
     split(
         ui,
-        skin,
+        theme,
         (0.4, 560.0),
         form,
         |ui, form| {
-            entries(ui, skin, form, circuit.as_ref().err());
-            ui.add_space(skin.space.groups);
-            notes(ui, skin);
+            entries(ui, theme, form, circuit.as_ref().err());
+            ui.add_space(theme.space.groups);
+            notes(ui, theme);
         },
         |ui, _| {
             if let Ok(circuit) = &circuit {
-                here(ui, skin, circuit);
-                ui.add_space(skin.space.groups);
-                table(ui, skin, circuit);
+                here(ui, theme, circuit);
+                ui.add_space(theme.space.groups);
+                table(ui, theme, circuit);
             }
         },
     );
     if let Ok(circuit) = &circuit {
-        ui.add_space(skin.space.groups);
-        curves(ui, skin, circuit);
+        ui.add_space(theme.space.groups);
+        curves(ui, theme, circuit);
     }
 }
 
-fn entries(ui: &mut Ui, skin: &Skin, form: &mut Form, refused: Option<&Text>) {
-    card(ui, skin, TEXTS.text("input.entries"), |ui| {
+fn entries(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text>) {
+    card(ui, theme, TEXTS.text("input.entries"), |ui| {
         for (id, text, hint) in [
             ("input.periods", &mut form.periods, "1024"),
             ("input.speed", &mut form.speed, "6000"),
             ("input.resistance", &mut form.resistance, "10k"),
             ("input.capacitance", &mut form.capacitance, "47p"),
         ] {
-            labelled_entry(ui, skin, TEXTS.text(id), text, ENTRY, hint);
+            labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
         }
-        problem(ui, skin, refused);
+        problem(ui, theme, refused);
     });
 }
 
-fn notes(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, TEXTS.text("input.notes"), |ui| {
+fn notes(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, TEXTS.text("input.notes"), |ui| {
         for id in ["input.note_resistor", "input.note_adc", "input.note_lag"] {
-            paragraph(ui, skin.label(say(skin, id)));
+            paragraph(ui, theme.label(say(theme, id)));
         }
     });
 }
 
-fn here(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
+fn here(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     let Point { frequency_hz, response, shaft_deg, .. } = circuit.here;
     let limit_khz = BANDWIDTH_HZ / 1e3;
-    card(ui, skin, TEXTS.text("input.here"), |ui| {
-        ui.label(skin.value(format!("{} {}", skin.number(frequency_hz / 1e3, 3), Unit::Kilohertz.sign())));
+    card(ui, theme, TEXTS.text("input.here"), |ui| {
+        ui.label(theme.value(format!("{} {}", theme.number(frequency_hz / 1e3, 3), Unit::Kilohertz.sign())));
         let (icon, colour, id) = match circuit.is_within() {
-            true => (icons::CHECK_CIRCLE, skin.palette.good, "input.within"),
-            false => (icons::WARNING, skin.palette.warn, "input.beyond"),
+            true => (icons::CHECK_CIRCLE, theme.palette.good, "input.within"),
+            false => (icons::WARNING, theme.palette.warn, "input.beyond"),
         };
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
             let text = TEXTS.text(id).with_number("limit", limit_khz, 0);
-            paragraph(ui, RichText::new(skin.words(&text)).color(colour));
+            paragraph(ui, RichText::new(theme.words(&text)).color(colour));
         });
-        let number = |value, decimals, unit: &str| skin.mono(format!("{}{unit}", skin.number(value, decimals)));
-        let khz = |hertz: f64| skin.mono(format!("{} {}", skin.number(hertz / 1e3, 1), Unit::Kilohertz.sign()));
-        let rpm = format!("{} {}", skin.number(circuit.most_rpm, 1), say(skin, "input.rpm"));
-        row(ui, skin, &say(skin, "input.most"), skin.mono(rpm));
-        row(ui, skin, &say(skin, "input.lag"), number(response.phase_deg, 3, "° el."));
-        row(ui, skin, &say(skin, "input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
-        row(ui, skin, &say(skin, "input.lag_shaft"), number(shaft_deg, 5, "°"));
-        let gain = format!("{}  ({} dB)", skin.number(response.gain, 5), skin.number(20.0 * response.gain.log10(), 2));
-        row(ui, skin, &say(skin, "input.gain"), skin.mono(gain));
-        row(ui, skin, &say(skin, "input.corner"), khz(circuit.corner_hz));
-        row(ui, skin, &say(skin, "input.sampling"), khz(2.0 * frequency_hz));
-        row(ui, skin, &say(skin, "input.skew"), number(circuit.degrees_per_microsecond(), 2, "° el./µs"));
+        let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
+        let khz = |hertz: f64| theme.mono(format!("{} {}", theme.number(hertz / 1e3, 1), Unit::Kilohertz.sign()));
+        let rpm = format!("{} {}", theme.number(circuit.most_rpm, 1), say(theme, "input.rpm"));
+        row(ui, theme, &say(theme, "input.most"), theme.mono(rpm));
+        row(ui, theme, &say(theme, "input.lag"), number(response.phase_deg, 3, "° el."));
+        row(ui, theme, &say(theme, "input.lag_steps"), number(response.lag_in_steps(), 3, "/32"));
+        row(ui, theme, &say(theme, "input.lag_shaft"), number(shaft_deg, 5, "°"));
+        let gain =
+            format!("{}  ({} dB)", theme.number(response.gain, 5), theme.number(20.0 * response.gain.log10(), 2));
+        row(ui, theme, &say(theme, "input.gain"), theme.mono(gain));
+        row(ui, theme, &say(theme, "input.corner"), khz(circuit.corner_hz));
+        row(ui, theme, &say(theme, "input.sampling"), khz(2.0 * frequency_hz));
+        row(ui, theme, &say(theme, "input.skew"), number(circuit.degrees_per_microsecond(), 2, "° el./µs"));
     });
 }
 
-fn table(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
-    card(ui, skin, TEXTS.text("input.table"), |ui| {
+fn table(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
+    card(ui, theme, TEXTS.text("input.table"), |ui| {
         // Read, not touched.
-        ui.spacing_mut().interact_size.y = skin.space.groups;
+        ui.spacing_mut().interact_size.y = theme.space.groups;
         egui::ScrollArea::horizontal().id_salt("input.table").show(ui, |ui| {
-            let grid = egui::Grid::new("input.table").spacing([skin.space.groups, skin.space.inside]);
+            let grid = egui::Grid::new("input.table").spacing([theme.space.groups, theme.space.inside]);
             grid.show(ui, |ui| {
                 for id in ["input.rpm", "input.khz", "input.column_lag", "input.column_steps", "input.gain"] {
-                    ui.label(skin.caption(say(skin, id)));
+                    ui.label(theme.caption(say(theme, id)));
                 }
                 ui.end_row();
                 for point in circuit.course(ROWS) {
@@ -118,7 +119,7 @@ fn table(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
                         (response.lag_in_steps(), 3),
                         (response.gain, 5),
                     ] {
-                        ui.label(skin.mono(format!("{:>7}", skin.number(value, decimals))));
+                        ui.label(theme.mono(format!("{:>7}", theme.number(value, decimals))));
                     }
                     ui.end_row();
                 }
@@ -127,10 +128,10 @@ fn table(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
     });
 }
 
-fn curves(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
+fn curves(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     let course = circuit.course(POINTS);
     let trace = |id, colour, dashed, value: fn(&Point) -> f64| Trace {
-        name: say(skin, id),
+        name: say(theme, id),
         points: course.iter().map(|point| (point.speed_rpm, value(point))).collect(),
         colour,
         dashed,
@@ -139,13 +140,13 @@ fn curves(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
         trace("input.curve_lag", 0, false, |point| point.response.phase_deg),
         trace("input.curve_gain", 1, true, |point| 100.0 * point.response.gain),
     ];
-    card(ui, skin, TEXTS.text("input.curves"), |ui| {
-        let (label, rpm) = (say(skin, "input.curves"), say(skin, "input.rpm"));
+    card(ui, theme, TEXTS.text("input.curves"), |ui| {
+        let (label, rpm) = (say(theme, "input.curves"), say(theme, "input.rpm"));
         let value = TEXTS
             .text("input.curves_value")
             .with_number("lag", course.last().map_or(0.0, |point| point.response.phase_deg), 2)
             .with_number("rpm", circuit.most_rpm, 0);
-        let value = skin.words(&value);
+        let value = theme.words(&value);
         let drawn = Chart {
             traces: &traces,
             label: &label,
@@ -156,6 +157,6 @@ fn curves(ui: &mut Ui, skin: &Skin, circuit: &Circuit) {
             x_range: Some((0.0, circuit.most_rpm)),
             ..Chart::default()
         };
-        chart(ui, skin, &drawn);
+        chart(ui, theme, &drawn);
     });
 }

@@ -20,7 +20,7 @@ use crate::app::{Action, SineCosineSource, Studio, Text, ToolKind};
 use crate::signals::state::input_circuit::Form as Circuit;
 use crate::signals::state::{Signals, SignalsKind, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, page_at};
-use crate::ui::{Skin, icons, page};
+use crate::ui::{Theme, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,14 +53,14 @@ type Draft = Option<(String, Option<Text>)>;
 
 /// What the tab remembers while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(crate) struct View {
+pub(crate) struct SignalsUiState {
     /// The open page.
     page: Page,
-    source: source::View,
+    source: source::SourceUiState,
     periods: Draft,
     corrected: bool,
     pictures: [quality::Picture; 2],
-    octant: octant::View,
+    octant: octant::OctantUiState,
     scope: scope::ScopeView,
     input_circuit: Circuit,
 }
@@ -82,11 +82,11 @@ impl ToolView for SignalsView {
     }
 
     fn begin(&self) -> Box<dyn ToolPages> {
-        Box::new(View::default())
+        Box::new(SignalsUiState::default())
     }
 }
 
-impl ToolPages for View {
+impl ToolPages for SignalsUiState {
     fn page(&self) -> usize {
         self.page.place()
     }
@@ -95,9 +95,9 @@ impl ToolPages for View {
         self.page = page_at(page).unwrap_or(self.page);
     }
 
-    fn page_ui(&mut self, ui: &mut Ui, skin: &Skin, studio: &Studio, actions: &mut Vec<Action>) {
+    fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
         if let Some(signals) = studio.tool() {
-            page_ui(ui, skin, signals, studio.sine_cosine(), self, actions);
+            page_ui(ui, theme, signals, studio.sine_cosine(), self, actions);
         }
     }
 }
@@ -105,40 +105,40 @@ impl ToolPages for View {
 /// Draws the open page; `device` is one that is shown in its own tab, and can be read.
 fn page_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     signals: &Signals,
     device: Option<&dyn SineCosineSource>,
-    view: &mut View,
+    view: &mut SignalsUiState,
     actions: &mut Vec<Action>,
 ) {
-    page::scrolling(ui, skin, view.page.place(), |ui| match view.page {
+    page::scrolling(ui, theme, view.page.place(), |ui| match view.page {
         Page::Scope => {
-            if source::source_ui(ui, skin, signals, &mut view.source, actions) {
-                scope::page_ui(ui, skin, signals, view, actions);
+            if source::source_ui(ui, theme, signals, &mut view.source, actions) {
+                scope::page_ui(ui, theme, signals, view, actions);
             }
         }
         Page::Quality => {
-            if source::source_ui(ui, skin, signals, &mut view.source, actions) {
-                quality::page_ui(ui, skin, signals, view, actions);
+            if source::source_ui(ui, theme, signals, &mut view.source, actions) {
+                quality::page_ui(ui, theme, signals, view, actions);
             }
         }
         Page::Error => {
-            if source::source_ui(ui, skin, signals, &mut view.source, actions) {
-                error::page_ui(ui, skin, signals, view, actions);
+            if source::source_ui(ui, theme, signals, &mut view.source, actions) {
+                error::page_ui(ui, theme, signals, view, actions);
             }
         }
         Page::Synchronise => {
-            source::problem(ui, skin, signals);
-            synchronise::page_ui(ui, skin, signals, device, actions);
+            source::problem(ui, theme, signals);
+            synchronise::page_ui(ui, theme, signals, device, actions);
         }
         Page::InputCircuit => {
-            source::problem(ui, skin, signals);
-            input_circuit::page_ui(ui, skin, &mut view.input_circuit);
+            source::problem(ui, theme, signals);
+            input_circuit::page_ui(ui, theme, &mut view.input_circuit);
         }
     });
 }
 
 /// A text of this folder's catalogue, or a common one, in the window's language.
-pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
-    skin.words(&TEXTS.text(id))
+pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+    theme.words(&TEXTS.text(id))
 }

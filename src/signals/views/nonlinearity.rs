@@ -6,32 +6,32 @@ use super::numbers;
 use crate::app::explain;
 use crate::signals::state::{Nonlinearities, Results, TEXTS, nonlinearity_quantities};
 use crate::signals::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
 /// Draws the card; with a capture that it is compared with also its values.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, measurement: &Results, compared: Option<&Results>) {
-    card(ui, skin, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compared: Option<&Results>) {
+    card(ui, theme, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
         Some(Ok(told)) => {
-            curve(ui, skin, told);
-            ui.add_space(skin.space.inside);
+            curve(ui, theme, told);
+            ui.add_space(theme.space.inside);
             let other = compared.and_then(|own| own.nonlinearities.as_ref()?.as_ref().ok());
             let other = other.map(nonlinearity_quantities);
-            numbers::rows_ui(ui, skin, "nonlinearity.title", &nonlinearity_quantities(told), other.as_deref());
+            numbers::rows_ui(ui, theme, "nonlinearity.title", &nonlinearity_quantities(told), other.as_deref());
             if told.revolutions < 1.0 {
                 let text = TEXTS.text("nonlinearity.part").with_number("revolutions", told.revolutions, 2);
-                paragraph(ui, skin.caption(skin.words(&text)));
+                paragraph(ui, theme.caption(theme.words(&text)));
             }
         }
-        Some(Err(error)) => problem(ui, skin, Some(&explain::signal::revolution(error))),
-        None => paragraph(ui, skin.label(say(skin, "nonlinearity.no_reference"))),
+        Some(Err(error)) => problem(ui, theme, Some(&explain::signal::revolution(error))),
+        None => paragraph(ui, theme.label(say(theme, "nonlinearity.no_reference"))),
     });
 }
 
-fn curve(ui: &mut Ui, skin: &Skin, told: &Nonlinearities) {
+fn curve(ui: &mut Ui, theme: &Theme, told: &Nonlinearities) {
     let trace = |id: &'static str, points: &[(f64, f64)], colour: usize, dashed: bool| Trace {
-        name: say(skin, id),
+        name: say(theme, id),
         points: points.to_vec(),
         colour,
         dashed,
@@ -48,14 +48,14 @@ fn curve(ui: &mut Ui, skin: &Skin, told: &Nonlinearities) {
     );
     let own = Chart {
         traces: &traces,
-        label: &say(skin, "nonlinearity.title"),
-        value: &skin.words(&value),
+        label: &say(theme, "nonlinearity.title"),
+        value: &theme.words(&value),
         height: 180.0,
         x_unit: "°",
         y_unit: "°",
         x_step: (told.revolutions <= 2.0).then_some(90.0),
         ..Chart::default()
     };
-    chart(ui, skin, &own);
-    paragraph(ui, skin.caption(say(skin, "nonlinearity.axes")));
+    chart(ui, theme, &own);
+    paragraph(ui, theme.caption(say(theme, "nonlinearity.axes")));
 }

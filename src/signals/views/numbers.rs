@@ -6,7 +6,7 @@ use egui::{RichText, Ui, WidgetInfo};
 use crate::analysis::quality::Verdict;
 use crate::signals::state::{Bound, Quantity, Unit};
 use crate::signals::views::say;
-use crate::ui::{Skin, controls};
+use crate::ui::{Theme, controls};
 
 /// Width from which a value also stands in its second unit; else that is its tooltip.
 const WIDE: f32 = 390.0;
@@ -18,7 +18,7 @@ const LIMITS: f32 = 110.0;
 /// Draws the rows; with a second list also its values, and how far the first is from them.
 pub(super) fn rows_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     name: &'static str,
     quantities: &[Quantity],
     compared: Option<&[Quantity]>,
@@ -27,29 +27,29 @@ pub(super) fn rows_ui(
     let bounded = quantities.iter().any(|quantity| quantity.bound.is_some());
     let wide = room >= if bounded { WIDE } else { WIDE - LIMITS } && compared.is_none();
     let limits = room >= LEAST && compared.is_none();
-    let between = if wide { skin.space.groups } else { skin.space.between };
+    let between = if wide { theme.space.groups } else { theme.space.between };
     ui.scope(|ui| {
         ui.spacing_mut().interact_size.y = 20.0;
-        egui::Grid::new(name).spacing([between, skin.space.inside]).show(ui, |ui| {
+        egui::Grid::new(name).spacing([between, theme.space.inside]).show(ui, |ui| {
             if compared.is_some() {
                 for id in ["", "compare.now", "compare.kept", "compare.difference"] {
-                    ui.label(if id.is_empty() { RichText::new("") } else { skin.caption(say(skin, id)) });
+                    ui.label(if id.is_empty() { RichText::new("") } else { theme.caption(say(theme, id)) });
                 }
                 ui.end_row();
             }
             for quantity in quantities {
-                ui.label(skin.label(say(skin, quantity.word)));
-                value(ui, skin, quantity, wide);
+                ui.label(theme.label(say(theme, quantity.word)));
+                value(ui, theme, quantity, wide);
                 if let Some(compared) = compared {
                     let other = compared.iter().find(|other| other.word == quantity.word);
-                    comparison(ui, skin, quantity, other);
+                    comparison(ui, theme, quantity, other);
                 }
-                let words = quantity.bound.map(|bound| bound_words(skin, bound, quantity.unit)).unwrap_or_default();
+                let words = quantity.bound.map(|bound| bound_words(theme, bound, quantity.unit)).unwrap_or_default();
                 if limits {
-                    ui.label(skin.caption(&words));
+                    ui.label(theme.caption(&words));
                 }
                 if let Some(verdict) = quantity.verdict {
-                    mark(ui, skin, verdict, &words);
+                    mark(ui, theme, verdict, &words);
                 }
                 ui.end_row();
             }
@@ -57,14 +57,14 @@ pub(super) fn rows_ui(
     });
 }
 
-fn value(ui: &mut Ui, skin: &Skin, quantity: &Quantity, wide: bool) {
+fn value(ui: &mut Ui, theme: &Theme, quantity: &Quantity, wide: bool) {
     ui.horizontal(|ui| {
-        let value = with_unit(skin, quantity.value, quantity.decimals, quantity.unit);
-        let response = ui.add(egui::Label::new(skin.mono(value)).selectable(true));
-        let also = quantity.also.map(|(value, decimals, unit)| with_unit(skin, value, decimals, unit));
+        let value = with_unit(theme, quantity.value, quantity.decimals, quantity.unit);
+        let response = ui.add(egui::Label::new(theme.mono(value)).selectable(true));
+        let also = quantity.also.map(|(value, decimals, unit)| with_unit(theme, value, decimals, unit));
         match also {
             Some(also) if wide => {
-                ui.label(skin.mono(also).size(skin.sizes.caption).color(skin.palette.muted));
+                ui.label(theme.mono(also).size(theme.sizes.caption).color(theme.palette.muted));
             }
             Some(also) => drop(response.on_hover_text(also)),
             None => {}
@@ -72,22 +72,22 @@ fn value(ui: &mut Ui, skin: &Skin, quantity: &Quantity, wide: bool) {
     });
 }
 
-fn comparison(ui: &mut Ui, skin: &Skin, quantity: &Quantity, other: Option<&Quantity>) {
+fn comparison(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<&Quantity>) {
     let Some(other) = other else {
         ui.label("–");
         ui.label("");
         return;
     };
-    let number = |value: f64| skin.mono(skin.number(value, quantity.decimals));
-    ui.label(number(other.value).color(skin.palette.muted));
+    let number = |value: f64| theme.mono(theme.number(value, quantity.decimals));
+    ui.label(number(other.value).color(theme.palette.muted));
     let difference = rounded(quantity.value - other.value, quantity.decimals);
     let sign = if difference > 0.0 { "+" } else { "" };
-    ui.label(skin.mono(format!("{sign}{}", skin.number(difference, quantity.decimals))));
+    ui.label(theme.mono(format!("{sign}{}", theme.number(difference, quantity.decimals))));
 }
 
 /// A number with its unit.
-pub(super) fn with_unit(skin: &Skin, value: f64, decimals: usize, unit: Unit) -> String {
-    unit_behind(skin.number(rounded(value, decimals), decimals), unit)
+pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
+    unit_behind(theme.number(rounded(value, decimals), decimals), unit)
 }
 
 /// As it is shown: what is shown as zero has no sign.
@@ -97,8 +97,8 @@ fn rounded(value: f64, decimals: usize) -> f64 {
 }
 
 /// Where a number should be.
-fn bound_words(skin: &Skin, bound: Bound, unit: Unit) -> String {
-    let plain = |value: f64| skin.plain((value * 1e6).round() / 1e6);
+fn bound_words(theme: &Theme, bound: Bound, unit: Unit) -> String {
+    let plain = |value: f64| theme.plain((value * 1e6).round() / 1e6);
     let words = match bound {
         Bound::Between(least, most) => format!("{} … {}", plain(least), plain(most)),
         Bound::Within(most) => format!("± {}", plain(most)),
@@ -117,14 +117,14 @@ fn unit_behind(words: String, unit: Unit) -> String {
 }
 
 /// An icon in its colour, which says its word to a screen reader, and with the limit under the pointer.
-fn mark(ui: &mut Ui, skin: &Skin, verdict: Verdict, limit: &str) {
-    let (icon, colour) = controls::verdict(skin, verdict);
+fn mark(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
+    let (icon, colour) = controls::verdict(theme, verdict);
     let id = match verdict {
         Verdict::Ok => "quality.inside",
         Verdict::Warn => "quality.outside",
         Verdict::Fault => "quality.fault",
     };
-    let word = say(skin, id);
+    let word = say(theme, id);
     let response = ui.label(RichText::new(icon).color(colour));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &word));
     response.on_hover_text(format!("{word}: {limit}"));

@@ -7,7 +7,7 @@ use crate::signals::views::say;
 
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
-use super::{View, numbers, source};
+use super::{SignalsUiState, numbers, source};
 use crate::analysis::diagnosis::{Changes, Finding, Severity};
 use crate::analysis::lissajous::Square;
 use crate::analysis::quality::Family;
@@ -16,46 +16,52 @@ use crate::app::{Action, Text, explain};
 use crate::signals::state::{Action as Signals_, Measurement, Results, Signals, forms, quantities};
 use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
 use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Periods that encoders have.
 const USUAL_PERIODS: [u32; 11] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 65_536];
 /// Points of a fitted ellipse.
 const CURVE: usize = 180;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    signals: &Signals,
+    view: &mut SignalsUiState,
+    actions: &mut Vec<Action>,
+) {
     let Some(measurement) = signals.measurement() else { return };
     split(
         ui,
-        skin,
+        theme,
         (0.44, 520.0),
         (view, actions),
         |ui, (view, _)| {
-            figure(ui, skin, signals, measurement, view);
-            ui.add_space(skin.space.groups);
-            verdict(ui, skin, signals, measurement);
+            figure(ui, theme, signals, measurement, view);
+            ui.add_space(theme.space.groups);
+            verdict(ui, theme, signals, measurement);
         },
         |ui, (view, actions)| {
-            source::settings_ui(ui, skin, signals, &view.source, actions);
-            values(ui, skin, signals, measurement, view, actions);
+            source::settings_ui(ui, theme, signals, &view.source, actions);
+            values(ui, theme, signals, measurement, view, actions);
         },
     );
 }
 
-fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measurement>, view: &mut View) {
+fn figure(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Measurement>, view: &mut SignalsUiState) {
     let analysed = measurement.analysis.as_ref().ok();
     let corrected = view.corrected && analysed.is_some();
     let aside = |ui: &mut Ui| {
         // From right to left.
         for (own, id) in [(true, "quality.corrected"), (false, "quality.raw")] {
-            let word = say(skin, id);
+            let word = say(theme, id);
             let button = egui::Button::selectable(corrected == own, word.as_str()).frame_when_inactive(true);
             if name(ui.add_enabled(analysed.is_some(), button), analysed.is_some(), &word).clicked() {
                 view.corrected = own;
             }
         }
     };
-    card_with(ui, skin, TEXTS.text("quality.lissajous"), aside, |ui| {
+    card_with(ui, theme, TEXTS.text("quality.lissajous"), aside, |ui| {
         let limits = signals.family().limits();
         let (least, most) = limits.ok_v;
         let value = match analysed {
@@ -72,10 +78,10 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measure
             *other = Picture::default();
         }
         let compared = signals.comparison().map(|kept| {
-            let picture = other.of(ui, skin, kept, corrected, 1);
+            let picture = other.of(ui, theme, kept, corrected, 1);
             figure_of(kept, corrected, picture, (1, true))
         });
-        let picture = own.of(ui, skin, measurement.results(), corrected, 0);
+        let picture = own.of(ui, theme, measurement.results(), corrected, 0);
         let shown = figure_of(measurement, corrected, picture, (0, false));
         let figures: Vec<Figure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
@@ -83,11 +89,11 @@ fn figure(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Arc<Measure
             figures: &figures,
             ok_v: limits.ok_v,
             fault_v: limits.fault_v,
-            label: &say(skin, "quality.lissajous"),
-            value: &skin.words(&value),
+            label: &say(theme, "quality.lissajous"),
+            value: &theme.words(&value),
         };
-        lissajous(ui, skin, &lissajous_, side);
-        paragraph(ui, skin.caption(say(skin, "quality.rings")));
+        lissajous(ui, theme, &lissajous_, side);
+        paragraph(ui, theme.caption(say(theme, "quality.rings")));
     });
 }
 
@@ -99,12 +105,12 @@ impl Picture {
     fn of(
         &mut self,
         ui: &Ui,
-        skin: &Skin,
+        theme: &Theme,
         measurement: &Arc<Results>,
         corrected: bool,
         colour: usize,
     ) -> Option<(TextureId, Square)> {
-        let colour = series(skin, colour);
+        let colour = series(theme, colour);
         let density = if corrected { &measurement.corrected } else { &measurement.raw };
         let density = density.as_ref()?;
         let same = |(own, own_corrected, own_colour, _): &(Arc<Results>, bool, Color32, TextureHandle)| {
@@ -134,12 +140,12 @@ fn figure_of(
 }
 
 /// Why there is nothing to be measured in a capture, and what there is to look at.
-pub(super) fn refused_ui(ui: &mut Ui, skin: &Skin, measurement: &Results) {
-    let Some(why) = measurement.refusal(skin.language) else { return };
-    card(ui, skin, TEXTS.text("quality.findings"), |ui| {
-        line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why));
+pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &Results) {
+    let Some(why) = measurement.refusal(theme.language) else { return };
+    card(ui, theme, TEXTS.text("quality.findings"), |ui| {
+        line(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why));
         for finding in &measurement.diagnosis.findings {
-            finding_ui(ui, skin, finding);
+            finding_ui(ui, theme, finding);
         }
     });
 }
@@ -151,101 +157,101 @@ fn line(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String) {
     });
 }
 
-fn finding_ui(ui: &mut Ui, skin: &Skin, finding: &Finding) {
-    let palette = skin.palette;
+fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &Finding) {
+    let palette = theme.palette;
     let (icon, colour) = match finding.severity {
         Severity::Notice => (icons::INFO, palette.accent),
         Severity::Warning => (icons::WARNING, palette.warn),
         Severity::Fault => (icons::X_CIRCLE, palette.bad),
     };
-    line(ui, icon, colour, skin.words(&explain::signal::diagnosis(finding)));
+    line(ui, icon, colour, theme.words(&explain::signal::diagnosis(finding)));
 }
 
 /// What is wrong, in words.
-fn verdict(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement) {
-    card(ui, skin, TEXTS.text("quality.findings"), |ui| {
+fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
+    card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();
-        match measurement.refusal(skin.language) {
-            Some(why) => line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&why)),
+        match measurement.refusal(theme.language) {
+            Some(why) => line(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why)),
             None if findings.is_empty() => {
-                line(ui, icons::CHECK_CIRCLE, skin.palette.good, say(skin, "quality.good"));
+                line(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "quality.good"));
             }
             None => {}
         }
         for finding in findings {
-            finding_ui(ui, skin, finding);
+            finding_ui(ui, theme, finding);
         }
         if let Some((kept, changes)) = signals.comparison().zip(signals.changes()) {
-            changes_ui(ui, skin, &kept.origin.name(), &changes);
+            changes_ui(ui, theme, &kept.origin.name(), &changes);
         }
     });
 }
 
 /// What changed since another capture. That nothing became worse is said only where everything could be compared.
-fn changes_ui(ui: &mut Ui, skin: &Skin, name: &Text, changes: &Changes) {
+fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &Changes) {
     let under = |ui: &mut Ui, id| {
-        ui.add_space(skin.space.inside);
-        ui.label(skin.caption(skin.words(&TEXTS.text(id).with_text("name", name.clone()))));
+        ui.add_space(theme.space.inside);
+        ui.label(theme.caption(theme.words(&TEXTS.text(id).with_text("name", name.clone()))));
     };
     under(ui, "compare.worse");
     if changes.worse.is_empty() && changes.untold.is_empty() {
-        line(ui, icons::CHECK_CIRCLE, skin.palette.good, say(skin, "compare.nothing"));
+        line(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "compare.nothing"));
     }
     for finding in &changes.worse {
-        finding_ui(ui, skin, finding);
+        finding_ui(ui, theme, finding);
     }
     for untold in &changes.untold {
-        line(ui, icons::QUESTION, skin.palette.muted, skin.words(&explain::signal::untold(*untold)));
+        line(ui, icons::QUESTION, theme.palette.muted, theme.words(&explain::signal::untold(*untold)));
     }
     if !changes.changed.is_empty() {
         under(ui, "compare.changed");
     }
     for finding in &changes.changed {
-        finding_ui(ui, skin, finding);
+        finding_ui(ui, theme, finding);
     }
 }
 
 fn values(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     signals: &Signals,
     measurement: &Measurement,
-    view: &mut View,
+    view: &mut SignalsUiState,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, skin, TEXTS.text("quality.numbers"), |ui| {
-        let word = say(skin, "quality.family");
+    card(ui, theme, TEXTS.text("quality.numbers"), |ui| {
+        let word = say(theme, "quality.family");
         let mut family = signals.family();
-        entry(ui, skin, &word, |ui| {
+        entry(ui, theme, &word, |ui| {
             let families = Family::ALL.map(|own| (own, own.name().to_owned()));
             if choice(ui, &word, &mut family, families) {
                 actions.push(Action::tool(Signals_::SetFamily(family)));
             }
         });
-        periods_ui(ui, skin, signals, &mut view.periods, actions);
-        ui.add_space(skin.space.inside);
+        periods_ui(ui, theme, signals, &mut view.periods, actions);
+        ui.add_space(theme.space.inside);
         let of = |own: &Results| quantities(own, signals.family(), signals.periods());
         let others = signals.comparison().map(|own| of(own));
-        numbers::rows_ui(ui, skin, "quality.numbers", &of(measurement), others.as_deref());
+        numbers::rows_ui(ui, theme, "quality.numbers", &of(measurement), others.as_deref());
     });
 }
 
 /// Signal periods in a revolution, typed or chosen.
 pub(super) fn periods_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     signals: &Signals,
     draft: &mut super::Draft,
     actions: &mut Vec<Action>,
 ) {
-    let word = say(skin, "quality.periods_per_turn");
-    entry(ui, skin, &word, |ui| {
+    let word = say(theme, "quality.periods_per_turn");
+    entry(ui, theme, &word, |ui| {
         let shown = signals.periods().map(|periods| periods.to_string()).unwrap_or_default();
         settled_entry(ui, draft, &shown, 72.0, &word, |text| {
             actions.push(Action::tool(Signals_::SetPeriods(forms::periods(text)?)));
             Ok(())
         });
-        let usual = say(skin, "quality.periods_usual");
+        let usual = say(theme, "quality.periods_usual");
         let menu = ui.menu_button(icons::CARET_DOWN, |ui| {
             for periods in USUAL_PERIODS {
                 if ui.selectable_label(signals.periods() == Some(periods), periods.to_string()).clicked() {
@@ -258,9 +264,9 @@ pub(super) fn periods_ui(
         name(menu.response, true, &usual).on_hover_text(usual);
     });
     if let Some((_, Some(why))) = draft {
-        problem(ui, skin, Some(why));
+        problem(ui, theme, Some(why));
     }
     if signals.periods().is_none() {
-        line(ui, icons::QUESTION, skin.palette.warn, say(skin, "quality.periods_open"));
+        line(ui, icons::QUESTION, theme.palette.warn, say(theme, "quality.periods_open"));
     }
 }

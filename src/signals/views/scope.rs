@@ -3,13 +3,13 @@
 use egui::{Ui, vec2};
 
 use super::numbers::with_unit;
-use super::{View, quality, source};
-use crate::app::{Action, Desk, explain};
+use super::{SignalsUiState, quality, source};
+use crate::app::{Action, RecorderOwner, explain};
 use crate::signals::state::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, TAB, TEXTS, Unit, dbv};
 use crate::signals::views::say;
 use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
-use crate::ui::{Skin, plot};
+use crate::ui::{Theme, plot};
 
 /// Least height of the trace in points, and the height of the spectrum.
 const TRACE: f32 = 300.0;
@@ -18,69 +18,75 @@ const SPECTRUM: f32 = 200.0;
 /// What is remembered of the page.
 #[derive(Default)]
 pub(super) struct ScopeView {
-    plot: plot::View,
+    plot: plot::PlotUiState,
     /// The spectrum is shown in volts instead of decibels.
     volts: bool,
 }
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
-    source::settings_ui(ui, skin, signals, &view.source, actions);
-    trace(ui, skin, signals, &mut view.scope, actions);
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    signals: &Signals,
+    view: &mut SignalsUiState,
+    actions: &mut Vec<Action>,
+) {
+    source::settings_ui(ui, theme, signals, &view.source, actions);
+    trace(ui, theme, signals, &mut view.scope, actions);
     let Some(measurement) = signals.measurement() else { return };
-    ui.add_space(skin.space.groups);
-    spectrum(ui, skin, signals, measurement, &mut view.scope);
+    ui.add_space(theme.space.groups);
+    spectrum(ui, theme, signals, measurement, &mut view.scope);
     if measurement.analysis.is_err() {
-        ui.add_space(skin.space.groups);
-        quality::refused_ui(ui, skin, measurement);
+        ui.add_space(theme.space.groups);
+        quality::refused_ui(ui, theme, measurement);
     }
 }
 
-fn trace(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut ScopeView, actions: &mut Vec<Action>) {
+fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeView, actions: &mut Vec<Action>) {
     let scope = signals.scope();
     let height = (ui.ctx().content_rect().height() * 0.5).max(TRACE);
-    card(ui, skin, TEXTS.text("scope.title"), |ui| {
+    card(ui, theme, TEXTS.text("scope.title"), |ui| {
         ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
             ui.set_max_height(height);
             let empty = say(
-                skin,
+                theme,
                 match scope.refused {
                     Some(NoTimes::GoBack) => "scope.refused",
                     Some(NoTimes::TooFar) => "scope.too_far",
                     None => "scope.nothing",
                 },
             );
-            plot::plot_ui(ui, skin, &scope.recorder, Desk::Tool(TAB), &mut view.plot, &empty, actions);
+            plot::plot_ui(ui, theme, &scope.recorder, RecorderOwner::Tool(TAB), &mut view.plot, &empty, actions);
         });
         if scope.recorder.counts() {
-            paragraph(ui, skin.caption(say(skin, "scope.counts")));
+            paragraph(ui, theme.caption(say(theme, "scope.counts")));
         }
     });
 }
 
-fn spectrum(ui: &mut Ui, skin: &Skin, signals: &Signals, measurement: &Measurement, view: &mut ScopeView) {
+fn spectrum(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement, view: &mut ScopeView) {
     let volts = view.volts;
     let mut wanted = volts;
     let aside = |ui: &mut Ui| {
         // From right to left.
         for (own, id) in [(true, "spectrum.volts"), (false, "spectrum.decibels")] {
-            let word = say(skin, id);
+            let word = say(theme, id);
             let button = egui::Button::selectable(volts == own, word.as_str()).frame_when_inactive(true);
             if name(ui.add(button), true, &word).clicked() {
                 wanted = own;
             }
         }
     };
-    card_with(ui, skin, TEXTS.text("spectrum.title"), aside, |ui| {
+    card_with(ui, theme, TEXTS.text("spectrum.title"), aside, |ui| {
         let spectra = match &measurement.spectra {
             Ok(spectra) => spectra,
             Err(error) => {
-                paragraph(ui, skin.label(skin.words(&explain::signal::spectrum(error))));
+                paragraph(ui, theme.label(theme.words(&explain::signal::spectrum(error))));
                 return;
             }
         };
         let kept = signals.comparison().and_then(|own| own.spectra.as_ref().ok());
-        lines(ui, skin, spectra, kept, volts);
-        peaks(ui, skin, spectra, measurement);
+        lines(ui, theme, spectra, kept, volts);
+        peaks(ui, theme, spectra, measurement);
     });
     view.volts = wanted;
 }
@@ -90,9 +96,9 @@ fn shown(volts: bool, peak_v: f64) -> f64 {
     if volts { peak_v } else { dbv(peak_v) }
 }
 
-fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, volts: bool) {
+fn lines(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, volts: bool) {
     let trace = |id: &'static str, channel: &ChannelSpectrum, colour: usize, dashed: bool| Trace {
-        name: say(skin, id),
+        name: say(theme, id),
         points: channel.lines.iter().map(|(hertz, peak)| (hertz / 1e3, shown(volts, *peak))).collect(),
         colour,
         dashed,
@@ -104,15 +110,15 @@ fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, vo
     }
     traces.push(trace("signals.cosine", &spectra.cosine, 2, false));
     traces.push(trace("signals.sine", &spectra.sine, 0, false));
-    let mark = |line: &crate::analysis::spectrum::Line| {
-        let words = with_unit(skin, line.frequency_hz / 1e3, 3, Unit::Kilohertz);
+    let mark = |line: &crate::analysis::spectrum::SpectralLine| {
+        let words = with_unit(theme, line.frequency_hz / 1e3, 3, Unit::Kilohertz);
         (line.frequency_hz / 1e3, shown(volts, line.amplitude_v), words)
     };
     let marks: Vec<_> = spectra.sine.peaks.iter().take(3).map(mark).collect();
     let value: Vec<String> = marks.iter().map(|(_, _, words)| words.clone()).collect();
     let own = Chart {
         traces: &traces,
-        label: &say(skin, "spectrum.title"),
+        label: &say(theme, "spectrum.title"),
         value: &value.join("; "),
         height: SPECTRUM,
         x_unit: Unit::Kilohertz.sign(),
@@ -120,33 +126,33 @@ fn lines(ui: &mut Ui, skin: &Skin, spectra: &Spectra, kept: Option<&Spectra>, vo
         marks: &marks,
         ..Chart::default()
     };
-    chart(ui, skin, &own);
+    chart(ui, theme, &own);
     let text = TEXTS.text("spectrum.axes").with("samples", spectra.samples).with_number(
         "spacing",
         spectra.spacing_hz,
         if spectra.spacing_hz < 10.0 { 2 } else { 0 },
     );
-    paragraph(ui, skin.caption(skin.words(&text)));
+    paragraph(ui, theme.caption(theme.words(&text)));
 }
 
 /// The highest peaks of both channels, and what they are to the signal.
-fn peaks(ui: &mut Ui, skin: &Skin, spectra: &Spectra, measurement: &Measurement) {
+fn peaks(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measurement) {
     let signal_hz = measurement.analysis.as_ref().ok().and_then(|own| own.frequency_hz()).map(f64::abs);
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
     ui.spacing_mut().interact_size.y = 20.0;
-    egui::Grid::new("spectrum.title").spacing([skin.space.groups, skin.space.inside]).show(ui, |ui| {
+    egui::Grid::new("spectrum.title").spacing([theme.space.groups, theme.space.inside]).show(ui, |ui| {
         for id in ["spectrum.channel", "spectrum.frequency", "spectrum.amplitude", "spectrum.level", "spectrum.order"] {
-            ui.label(skin.caption(say(skin, id)));
+            ui.label(theme.caption(say(theme, id)));
         }
         ui.end_row();
         for (id, channel) in [("signals.sine", &spectra.sine), ("signals.cosine", &spectra.cosine)] {
             for peak in channel.peaks.iter().take(4) {
-                ui.label(skin.label(say(skin, id)));
-                ui.label(skin.mono(with_unit(skin, peak.frequency_hz / 1e3, 4, Unit::Kilohertz)));
-                ui.label(skin.mono(with_unit(skin, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
-                ui.label(skin.mono(with_unit(skin, dbv(peak.amplitude_v), 1, Unit::DecibelVolts)));
+                ui.label(theme.label(say(theme, id)));
+                ui.label(theme.mono(with_unit(theme, peak.frequency_hz / 1e3, 4, Unit::Kilohertz)));
+                ui.label(theme.mono(with_unit(theme, 1e3 * peak.amplitude_v, 2, Unit::Millivolts)));
+                ui.label(theme.mono(with_unit(theme, dbv(peak.amplitude_v), 1, Unit::DecibelVolts)));
                 let order = signal_hz.filter(|hertz| *hertz > 0.0).map(|hertz| peak.frequency_hz / hertz);
-                ui.label(skin.mono(order.map_or_else(|| "–".to_owned(), |order| skin.number(order, 2))));
+                ui.label(theme.mono(order.map_or_else(|| "–".to_owned(), |order| theme.number(order, 2))));
                 ui.end_row();
             }
         }

@@ -5,16 +5,18 @@ use egui::{RichText, Ui};
 use super::{adapter, table, virtual_encoder};
 use crate::app::Action;
 use crate::buses::bridge::protocol::Capabilities;
-use crate::signals::state::{Action as Signals_, Example, Origin, Place, Signals, SourceAction, SourceKind, TEXTS};
+use crate::signals::state::{
+    Action as Signals_, Example, Origin, Signals, SourceAction, SourceKind, TEXTS, TableSource,
+};
 use crate::signals::views::say;
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};
 use crate::ui::widgets::series;
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is remembered of it.
 #[derive(Default)]
-pub(super) struct View {
-    table: table::View,
+pub(super) struct SourceUiState {
+    table: table::TableUiState,
     /// The virtual encoder's settings are shown.
     settings: bool,
     /// Where the adapter is can be said.
@@ -24,41 +26,47 @@ pub(super) struct View {
 /// Draws it. True: there is a capture to be shown below.
 pub(super) fn source_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     signals: &Signals,
-    view: &mut View,
+    view: &mut SourceUiState,
     actions: &mut Vec<Action>,
 ) -> bool {
-    reading(ui, skin, signals, actions);
-    problem(ui, skin, signals);
+    reading(ui, theme, signals, actions);
+    problem(ui, theme, signals);
     let running = signals.source().is_running();
     if signals.measurement().is_some() || running {
-        present(ui, skin, signals, view, actions);
-        ui.add_space(skin.space.between);
+        present(ui, theme, signals, view, actions);
+        ui.add_space(theme.space.between);
     }
     if view.adapter || signals.source().adapter_problem().is_some() {
-        view.adapter = !adapter::card_ui(ui, skin, signals.source(), actions);
-        ui.add_space(skin.space.between);
+        view.adapter = !adapter::card_ui(ui, theme, signals.source(), actions);
+        ui.add_space(theme.space.between);
     }
     let (shown, failed) = (signals.measurement().is_some(), signals.problem().is_some());
     if (view.table.is_open || failed || !shown)
         && !running
         && let Some(own) = signals.table()
     {
-        table::card_ui(ui, skin, own, &mut view.table, actions);
-        ui.add_space(skin.space.between);
+        table::card_ui(ui, theme, own, &mut view.table, actions);
+        ui.add_space(theme.space.between);
     }
     if !shown && !running {
-        nothing(ui, skin, signals, view, actions);
+        nothing(ui, theme, signals, view, actions);
     }
     shown
 }
 
 /// The virtual encoder's settings, where they are wanted. A page draws them where what they change can be seen.
-pub(super) fn settings_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &View, actions: &mut Vec<Action>) {
+pub(super) fn settings_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    signals: &Signals,
+    view: &SourceUiState,
+    actions: &mut Vec<Action>,
+) {
     if view.settings && live(signals) == Some(SourceKind::Encoder) {
-        virtual_encoder::card_ui(ui, skin, signals.source(), actions);
-        ui.add_space(skin.space.between);
+        virtual_encoder::card_ui(ui, theme, signals.source(), actions);
+        ui.add_space(theme.space.between);
     }
 }
 
@@ -75,75 +83,75 @@ fn live(signals: &Signals) -> Option<SourceKind> {
 }
 
 /// What is being read, how far it is, and a way to end it.
-fn reading(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
+fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(reading) = signals.reading() else { return };
     ui.horizontal(|ui| {
-        spinner(ui, skin);
-        ui.label(skin.label(skin.words(&TEXTS.text("signals.reading").with_text("name", reading.place.name()))));
+        spinner(ui, theme);
+        ui.label(theme.label(theme.words(&TEXTS.text("signals.reading").with_text("name", reading.place.name()))));
         if let Some(share) = reading.share() {
             ui.add(egui::ProgressBar::new(share as f32).desired_height(4.0).desired_width(160.0));
         }
-        let word = say(skin, if reading.is_cancelled() { "shell.stopping" } else { "shell.cancel" });
+        let word = say(theme, if reading.is_cancelled() { "shell.stopping" } else { "shell.cancel" });
         if enabled_button(ui, !reading.is_cancelled(), icons::X, &word).clicked() {
             actions.push(Action::tool(Signals_::Cancel));
         }
     });
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.between);
 }
 
 /// Why a capture could not be read. The other pages say it too.
-pub(super) fn problem(ui: &mut Ui, skin: &Skin, signals: &Signals) {
+pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let Some(problem) = signals.problem() else { return };
     ui.horizontal_top(|ui| {
-        ui.label(RichText::new(icons::X_CIRCLE).color(skin.palette.bad));
+        ui.label(RichText::new(icons::X_CIRCLE).color(theme.palette.bad));
         ui.vertical(|ui| {
-            paragraph(ui, skin.words(problem));
+            paragraph(ui, theme.words(problem));
             if let Some(measurement) = signals.measurement() {
                 let text = TEXTS.text("signals.still_shown").with_text("name", measurement.origin.name());
-                paragraph(ui, skin.caption(skin.words(&text)));
+                paragraph(ui, theme.caption(theme.words(&text)));
             }
         });
     });
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.between);
 }
 
 /// The capture that is shown, in one line, and what can be done with it.
-fn present(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
-    skin.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
+fn present(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+    theme.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         fill(ui);
         ui.horizontal_wrapped(|ui| {
-            title(ui, skin, signals);
-            source_menu(ui, skin, view, actions);
-            source_buttons(ui, skin, signals, view, actions);
-            keep_ui(ui, skin, signals, actions);
+            title(ui, theme, signals);
+            source_menu(ui, theme, view, actions);
+            source_buttons(ui, theme, signals, view, actions);
+            keep_ui(ui, theme, signals, actions);
             if signals.table().is_some() {
-                toggle(ui, icons::TABLE, &say(skin, "signals.table"), &mut view.table.is_open);
+                toggle(ui, icons::TABLE, &say(theme, "signals.table"), &mut view.table.is_open);
             }
         });
-        compared(ui, skin, signals, actions);
+        compared(ui, theme, signals, actions);
     });
 }
 
 /// Whose samples these are.
-fn title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
-    let palette = skin.palette;
+fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
+    let palette = theme.palette;
     if live(signals).is_some() {
-        live_title(ui, skin, signals);
+        live_title(ui, theme, signals);
     } else if let Some(measurement) = signals.measurement() {
-        let name = skin.words(&measurement.origin.name());
-        let response = ui.add(egui::Label::new(skin.heading(name)).truncate());
+        let name = theme.words(&measurement.origin.name());
+        let response = ui.add(egui::Label::new(theme.heading(name)).truncate());
         match &measurement.origin {
-            Origin::Table(Place::File(path)) => drop(response.on_hover_text(path.display().to_string())),
-            Origin::Table(Place::Example(_)) => badge(ui, skin, &say(skin, "signals.example"), palette.muted),
+            Origin::Table(TableSource::File(path)) => drop(response.on_hover_text(path.display().to_string())),
+            Origin::Table(TableSource::Example(_)) => badge(ui, theme, &say(theme, "signals.example"), palette.muted),
             Origin::Virtual | Origin::Adapter { .. } => {}
         }
     }
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.between);
 }
 
 /// Which source, whether it runs, and what it lost.
-fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
-    let palette = skin.palette;
+fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
+    let palette = theme.palette;
     let source = signals.source();
     let shown = signals.measurement().map(|own| &own.origin);
     let origin = match (source.is_running(), source.kind(), source.streaming()) {
@@ -156,9 +164,9 @@ fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
         (false, ..) => shown.cloned(),
     };
     let name = origin.as_ref().map_or(TEXTS.text("adapter.title"), Origin::name);
-    ui.add(egui::Label::new(skin.heading(skin.words(&name))).truncate());
+    ui.add(egui::Label::new(theme.heading(theme.words(&name))).truncate());
     if matches!(origin, Some(Origin::Virtual | Origin::Adapter { is_virtual: true, .. })) {
-        badge(ui, skin, &skin.say("shell.virtual"), palette.warn);
+        badge(ui, theme, &theme.say("shell.virtual"), palette.warn);
     }
     let (id, colour) = match (source.is_running(), source.is_held()) {
         (true, _) if origin.is_none() => ("adapter.asking", palette.accent),
@@ -166,43 +174,43 @@ fn live_title(ui: &mut Ui, skin: &Skin, signals: &Signals) {
         (true, false) => ("virtual.running", palette.good),
         (false, _) => ("virtual.stopped", palette.muted),
     };
-    let response = ui.label(RichText::new(say(skin, id)).color(colour));
+    let response = ui.label(RichText::new(say(theme, id)).color(colour));
     if let Some(streaming) = source.streaming() {
         let rate = 1e9 / streaming.period_ns.max(1) as f64;
         let volts = f64::from(streaming.full_scale_microvolt) * 1e-6;
         let actual = TEXTS.text("adapter.actual").with_number("rate", rate, 0).with_number("volts", volts, 3);
         let hello = &streaming.hello;
         let who = [hello.name.as_str(), &hello.serial, &hello.firmware].join(" · ");
-        response.on_hover_text(format!("{who}\n{}", skin.words(&actual)));
+        response.on_hover_text(format!("{who}\n{}", theme.words(&actual)));
         if let Some((millivolt, milliampere)) = streaming.supplied {
             let text = TEXTS.text("adapter.supplied").with_number("volts", f64::from(millivolt) / 1000.0, 2);
-            ui.label(skin.label(skin.words(&text.with("milliampere", milliampere))));
+            ui.label(theme.label(theme.words(&text.with("milliampere", milliampere))));
         } else if hello.capabilities.has(Capabilities::SUPPLY) {
-            let word = RichText::new(say(skin, "adapter.supply_off")).color(palette.warn);
-            ui.label(word).on_hover_text(say(skin, "adapter.supply_off_hint"));
+            let word = RichText::new(say(theme, "adapter.supply_off")).color(palette.warn);
+            ui.label(word).on_hover_text(say(theme, "adapter.supply_off_hint"));
         }
     }
     if source.lost() > 0 {
         let text = TEXTS.text("virtual.lost").with("count", source.lost());
-        ui.label(RichText::new(skin.words(&text)).color(palette.warn));
+        ui.label(RichText::new(theme.words(&text)).color(palette.warn));
     }
 }
 
 /// Starting, holding and stopping what runs, and its settings.
-fn source_buttons(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     let source = signals.source();
     let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
     let Some(kind) = live(signals) else { return };
     if source.is_running() {
-        if button(ui, icons::STOP, &say(skin, "virtual.stop")).clicked() {
+        if button(ui, icons::STOP, &say(theme, "virtual.stop")).clicked() {
             ask(SourceAction::Stop);
         }
         let held = source.is_held();
         let (icon, id) = if held { (icons::PLAY, "virtual.go_on") } else { (icons::PAUSE, "virtual.hold") };
-        if button(ui, icon, &say(skin, id)).clicked() {
+        if button(ui, icon, &say(theme, id)).clicked() {
             ask(SourceAction::Hold(!held));
         }
-    } else if button(ui, icons::PLAY, &say(skin, "virtual.again")).clicked() {
+    } else if button(ui, icons::PLAY, &say(theme, "virtual.again")).clicked() {
         ask(match kind {
             SourceKind::Encoder => SourceAction::Start,
             SourceKind::Adapter => SourceAction::StartAdapter,
@@ -212,7 +220,7 @@ fn source_buttons(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, 
         SourceKind::Encoder => &mut view.settings,
         SourceKind::Adapter => &mut view.adapter,
     };
-    toggle(ui, icons::SLIDERS, &say(skin, "virtual.settings"), open);
+    toggle(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
 }
 
 /// A button that shows something, or hides it.
@@ -224,50 +232,50 @@ fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
 }
 
 /// Putting the capture aside, and what is put aside.
-fn keep_ui(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
-    let word = say(skin, "compare.keep");
+fn keep_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
+    let word = say(theme, "compare.keep");
     let same =
         signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));
-    if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(say(skin, "compare.keep_hint")).clicked() {
+    if enabled_button(ui, !same, icons::PUSH_PIN, &word).on_hover_text(say(theme, "compare.keep_hint")).clicked() {
         actions.push(Action::tool(Signals_::Keep));
     }
 }
 
 /// What the capture is compared with.
-fn compared(ui: &mut Ui, skin: &Skin, signals: &Signals, actions: &mut Vec<Action>) {
+fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(kept) = signals.comparison() else { return };
     ui.horizontal(|ui| {
         let text = TEXTS.text("compare.with").with_text("name", kept.origin.name());
         let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 12.0), egui::Sense::hover());
         let ends = [rect.left_center(), rect.right_center()];
-        let stroke = egui::Stroke::new(2.0, series(skin, 1));
+        let stroke = egui::Stroke::new(2.0, series(theme, 1));
         ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
-        ui.add(egui::Label::new(skin.label(skin.words(&text))).truncate());
-        if icon_button(ui, true, icons::X, &say(skin, "compare.drop")).clicked() {
+        ui.add(egui::Label::new(theme.label(theme.words(&text))).truncate());
+        if icon_button(ui, true, icons::X, &say(theme, "compare.drop")).clicked() {
             actions.push(Action::tool(Signals_::DropComparison));
         }
     });
 }
 
 /// Everything that samples can come from.
-fn source_menu(ui: &mut Ui, skin: &Skin, view: &mut View, actions: &mut Vec<Action>) {
-    let word = say(skin, "signals.source");
+fn source_menu(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+    let word = say(theme, "signals.source");
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {
         ui.set_width(220.0);
         let mut chosen = None;
-        if button(ui, icons::FOLDER_OPEN, &say(skin, "signals.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &say(theme, "signals.open")).clicked() {
             chosen = Some(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &say(skin, "virtual.start")).clicked() {
+        if button(ui, icons::WAVE_SINE, &say(theme, "virtual.start")).clicked() {
             chosen = Some(Action::tool(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &say(skin, "adapter.open")).clicked() {
+        if button(ui, icons::PLUGS, &say(theme, "adapter.open")).clicked() {
             view.adapter = true;
             ui.close();
         }
-        ui.label(skin.caption(say(skin, "signals.examples")));
+        ui.label(theme.caption(say(theme, "signals.examples")));
         for example in Example::ALL {
-            if button(ui, icons::FILE_TEXT, &say(skin, example.word())).clicked() {
+            if button(ui, icons::FILE_TEXT, &say(theme, example.word())).clicked() {
                 chosen = Some(Action::tool(Signals_::Example(example)));
             }
         }
@@ -280,29 +288,29 @@ fn source_menu(ui: &mut Ui, skin: &Skin, view: &mut View, actions: &mut Vec<Acti
 }
 
 /// What would be here, and what fills it.
-fn nothing(ui: &mut Ui, skin: &Skin, signals: &Signals, view: &mut View, actions: &mut Vec<Action>) {
+fn nothing(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     if signals.reading().is_some() {
         return;
     }
     ui.vertical_centered(|ui| {
-        ui.add_space(skin.space.around);
-        ui.label(RichText::new(icons::WAVE_SINE).size(skin.sizes.live).color(skin.palette.muted));
-        ui.add_space(skin.space.between);
-        ui.add(egui::Label::new(skin.label(say(skin, "signals.nothing"))).wrap());
-        ui.add_space(skin.space.between);
-        if button(ui, icons::FOLDER_OPEN, &say(skin, "signals.open")).clicked() {
+        ui.add_space(theme.space.around);
+        ui.label(RichText::new(icons::WAVE_SINE).size(theme.sizes.live).color(theme.palette.muted));
+        ui.add_space(theme.space.between);
+        ui.add(egui::Label::new(theme.label(say(theme, "signals.nothing"))).wrap());
+        ui.add_space(theme.space.between);
+        if button(ui, icons::FOLDER_OPEN, &say(theme, "signals.open")).clicked() {
             actions.push(Action::AskOpen);
         }
-        if button(ui, icons::WAVE_SINE, &say(skin, "virtual.start")).clicked() {
+        if button(ui, icons::WAVE_SINE, &say(theme, "virtual.start")).clicked() {
             actions.push(Action::tool(Signals_::Source(SourceAction::Start)));
         }
-        if button(ui, icons::PLUGS, &say(skin, "adapter.open")).clicked() {
+        if button(ui, icons::PLUGS, &say(theme, "adapter.open")).clicked() {
             view.adapter = true;
         }
-        ui.add_space(skin.space.groups);
-        ui.label(skin.caption(say(skin, "signals.try_example")));
+        ui.add_space(theme.space.groups);
+        ui.label(theme.caption(say(theme, "signals.try_example")));
         for example in Example::ALL {
-            if button(ui, icons::WAVE_SINE, &say(skin, example.word())).clicked() {
+            if button(ui, icons::WAVE_SINE, &say(theme, example.word())).clicked() {
                 actions.push(Action::tool(Signals_::Example(example)));
             }
         }

@@ -4,14 +4,14 @@ use egui::Ui;
 
 use crate::app::{Action, SineCosineSource, Text};
 use crate::signals::state::synchronise::{Action as Page, Form, Synchronise, ToldAs};
-use crate::signals::state::{Action as Signals, Signals as State, TEXTS, synchronise::Told};
+use crate::signals::state::{Action as Signals, Signals as State, TEXTS, synchronise::Synchronisation};
 use crate::signals::views::say;
 use crate::ui::controls::{
     card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row, split,
     verdict_ui,
 };
 use crate::ui::widgets::{StepRing, series, step_ring};
-use crate::ui::{Skin, controls, icons};
+use crate::ui::{Theme, controls, icons};
 
 /// Width of an entry.
 const ENTRY: f32 = 112.0;
@@ -23,7 +23,7 @@ const COLUMNS: (f32, f32) = (0.42, 620.0);
 /// Draws the page.
 pub(super) fn page_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     signals: &State,
     device: Option<&dyn SineCosineSource>,
     actions: &mut Vec<Action>,
@@ -35,30 +35,30 @@ pub(super) fn page_ui(
     // Two rows, so that also in one column the result stands next to what it comes from.
     split(
         ui,
-        skin,
+        theme,
         COLUMNS,
         (&mut form, &mut *actions),
-        |ui, (form, actions)| positions(ui, skin, form, state, told.as_ref().err(), device, actions),
+        |ui, (form, actions)| positions(ui, theme, form, state, told.as_ref().err(), device, actions),
         |ui, _| {
             if let Ok(told) = &told {
-                result(ui, skin, told);
+                result(ui, theme, told);
             }
         },
     );
-    ui.add_space(skin.space.groups);
+    ui.add_space(theme.space.groups);
     split(
         ui,
-        skin,
+        theme,
         COLUMNS,
         (&mut form, &mut *actions),
         |ui, (form, actions)| {
-            measured(ui, skin, state, actions);
-            ui.add_space(skin.space.groups);
-            captured(ui, skin, signals, actions);
-            ui.add_space(skin.space.groups);
-            counter(ui, skin, form);
+            measured(ui, theme, state, actions);
+            ui.add_space(theme.space.groups);
+            captured(ui, theme, signals, actions);
+            ui.add_space(theme.space.groups);
+            counter(ui, theme, form);
         },
-        |ui, _| order(ui, skin),
+        |ui, _| order(ui, theme),
     );
     if form != state.form {
         actions.push(ask(Page::Edit(Box::new(form))));
@@ -69,65 +69,65 @@ fn ask(action: Page) -> Action {
     Action::tool(Signals::Synchronise(action))
 }
 
-fn typed(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) {
-    labelled_entry(ui, skin, TEXTS.text(id), text, ENTRY, hint);
+fn typed(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) {
+    labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
 }
 
 fn positions(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     form: &mut Form,
     state: &Synchronise,
     refused: Option<&Text>,
     device: Option<&dyn SineCosineSource>,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, skin, TEXTS.text("synchronise.positions"), |ui| {
-        typed(ui, skin, "synchronise.absolute", &mut form.absolute, "0x2A5F");
-        entry(ui, skin, &say(skin, "synchronise.analogue"), |ui| {
+    card(ui, theme, TEXTS.text("synchronise.positions"), |ui| {
+        typed(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
+        entry(ui, theme, &say(theme, "synchronise.analogue"), |ui| {
             let ways = [
                 (ToldAs::Periods, "synchronise.in_periods"),
                 (ToldAs::Degrees, "synchronise.in_degrees"),
                 (ToldAs::Volts, "synchronise.in_volts"),
             ];
-            let ways = ways.map(|(way, id)| (way, say(skin, id)));
-            choice(ui, &say(skin, "synchronise.analogue"), &mut form.told_as, ways);
+            let ways = ways.map(|(way, id)| (way, say(theme, id)));
+            choice(ui, &say(theme, "synchronise.analogue"), &mut form.told_as, ways);
         });
         match form.told_as {
-            ToldAs::Periods | ToldAs::Degrees => typed(ui, skin, "synchronise.phase", &mut form.phase, "0"),
+            ToldAs::Periods | ToldAs::Degrees => typed(ui, theme, "synchronise.phase", &mut form.phase, "0"),
             ToldAs::Volts => {
-                typed(ui, skin, "synchronise.sine", &mut form.sine_v, "0");
-                typed(ui, skin, "synchronise.cosine", &mut form.cosine_v, "0");
+                typed(ui, theme, "synchronise.sine", &mut form.sine_v, "0");
+                typed(ui, theme, "synchronise.cosine", &mut form.cosine_v, "0");
             }
         }
-        typed(ui, skin, "synchronise.periods", &mut form.periods, "1024");
-        typed(ui, skin, "synchronise.turns", &mut form.turns, "1");
-        typed(ui, skin, "synchronise.offset", &mut form.offset, "0");
-        ui.checkbox(&mut form.half_step, say(skin, "synchronise.half_step"))
-            .on_hover_text(say(skin, "synchronise.half_step_hint"));
-        problem(ui, skin, refused);
+        typed(ui, theme, "synchronise.periods", &mut form.periods, "1024");
+        typed(ui, theme, "synchronise.turns", &mut form.turns, "1");
+        typed(ui, theme, "synchronise.offset", &mut form.offset, "0");
+        ui.checkbox(&mut form.half_step, say(theme, "synchronise.half_step"))
+            .on_hover_text(say(theme, "synchronise.half_step_hint"));
+        problem(ui, theme, refused);
         let ready = device.is_some_and(SineCosineSource::is_ready);
-        let read = enabled_button(ui, ready, icons::CROSSHAIR, &say(skin, "synchronise.read"));
-        if read.on_disabled_hover_text(say(skin, "synchronise.read_hint")).clicked() {
+        let read = enabled_button(ui, ready, icons::CROSSHAIR, &say(theme, "synchronise.read"));
+        if read.on_disabled_hover_text(say(theme, "synchronise.read_hint")).clicked() {
             actions.extend(device.map(SineCosineSource::read_action));
         }
-        problem(ui, skin, state.problem.as_ref());
+        problem(ui, theme, state.problem.as_ref());
     });
 }
 
-fn measured(ui: &mut Ui, skin: &Skin, state: &Synchronise, actions: &mut Vec<Action>) {
+fn measured(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<Action>) {
     let count = state.readings();
     let mut forget = false;
     let aside = |ui: &mut Ui| {
-        forget = icon_button(ui, count > 0, icons::TRASH, &say(skin, "synchronise.forget")).clicked();
+        forget = icon_button(ui, count > 0, icons::TRASH, &say(theme, "synchronise.forget")).clicked();
     };
-    card_with(ui, skin, TEXTS.text("synchronise.measured"), aside, |ui| {
-        paragraph(ui, skin.label(say(skin, "synchronise.measured_words")));
-        row(ui, skin, &say(skin, "synchronise.readings"), skin.mono(count.to_string()));
+    card_with(ui, theme, TEXTS.text("synchronise.measured"), aside, |ui| {
+        paragraph(ui, theme.label(say(theme, "synchronise.measured_words")));
+        row(ui, theme, &say(theme, "synchronise.readings"), theme.mono(count.to_string()));
         let offset = state.measured();
-        let words = offset.map_or_else(|| "–".to_owned(), |offset| format!("{}/32", skin.number(offset, 2)));
-        row(ui, skin, &say(skin, "synchronise.mean"), skin.mono(words));
-        if enabled_button(ui, offset.is_some(), icons::CHECK, &say(skin, "synchronise.use")).clicked() {
+        let words = offset.map_or_else(|| "–".to_owned(), |offset| format!("{}/32", theme.number(offset, 2)));
+        row(ui, theme, &say(theme, "synchronise.mean"), theme.mono(words));
+        if enabled_button(ui, offset.is_some(), icons::CHECK, &say(theme, "synchronise.use")).clicked() {
             actions.push(ask(Page::UseOffset));
         }
     });
@@ -137,37 +137,37 @@ fn measured(ui: &mut Ui, skin: &Skin, state: &Synchronise, actions: &mut Vec<Act
 }
 
 /// The offset over a capture with an absolute position.
-fn captured(ui: &mut Ui, skin: &Skin, signals: &State, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("synchronise.captured"), |ui| {
+fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();
         let Some((own, offset)) = measurement.and_then(|own| Some((own, own.absolute_offset?))) else {
-            paragraph(ui, skin.label(say(skin, "synchronise.not_captured")));
+            paragraph(ui, theme.label(say(theme, "synchronise.not_captured")));
             return;
         };
         let name = TEXTS.text("synchronise.captured_from").with_text("name", own.origin.name());
-        paragraph(ui, skin.label(skin.words(&name)));
+        paragraph(ui, theme.label(theme.words(&name)));
         match offset {
             Ok(offset) => {
-                let steps = |steps| skin.mono(format!("{}/32", skin.number(steps, 2)));
+                let steps = |steps| theme.mono(format!("{}/32", theme.number(steps, 2)));
                 let state = signals.synchronise();
-                row(ui, skin, &say(skin, "quality.samples"), skin.mono(offset.samples.to_string()));
-                row(ui, skin, &say(skin, "synchronise.mean"), steps(state.with_half_step(offset.offset_steps)));
-                row(ui, skin, &say(skin, "synchronise.farthest"), steps(offset.farthest_steps));
-                if enabled_button(ui, true, icons::CHECK, &say(skin, "synchronise.use_captured")).clicked() {
+                row(ui, theme, &say(theme, "quality.samples"), theme.mono(offset.samples.to_string()));
+                row(ui, theme, &say(theme, "synchronise.mean"), steps(state.with_half_step(offset.offset_steps)));
+                row(ui, theme, &say(theme, "synchronise.farthest"), steps(offset.farthest_steps));
+                if enabled_button(ui, true, icons::CHECK, &say(theme, "synchronise.use_captured")).clicked() {
                     actions.push(ask(Page::UseCaptured(offset.offset_steps)));
                 }
             }
-            Err(why) => problem(ui, skin, Some(&why.text())),
+            Err(why) => problem(ui, theme, Some(&why.text())),
         }
     });
 }
 
-fn result(ui: &mut Ui, skin: &Skin, told: &Told) {
+fn result(ui: &mut Ui, theme: &Theme, told: &Synchronisation) {
     let (verdict, words) = told.words();
-    let (_, colour) = controls::verdict(skin, verdict);
-    card(ui, skin, TEXTS.text("synchronise.result"), |ui| {
+    let (_, colour) = controls::verdict(theme, verdict);
+    card(ui, theme, TEXTS.text("synchronise.result"), |ui| {
         let fine = told.result.ok();
-        let (label, value) = (say(skin, "synchronise.ring"), skin.words(&words));
+        let (label, value) = (say(theme, "synchronise.ring"), theme.words(&words));
         let ring = StepRing {
             step: told.step,
             phase: told.phase.periods(),
@@ -176,65 +176,65 @@ fn result(ui: &mut Ui, skin: &Skin, told: &Told) {
             label: &label,
             value: &value,
         };
-        let shown = fine.map_or_else(|| "–".to_owned(), |fine| skin.number(fine.periods(), 5));
-        ui.label(skin.value(shown));
-        verdict_ui(ui, skin, verdict, &words);
-        ui.add_space(skin.space.inside);
+        let shown = fine.map_or_else(|| "–".to_owned(), |fine| theme.number(fine.periods(), 5));
+        ui.label(theme.value(shown));
+        verdict_ui(ui, theme, verdict, &words);
+        ui.add_space(theme.space.inside);
         split(
             ui,
-            skin,
+            theme,
             (0.5, 2.0 * RING),
             (),
             |ui, ()| {
-                ui.vertical_centered(|ui| step_ring(ui, skin, &ring, RING.min(ui.available_width())));
+                ui.vertical_centered(|ui| step_ring(ui, theme, &ring, RING.min(ui.available_width())));
             },
-            |ui, ()| numbers(ui, skin, told),
+            |ui, ()| numbers(ui, theme, told),
         );
     });
 }
 
-fn numbers(ui: &mut Ui, skin: &Skin, told: &Told) {
-    let number = |value, decimals, unit: &str| skin.mono(format!("{}{unit}", skin.number(value, decimals)));
-    row(ui, skin, &say(skin, "synchronise.period"), skin.mono(told.period.to_string()));
+fn numbers(ui: &mut Ui, theme: &Theme, told: &Synchronisation) {
+    let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
+    row(ui, theme, &say(theme, "synchronise.period"), theme.mono(told.period.to_string()));
     // In the colours that they have in the ring.
-    row(ui, skin, &say(skin, "synchronise.step"), skin.mono(format!("{}/32", told.step)).color(series(skin, 0)));
-    row(ui, skin, &say(skin, "synchronise.phase_now"), number(told.phase.periods(), 5, "").color(series(skin, 1)));
-    row(ui, skin, &say(skin, "synchronise.difference"), number(told.difference_steps, 2, "/32"));
+    row(ui, theme, &say(theme, "synchronise.step"), theme.mono(format!("{}/32", told.step)).color(series(theme, 0)));
+    row(ui, theme, &say(theme, "synchronise.phase_now"), number(told.phase.periods(), 5, "").color(series(theme, 1)));
+    row(ui, theme, &say(theme, "synchronise.difference"), number(told.difference_steps, 2, "/32"));
     if let Ok(fine) = told.result {
         let correction = if fine.correction == 0 { "0".to_owned() } else { format!("{:+}", fine.correction) };
-        row(ui, skin, &say(skin, "synchronise.correction"), skin.mono(correction));
-        row(ui, skin, &say(skin, "synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
-        row(ui, skin, &say(skin, "synchronise.steps"), skin.mono(format!("{:X}h", fine.steps(16))));
+        row(ui, theme, &say(theme, "synchronise.correction"), theme.mono(correction));
+        row(ui, theme, &say(theme, "synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
+        row(ui, theme, &say(theme, "synchronise.steps"), theme.mono(format!("{:X}h", fine.steps(16))));
     }
     if let Some(degrees) = told.degrees() {
-        row(ui, skin, &say(skin, "synchronise.shaft"), number(degrees, 6, "°"));
+        row(ui, theme, &say(theme, "synchronise.shaft"), number(degrees, 6, "°"));
     }
 }
 
-fn counter(ui: &mut Ui, skin: &Skin, form: &mut Form) {
-    card(ui, skin, TEXTS.text("synchronise.counter"), |ui| {
-        paragraph(ui, skin.label(say(skin, "synchronise.counter_words")));
-        typed(ui, skin, "synchronise.quarters", &mut form.quarters, "1356");
+fn counter(ui: &mut Ui, theme: &Theme, form: &mut Form) {
+    card(ui, theme, TEXTS.text("synchronise.counter"), |ui| {
+        paragraph(ui, theme.label(say(theme, "synchronise.counter_words")));
+        typed(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
         match form.quadrature() {
-            Ok(Some(fine)) => row(ui, skin, &say(skin, "synchronise.fine"), skin.mono(skin.number(fine, 5))),
+            Ok(Some(fine)) => row(ui, theme, &say(theme, "synchronise.fine"), theme.mono(theme.number(fine, 5))),
             Ok(None) => {}
-            Err(why) => problem(ui, skin, Some(&why)),
+            Err(why) => problem(ui, theme, Some(&why)),
         }
-        ui.add_space(skin.space.inside);
-        paragraph(ui, skin.label(say(skin, "synchronise.check_words")));
-        typed(ui, skin, "synchronise.jitter", &mut form.jitter_ms, "1");
+        ui.add_space(theme.space.inside);
+        paragraph(ui, theme.label(say(theme, "synchronise.check_words")));
+        typed(ui, theme, "synchronise.jitter", &mut form.jitter_ms, "1");
         match form.unlatched_rpm() {
             Ok(rpm) => {
-                let words = format!("{} {}", skin.number(rpm, 1), say(skin, "input.rpm"));
-                row(ui, skin, &say(skin, "synchronise.below"), skin.mono(words));
+                let words = format!("{} {}", theme.number(rpm, 1), say(theme, "input.rpm"));
+                row(ui, theme, &say(theme, "synchronise.below"), theme.mono(words));
             }
-            Err(why) => problem(ui, skin, Some(&why)),
+            Err(why) => problem(ui, theme, Some(&why)),
         }
     });
 }
 
-fn order(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, TEXTS.text("synchronise.order"), |ui| {
+fn order(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, TEXTS.text("synchronise.order"), |ui| {
         for id in [
             "synchronise.order_read",
             "synchronise.order_sample",
@@ -243,7 +243,7 @@ fn order(ui: &mut Ui, skin: &Skin) {
             "synchronise.order_run",
             "synchronise.order_check",
         ] {
-            paragraph(ui, skin.label(say(skin, id)));
+            paragraph(ui, theme.label(say(theme, id)));
         }
     });
 }

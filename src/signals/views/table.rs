@@ -8,11 +8,11 @@ use crate::app::Action;
 use crate::signals::state::{Action as Signals, Column, TEXTS, Table, forms};
 use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is remembered of the card.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct TableUiState {
     /// It is shown.
     pub(super) is_open: bool,
     volts: Draft,
@@ -37,34 +37,34 @@ const TIME_UNITS: [(TimeUnit, &str); 4] = [
 ];
 
 /// Draws the card.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, actions: &mut Vec<Action>) {
     let mut wish = |action: Signals| actions.push(Action::tool(action));
     let mut again = false;
     let aside = |ui: &mut Ui| {
-        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "columns.detect")).clicked();
+        again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "columns.detect")).clicked();
     };
-    card_with(ui, skin, TEXTS.text("columns.title"), aside, |ui| {
-        lines(ui, skin, table);
-        ui.add_space(skin.space.between);
+    card_with(ui, theme, TEXTS.text("columns.title"), aside, |ui| {
+        lines(ui, theme, table);
+        ui.add_space(theme.space.between);
         two_columns(
             ui,
-            skin,
+            theme,
             (&mut *view, &mut wish),
-            |ui, (_, wish)| columns(ui, skin, table, *wish),
+            |ui, (_, wish)| columns(ui, theme, table, *wish),
             |ui, (view, wish)| {
-                form(ui, skin, table, *wish);
-                volts(ui, skin, table, view, *wish);
+                form(ui, theme, table, *wish);
+                volts(ui, theme, table, view, *wish);
             },
         );
         if let Some((_, Some(why))) = &view.volts {
-            problem(ui, skin, Some(why));
+            problem(ui, theme, Some(why));
         }
         if let Some(clock) = table.layout.as_ref().and_then(|layout| layout.clock) {
             let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);
-            paragraph(ui, skin.caption(skin.words(&text)));
+            paragraph(ui, theme.caption(theme.words(&text)));
         }
         if table.half_chosen != (None, None) {
-            paragraph(ui, skin.caption(say(skin, "columns.half_chosen")));
+            paragraph(ui, theme.caption(say(theme, "columns.half_chosen")));
         }
     });
     if again {
@@ -74,47 +74,47 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, 
 }
 
 /// The first lines as they stand in the file.
-fn lines(ui: &mut Ui, skin: &Skin, table: &Table) {
+fn lines(ui: &mut Ui, theme: &Theme, table: &Table) {
     let first = table.layout.as_ref().map_or(0, |layout| layout.first_row);
-    skin.sunken().show(ui, |ui| {
+    theme.sunken().show(ui, |ui| {
         ui.set_min_width(ui.available_width().max(0.0));
         ScrollArea::horizontal().id_salt("lines").auto_shrink([false, true]).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             for (number, line) in (1_u64..).zip(&table.head) {
-                let colour = if number >= first { skin.palette.text } else { skin.palette.muted };
-                let text = skin.mono(format!("{number:>2}  {line}")).size(skin.sizes.caption).color(colour);
+                let colour = if number >= first { theme.palette.text } else { theme.palette.muted };
+                let text = theme.mono(format!("{number:>2}  {line}")).size(theme.sizes.caption).color(colour);
                 ui.label(text);
             }
         });
     });
 }
 
-fn form(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
-    let word = say(skin, "columns.delimiter");
+fn form(ui: &mut Ui, theme: &Theme, table: &Table, wish: &mut impl FnMut(Signals)) {
+    let word = say(theme, "columns.delimiter");
     let mut delimiter = table.delimiter();
-    entry(ui, skin, &word, |ui| {
-        let options = DELIMITERS.map(|(own, id)| (Some(own), say(skin, id)));
+    entry(ui, theme, &word, |ui| {
+        let options = DELIMITERS.map(|(own, id)| (Some(own), say(theme, id)));
         if choice(ui, &word, &mut delimiter, options) {
             delimiter.into_iter().for_each(|own| wish(Signals::SetDelimiter(own)));
         }
     });
-    let word = say(skin, "columns.decimal");
+    let word = say(theme, "columns.decimal");
     let mut comma = table.wishes.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
-    entry(ui, skin, &word, |ui| {
-        let options = [(Some(false), say(skin, "columns.point")), (Some(true), say(skin, "columns.comma"))];
+    entry(ui, theme, &word, |ui| {
+        let options = [(Some(false), say(theme, "columns.point")), (Some(true), say(theme, "columns.comma"))];
         if choice(ui, &word, &mut comma, options) {
             comma.into_iter().for_each(|own| wish(Signals::SetDecimalComma(own)));
         }
     });
 }
 
-fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signals)) {
+fn columns(ui: &mut Ui, theme: &Theme, table: &Table, wish: &mut impl FnMut(Signals)) {
     for (column, id) in COLUMNS {
-        let word = say(skin, id);
+        let word = say(theme, id);
         let mut number = table.column(column);
         let needed = matches!(column, Column::Sine | Column::Cosine);
-        entry(ui, skin, &word, |ui| {
-            let none = (!needed).then(|| (None, say(skin, "columns.none")));
+        entry(ui, theme, &word, |ui| {
+            let none = (!needed).then(|| (None, say(theme, "columns.none")));
             let width = table.width().max(number.unwrap_or(0));
             let numbers = (1..=width).map(|own| match table.name(own) {
                 Some(name) => (Some(own), format!("{own}: {name}")),
@@ -125,9 +125,9 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
             }
         });
         if column == Column::Time && number.is_some() {
-            let word = say(skin, "columns.time_unit");
+            let word = say(theme, "columns.time_unit");
             let mut unit = table.wishes.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
-            entry(ui, skin, &word, |ui| {
+            entry(ui, theme, &word, |ui| {
                 let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
                 if choice(ui, &word, &mut unit, options) {
                     unit.into_iter().for_each(|own| wish(Signals::SetTimeUnit(own)));
@@ -137,11 +137,11 @@ fn columns(ui: &mut Ui, skin: &Skin, table: &Table, wish: &mut impl FnMut(Signal
     }
 }
 
-fn volts(ui: &mut Ui, skin: &Skin, table: &Table, view: &mut View, wish: &mut impl FnMut(Signals)) {
+fn volts(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, wish: &mut impl FnMut(Signals)) {
     let volts = table.wishes.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
-    let shown = volts.map(|volts| skin.plain(volts)).unwrap_or_default();
-    let word = say(skin, "columns.volts");
-    entry(ui, skin, &word, |ui| {
+    let shown = volts.map(|volts| theme.plain(volts)).unwrap_or_default();
+    let word = say(theme, "columns.volts");
+    entry(ui, theme, &word, |ui| {
         settled_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
             wish(Signals::SetVolts(forms::volts_per_unit(text)?));
             Ok(())

@@ -2,13 +2,13 @@
 
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
-use crate::analysis::wires::Wire;
+use crate::analysis::wiring::Wire;
 use crate::app::{Action, explain, number};
 use crate::signals::state::{Action as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::say;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// A setting that is slid: where its slider ends (more can be typed), and its decimals.
 struct Slid {
@@ -52,27 +52,27 @@ const DISTURBANCES: [Slid; 8] = [
 const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
 
 /// Draws the card.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let mut reset = false;
     let aside = |ui: &mut Ui| {
-        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "virtual.reset")).clicked();
+        reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "virtual.reset")).clicked();
     };
-    card_with(ui, skin, TEXTS.text("virtual.settings"), aside, |ui| {
+    card_with(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
         // There are many, and what they do is to be seen beside them.
         ui.spacing_mut().interact_size.y = 20.0;
-        ui.spacing_mut().item_spacing.y = skin.space.inside;
-        ui.visuals_mut().widgets.inactive.bg_fill = skin.palette.line.into();
-        problem(ui, skin, source.problem());
+        ui.spacing_mut().item_spacing.y = theme.space.inside;
+        ui.visuals_mut().widgets.inactive.bg_fill = theme.palette.line.into();
+        problem(ui, theme, source.problem());
         two_columns(
             ui,
-            skin,
+            theme,
             &mut ask,
-            |ui, ask| sliders(ui, skin, source.settings(), &SIGNAL, *ask),
+            |ui, ask| sliders(ui, theme, source.settings(), &SIGNAL, *ask),
             |ui, ask| {
-                sliders(ui, skin, source.settings(), &DISTURBANCES, *ask);
-                wires(ui, skin, source.settings(), *ask);
-                window(ui, skin, source, *ask);
+                sliders(ui, theme, source.settings(), &DISTURBANCES, *ask);
+                wires(ui, theme, source.settings(), *ask);
+                window(ui, theme, source, *ask);
             },
         );
     });
@@ -81,25 +81,25 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, source: &Source, actions: &mut V
     }
 }
 
-fn sliders(ui: &mut Ui, skin: &Skin, settings: &Settings, list: &[Slid], ask: &mut impl FnMut(SourceAction)) {
+fn sliders(ui: &mut Ui, theme: &Theme, settings: &Settings, list: &[Slid], ask: &mut impl FnMut(SourceAction)) {
     /// What the number behind a slider takes.
     const NUMBER: f32 = 96.0;
     let label = LABELS.min(ui.available_width() * 0.4);
-    let rail = (ui.available_width() - label - NUMBER - 3.0 * skin.space.between).clamp(40.0, 220.0);
+    let rail = (ui.available_width() - label - NUMBER - 3.0 * theme.space.between).clamp(40.0, 220.0);
     ui.spacing_mut().slider_width = rail;
     for own in list {
-        let word = skin.words(&explain::signal::quantity(own.quantity));
+        let word = theme.words(&explain::signal::quantity(own.quantity));
         let mut value = settings.get(own.quantity);
-        let (skin_, decimals) = (*skin, own.decimals);
+        let (style, decimals) = (*theme, own.decimals);
         let unit = own.quantity.unit();
         let suffix = if unit.is_empty() || unit == "°" { unit.to_owned() } else { format!(" {unit}") };
-        entry(ui, skin, &word, |ui| {
+        entry(ui, theme, &word, |ui| {
             let slider = Slider::new(&mut value, own.ends.0..=own.ends.1)
                 .logarithmic(own.logarithmic)
                 .clamping(SliderClamping::Never)
                 .suffix(suffix)
                 .max_decimals(own.decimals)
-                .custom_formatter(move |value, _| skin_.number(value, decimals))
+                .custom_formatter(move |value, _| style.number(value, decimals))
                 .custom_parser(number);
             let response = ui.add(slider);
             response.widget_info(|| WidgetInfo::slider(true, value, &word));
@@ -110,43 +110,43 @@ fn sliders(ui: &mut Ui, skin: &Skin, settings: &Settings, list: &[Slid], ask: &m
     }
 }
 
-fn wires(ui: &mut Ui, skin: &Skin, settings: &Settings, ask: &mut impl FnMut(SourceAction)) {
-    let word = say(skin, "virtual.open_wire");
+fn wires(ui: &mut Ui, theme: &Theme, settings: &Settings, ask: &mut impl FnMut(SourceAction)) {
+    let word = say(theme, "virtual.open_wire");
     let mut open = settings.open_wire;
-    entry(ui, skin, &word, |ui| {
+    entry(ui, theme, &word, |ui| {
         let wires = Wire::ALL.map(|wire| (Some(wire), wire.name().to_owned()));
-        let none = [(None, say(skin, "virtual.no_wire"))];
+        let none = [(None, say(theme, "virtual.no_wire"))];
         if choice(ui, &word, &mut open, none.into_iter().chain(wires)) {
             ask(SourceAction::SetOpenWire(open));
         }
     });
-    let word = say(skin, "virtual.references");
+    let word = say(theme, "virtual.references");
     let mut references = settings.references;
-    entry(ui, skin, &word, |ui| {
+    entry(ui, theme, &word, |ui| {
         let options = [
-            (References::Level, say(skin, "virtual.level")),
-            (References::Complement, say(skin, "virtual.complement")),
+            (References::Level, say(theme, "virtual.level")),
+            (References::Complement, say(theme, "virtual.complement")),
         ];
         if choice(ui, &word, &mut references, options) {
             ask(SourceAction::SetReferences(references));
         }
     });
     let mut terminated = settings.terminated;
-    if ui.checkbox(&mut terminated, say(skin, "virtual.terminated")).changed() {
+    if ui.checkbox(&mut terminated, say(theme, "virtual.terminated")).changed() {
         ask(SourceAction::SetTerminated(terminated));
     }
 }
 
-fn window(ui: &mut Ui, skin: &Skin, source: &Source, ask: &mut impl FnMut(SourceAction)) {
-    let word = say(skin, "virtual.window");
+fn window(ui: &mut Ui, theme: &Theme, source: &Source, ask: &mut impl FnMut(SourceAction)) {
+    let word = say(theme, "virtual.window");
     let mut window = source.window_ms();
-    entry(ui, skin, &word, |ui| {
+    entry(ui, theme, &word, |ui| {
         if choice(ui, &word, &mut window, WINDOWS.map(|own| (own, format!("{own} ms")))) {
             ask(SourceAction::SetWindow(window));
         }
     });
     if let Some(ms) = source.shortened_ms() {
         let text = TEXTS.text("virtual.shortened").with_number("ms", ms, 0);
-        paragraph(ui, skin.caption(skin.words(&text)));
+        paragraph(ui, theme.caption(theme.words(&text)));
     }
 }

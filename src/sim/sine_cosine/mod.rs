@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 pub use settings::{Checked, Quantity, References, SettingError, Settings};
 
 use crate::analysis::Time;
-use crate::analysis::wires::{Wire, Wires};
+use crate::analysis::wiring::{Wire, Wires};
 
 /// Parts of a turn: so many that 0.001 rev/min for a nanosecond is one of them.
 const TURN: u64 = 60_000 * 1_000_000_000;

@@ -1,6 +1,6 @@
 //! What can be set of the virtual sine/cosine source: plain data, and the ranges in which it makes sense.
 
-use crate::analysis::wires::Wire;
+use crate::analysis::wiring::Wire;
 
 /// Everything that can be set. Voltages are peak unless they say rms.
 #[derive(Clone, Debug, PartialEq)]

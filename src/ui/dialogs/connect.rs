@@ -14,7 +14,7 @@ use crate::link::LinkUrl;
 use crate::ui::controls::{
     at_the_right, button, entry, icon_button, modal, mono_entry, name, paragraph, primary, problem,
 };
-use crate::ui::{Skin, TabViews, icons};
+use crate::ui::{TabViews, Theme, icons};
 
 pub use form::ConnectForm;
 pub use form::TypedConnectForm;
@@ -36,40 +36,40 @@ const WHY: f32 = 40.0;
 /// Draws the dialog, when it is open.
 pub(in crate::ui) fn connect_ui(
     ctx: &egui::Context,
-    skin: &Skin,
+    theme: &Theme,
     studio: &Studio,
     (tabs, view): (TabViews, &mut ConnectView),
     actions: &mut Vec<Action>,
 ) {
     let Some(dialog) = &studio.connect else { return };
     let height = (ctx.content_rect().height() - 250.0).min(540.0);
-    modal(ctx, skin, "connect", WIDTH, |ui| {
+    modal(ctx, theme, "connect", WIDTH, |ui| {
         ui.horizontal(|ui| {
-            ui.label(skin.heading(skin.say("connect.title")));
-            ui.add_space(skin.space.groups);
-            devices(ui, skin, tabs, dialog.device, actions);
+            ui.label(theme.heading(theme.say("connect.title")));
+            ui.add_space(theme.space.groups);
+            devices(ui, theme, tabs, dialog.device, actions);
         });
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         // Always as high: nothing jumps away under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
-            used_before(ui, skin, studio.settings.links(dialog.device), actions);
+            used_before(ui, theme, studio.settings.links(dialog.device), actions);
             if let Some(own) = tabs.device(dialog.device) {
                 let form = view.forms.entry(dialog.device).or_insert_with(|| own.connect_form());
-                form.form_ui(ui, skin, dialog, &mut view.more, actions);
+                form.form_ui(ui, theme, dialog, &mut view.more, actions);
             }
         });
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
         let url = dialog.url();
-        link_ui(ui, skin, dialog, url.as_ref().ok(), actions);
+        link_ui(ui, theme, dialog, url.as_ref().ok(), actions);
         let searching = dialog.is_searching().then(|| Text::new("connect.searching"));
         let refused = searching.or(url.err());
-        why_ui(ui, skin, refused.as_ref().or(dialog.problem.as_ref()));
+        why_ui(ui, theme, refused.as_ref().or(dialog.problem.as_ref()));
         at_the_right(ui, |ui| {
-            let word = skin.say("connect.connect");
-            if primary(ui, skin, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
+            let word = theme.say("connect.connect");
+            if primary(ui, theme, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
                 actions.push(Action::Connect(Connect::Connect));
             }
-            if button(ui, "", &skin.say("connect.cancel")).clicked() {
+            if button(ui, "", &theme.say("connect.cancel")).clicked() {
                 actions.push(Action::Connect(Connect::Close));
             }
         });
@@ -77,10 +77,10 @@ pub(in crate::ui) fn connect_ui(
 }
 
 /// The kinds of devices.
-fn devices(ui: &mut Ui, skin: &Skin, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
+fn devices(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
     for own in tabs.of_devices() {
-        let word = tabs.title(skin, own);
-        let text = RichText::new(&word).font(skin.strong(skin.sizes.body));
+        let word = tabs.title(theme, own);
+        let text = RichText::new(&word).font(theme.strong(theme.sizes.body));
         let response = ui.add(egui::Button::selectable(device == own, text));
         if name(response, true, &word).clicked() && own != device {
             actions.push(Action::Connect(Connect::Device(own)));
@@ -88,34 +88,34 @@ fn devices(ui: &mut Ui, skin: &Skin, tabs: TabViews, device: Tab, actions: &mut 
     }
 }
 
-fn used_before(ui: &mut Ui, skin: &Skin, links: &[String], actions: &mut Vec<Action>) {
+fn used_before(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut Vec<Action>) {
     if links.is_empty() {
         return;
     }
-    ui.label(skin.caption(skin.say("connect.used")));
+    ui.label(theme.caption(theme.say("connect.used")));
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for link in links.iter().take(LINKS) {
-            let response = ui.add(egui::Button::new(skin.mono(link)).frame_when_inactive(false).truncate());
+            let response = ui.add(egui::Button::new(theme.mono(link)).frame_when_inactive(false).truncate());
             if response.clicked() {
                 actions.push(Action::Connect(Connect::Use(link.clone())));
             }
         }
     });
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.between);
 }
 
 /// The link as the command line takes it: it follows the form, and the form follows it.
-fn link_ui(ui: &mut Ui, skin: &Skin, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
+fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example());
-    let (word, hint) = (skin.say("connect.link"), skin.words(&hint));
+    let (word, hint) = (theme.say("connect.link"), theme.words(&hint));
     let mut link = dialog.link();
-    entry(ui, skin, &word, |ui| {
+    entry(ui, theme, &word, |ui| {
         let width = (ui.available_width() - 52.0).max(0.0);
-        if mono_entry(ui, skin, &mut link, width, &word, &hint).changed() {
+        if mono_entry(ui, theme, &mut link, width, &word, &hint).changed() {
             actions.push(Action::Connect(Connect::Use(link)));
         }
-        if icon_button(ui, url.is_some(), icons::COPY, &skin.say("shell.copy_link")).clicked()
+        if icon_button(ui, url.is_some(), icons::COPY, &theme.say("shell.copy_link")).clicked()
             && let Some(url) = url
         {
             ui.copy_text(url.to_string());
@@ -124,11 +124,11 @@ fn link_ui(ui: &mut Ui, skin: &Skin, dialog: &Dialog, url: Option<&LinkUrl>, act
 }
 
 /// Why it cannot go on. Two lines stand free for it, so that the buttons do not jump away under the pointer.
-fn why_ui(ui: &mut Ui, skin: &Skin, why: Option<&Text>) {
+fn why_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
     let top = ui.cursor().top();
     match why {
-        Some(why) if is_missing(why) => paragraph(ui, skin.label(skin.words(why))),
-        why => problem(ui, skin, why),
+        Some(why) if is_missing(why) => paragraph(ui, theme.label(theme.words(why))),
+        why => problem(ui, theme, why),
     }
     let rest = top + WHY - ui.cursor().top();
     ui.add_space(rest.max(0.0));

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::app::{Action, FileQuestion, Mailbox, Text};
 use crate::store::Folders;
 use crate::ui::controls::{at_the_right, button, modal, primary, text_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// The path that is being typed.
 pub(in crate::ui) struct FileView {
@@ -22,8 +22,8 @@ pub(in crate::ui) struct FileView {
 const TOO_FAST: Duration = Duration::from_millis(250);
 
 /// Asks the question. The answer comes as an action; where the system has no dialogs, [`file_ui`] asks.
-pub(in crate::ui) fn ask(question: FileQuestion, skin: &Skin, mailbox: Mailbox) {
-    let filter = skin.words(&kind(&question));
+pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox) {
+    let filter = theme.words(&kind(&question));
     if !has_dialogs() {
         mailbox.send(Action::TypePath(question));
         return;
@@ -102,17 +102,22 @@ impl FileView {
 }
 
 /// Draws the dialog in which a path is typed. True: it is done with.
-pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileView, actions: &mut Vec<Action>) -> bool {
+pub(in crate::ui) fn file_ui(
+    ctx: &egui::Context,
+    theme: &Theme,
+    view: &mut FileView,
+    actions: &mut Vec<Action>,
+) -> bool {
     let (confirm, icon) = match view.question {
         FileQuestion::Recording => ("file.choose", icons::FOLDER_OPEN),
         _ if view.question.suggested().is_none() => ("file.open", icons::FOLDER_OPEN),
         _ => ("file.save", icons::FLOPPY_DISK),
     };
     let mut done = false;
-    modal(ctx, skin, "file", 520.0, |ui| {
-        ui.label(skin.heading(skin.words(&title(&view.question))));
-        ui.add_space(skin.space.between);
-        let response = text_entry(ui, &mut view.path, ui.available_width(), &skin.say("file.path"), "");
+    modal(ctx, theme, "file", 520.0, |ui| {
+        ui.label(theme.heading(theme.words(&title(&view.question))));
+        ui.add_space(theme.space.between);
+        let response = text_entry(ui, &mut view.path, ui.available_width(), &theme.say("file.path"), "");
         if std::mem::take(&mut view.fresh) {
             response.request_focus();
             // What is typed replaces the name, not the folder.
@@ -125,19 +130,19 @@ pub(in crate::ui) fn file_ui(ctx: &egui::Context, skin: &Skin, view: &mut FileVi
             egui::TextEdit::store_state(ui.ctx(), response.id, state);
         }
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-        ui.label(skin.caption(skin.say("file.hint")));
+        ui.label(theme.caption(theme.say("file.hint")));
         if let Some(working) = &view.working {
             let rule = Text::new("file.rule").with("folder", working.display());
-            ui.label(skin.caption(skin.words(&rule)));
+            ui.label(theme.caption(theme.words(&rule)));
         }
-        ui.add_space(skin.space.groups);
+        ui.add_space(theme.space.groups);
         at_the_right(ui, |ui| {
             let named = !view.path.trim().is_empty();
-            if primary(ui, skin, named, icon, &skin.say(confirm)).clicked() || (enter && named) {
+            if primary(ui, theme, named, icon, &theme.say(confirm)).clicked() || (enter && named) {
                 actions.push(Action::Typed(view.question.clone(), PathBuf::from(view.path.trim())));
                 done = true;
             }
-            if button(ui, "", &skin.say("file.cancel")).clicked() {
+            if button(ui, "", &theme.say("file.cancel")).clicked() {
                 done = true;
             }
         });

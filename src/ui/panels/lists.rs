@@ -5,7 +5,7 @@ use egui_extras::{Column, TableBuilder};
 
 use crate::app::{JobEnd, Studio};
 use crate::ui::controls::{empty, severity};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 const ROW: f32 = 22.0;
 /// Notices that are drawn; the log file has them all.
@@ -13,13 +13,13 @@ const SHOWN: usize = 200;
 const TIME: &str = "%H:%M:%S";
 
 /// Draws the list of jobs, the newest first.
-pub(in crate::ui) fn jobs_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
+pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let jobs: Vec<_> = studio.services.jobs().rev().collect();
     if jobs.is_empty() {
-        empty(ui, skin, &skin.say("jobs.nothing"), None);
+        empty(ui, theme, &theme.say("jobs.nothing"), None);
         return;
     }
-    let palette = skin.palette;
+    let palette = theme.palette;
     TableBuilder::new(ui)
         .id_salt("jobs")
         .auto_shrink(false)
@@ -32,25 +32,25 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
             body.rows(ROW, jobs.len(), |mut row| {
                 let Some(job) = jobs.get(row.index()) else { return };
                 row.col(|ui| {
-                    ui.label(skin.mono(job.since.strftime(TIME).to_string()).color(palette.muted));
+                    ui.label(theme.mono(job.since.strftime(TIME).to_string()).color(palette.muted));
                 });
                 row.col(|ui| {
                     if let Some(until) = &job.until {
                         let seconds = until.duration_since(&job.since).as_secs_f64();
-                        ui.label(skin.mono(format!("{} s", skin.number(seconds, 2))).color(palette.muted));
+                        ui.label(theme.mono(format!("{} s", theme.number(seconds, 2))).color(palette.muted));
                     }
                 });
                 let (icon, colour, words) = match &job.end {
-                    JobEnd::Running => (icons::SPINNER, palette.accent, skin.say("jobs.running")),
+                    JobEnd::Running => (icons::SPINNER, palette.accent, theme.say("jobs.running")),
                     JobEnd::Done => (icons::CHECK_CIRCLE, palette.good, String::new()),
-                    JobEnd::Failed(why) => (icons::X_CIRCLE, palette.bad, skin.words(why)),
-                    JobEnd::Cancelled => (icons::STOP, palette.warn, skin.say("jobs.cancelled")),
+                    JobEnd::Failed(why) => (icons::X_CIRCLE, palette.bad, theme.words(why)),
+                    JobEnd::Cancelled => (icons::STOP, palette.warn, theme.say("jobs.cancelled")),
                 };
                 row.col(|ui| {
                     ui.label(RichText::new(icon).color(colour));
                 });
                 row.col(|ui| {
-                    ui.label(skin.words(&job.what)).on_hover_text(&job.about);
+                    ui.label(theme.words(&job.what)).on_hover_text(&job.about);
                 });
                 row.col(|ui| {
                     ui.label(RichText::new(&words).color(colour)).on_hover_text(&words);
@@ -60,20 +60,20 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
 }
 
 /// Draws the log, the newest first.
-pub(in crate::ui) fn log_ui(ui: &mut Ui, skin: &Skin, studio: &Studio) {
-    let palette = skin.palette;
+pub(in crate::ui) fn log_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+    let palette = theme.palette;
     if studio.services.log.notices().len() == 0 {
-        empty(ui, skin, &skin.say("log.nothing"), None);
+        empty(ui, theme, &theme.say("log.nothing"), None);
         return;
     }
     ScrollArea::vertical().id_salt("log").auto_shrink(false).show(ui, |ui| {
         for notice in studio.services.log.notices().rev().take(SHOWN) {
-            let (icon, colour) = severity(skin, notice.severity);
+            let (icon, colour) = severity(theme, notice.severity);
             ui.horizontal_top(|ui| {
-                ui.label(skin.mono(notice.at.strftime(TIME).to_string()).color(palette.muted));
+                ui.label(theme.mono(notice.at.strftime(TIME).to_string()).color(palette.muted));
                 ui.label(RichText::new(icon).color(colour));
-                let words: Vec<String> = notice.texts.iter().map(|text| skin.words(text)).collect();
-                let about = notice.whose(|text| skin.words(text));
+                let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
+                let about = notice.whose(|text| theme.words(text));
                 ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true));
             });
         }

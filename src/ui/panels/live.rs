@@ -5,10 +5,10 @@ use std::time::Duration;
 use egui::{RichText, Ui};
 
 use crate::app::session::Phase;
-use crate::app::{Action, AnyDevice, Desk, DeviceCommand, Rgb, Studio, Text};
+use crate::app::{Action, AnyDevice, DeviceCommand, RecorderOwner, Rgb, Studio, Text};
 use crate::ui::controls::{choice, empty, enabled_button, icon_button};
 use crate::ui::page::apart;
-use crate::ui::{Skin, Views, icons, plot};
+use crate::ui::{Theme, Views, icons, plot};
 
 /// Microseconds from one reading of the position to the next; back to back first.
 const RATES: [(u64, &str); 4] =
@@ -25,24 +25,30 @@ pub(crate) const LOW: f32 = 460.0;
 const NOTICED: f32 = 0.4;
 
 /// Draws the panel.
-pub(in crate::ui) fn live_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+pub(in crate::ui) fn live_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    views: &mut Views,
+    actions: &mut Vec<Action>,
+) {
     let Some(device) = studio.shown() else {
-        empty(ui, skin, &skin.say("live.nothing"), None);
+        empty(ui, theme, &theme.say("live.nothing"), None);
         return;
     };
     let paused = is_paused(ui, device);
-    let ink = if device.is_polling() && !paused { skin.palette.text } else { skin.palette.muted };
+    let ink = if device.is_polling() && !paused { theme.palette.text } else { theme.palette.muted };
     if let Some(view) = views.tabs.device(device.tab()) {
-        view.value_ui(ui, skin, device, ink);
+        view.value_ui(ui, theme, device, ink);
     }
     if paused {
-        ui.label(skin.caption(skin.say("live.paused_by_job")));
+        ui.label(theme.caption(theme.say("live.paused_by_job")));
     }
-    ui.add_space(skin.space.inside);
-    apart(ui, "controls", |ui| controls(ui, skin, device, views, actions));
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.inside);
+    apart(ui, "controls", |ui| controls(ui, theme, device, views, actions));
+    ui.add_space(theme.space.between);
     if !views.plot.is_large() {
-        apart(ui, "plot", |ui| plot_ui(ui, skin, device, views, actions));
+        apart(ui, "plot", |ui| plot_ui(ui, theme, device, views, actions));
     }
 }
 
@@ -58,47 +64,47 @@ fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
 /// The plot of what was recorded of a device.
 pub(in crate::ui) fn plot_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     device: &AnyDevice,
     views: &mut Views,
     actions: &mut Vec<Action>,
 ) {
-    let empty = skin.say(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
-    let desk = Desk::Device(device.id());
-    plot::plot_ui(ui, skin, device.recorder(), desk, &mut views.plot, &empty, actions);
+    let empty = theme.say(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
+    let desk = RecorderOwner::Device(device.id());
+    plot::plot_ui(ui, theme, device.recorder(), desk, &mut views.plot, &empty, actions);
     let dropped = device.dropped();
     if dropped > 0 {
         let text = Text::new("live.dropped").with("count", dropped);
-        ui.label(RichText::new(skin.words(&text)).size(skin.sizes.caption).color(skin.palette.warn));
+        ui.label(RichText::new(theme.words(&text)).size(theme.sizes.caption).color(theme.palette.warn));
     }
 }
 
 /// A word on the position beside it, cut where the panel ends: it must not make the panel wider than the window.
-pub(crate) fn mark(ui: &mut Ui, skin: &Skin, word: &'static str, ink: Rgb) {
-    ui.add(egui::Label::new(RichText::new(skin.say(word)).color(ink)).truncate());
+pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
+    ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
 }
 
-fn controls(ui: &mut Ui, skin: &Skin, device: &AnyDevice, views: &mut Views, actions: &mut Vec<Action>) {
+fn controls(ui: &mut Ui, theme: &Theme, device: &AnyDevice, views: &mut Views, actions: &mut Vec<Action>) {
     let connected = *device.phase() == Phase::Connected;
     let polling = device.is_polling();
     let streams = if device.streams() { &STREAMS[..] } else { &[] };
-    let rates: Vec<(u64, String)> = streams.iter().chain(&RATES).map(|(every, id)| (*every, skin.say(id))).collect();
+    let rates: Vec<(u64, String)> = streams.iter().chain(&RATES).map(|(every, id)| (*every, theme.say(id))).collect();
     let mut rate = Some(views.rate).filter(|rate| rates.iter().any(|(own, _)| own == rate)).unwrap_or(USUAL);
     ui.horizontal_wrapped(|ui| {
         if polling {
-            if enabled_button(ui, true, icons::PAUSE, &skin.say("live.pause")).clicked() {
+            if enabled_button(ui, true, icons::PAUSE, &theme.say("live.pause")).clicked() {
                 actions.push(device.command(DeviceCommand::Poll(None)));
             }
-        } else if enabled_button(ui, connected, icons::PLAY, &skin.say("live.start")).clicked() {
+        } else if enabled_button(ui, connected, icons::PLAY, &theme.say("live.start")).clicked() {
             actions.push(device.command(DeviceCommand::Poll(Some(Duration::from_micros(rate)))));
         }
-        if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &skin.say("live.once")).clicked() {
+        if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &theme.say("live.once")).clicked() {
             actions.push(device.command(DeviceCommand::ReadPosition));
         }
         if let Some(session) = views.session(device) {
-            session.watch_menu(ui, skin, device, actions);
+            session.watch_menu(ui, theme, device, actions);
         }
-        if choice(ui, &skin.say("live.rate"), &mut rate, rates) {
+        if choice(ui, &theme.say("live.rate"), &mut rate, rates) {
             views.rate = rate;
             if polling {
                 actions.push(device.command(DeviceCommand::Poll(Some(Duration::from_micros(rate)))));

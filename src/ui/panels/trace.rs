@@ -7,22 +7,22 @@ use egui_extras::{Column, TableBuilder};
 use crate::app::{AnyDevice, Studio, TraceFault};
 use crate::link::Direction;
 use crate::ui::controls::empty;
-use crate::ui::{Skin, Views};
+use crate::ui::{Theme, Views};
 
 const ROW: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 
 /// Draws the panel.
-pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views: &mut Views) {
+pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, _views: &mut Views) {
     let lines = studio.shown().map(AnyDevice::trace);
     let Some(trace) = lines.filter(|trace| !trace.lines().is_empty()) else {
-        empty(ui, skin, &skin.say("trace.nothing"), None);
+        empty(ui, theme, &theme.say("trace.nothing"), None);
         return;
     };
-    let palette = skin.palette;
+    let palette = theme.palette;
     if trace.dropped() > 0 {
         let text = crate::app::Text::new("trace.dropped").with("count", trace.dropped());
-        ui.label(RichText::new(skin.words(&text)).color(palette.warn));
+        ui.label(RichText::new(theme.words(&text)).color(palette.warn));
     }
     let lines = trace.lines();
     TableBuilder::new(ui)
@@ -45,15 +45,15 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, _views:
                 };
                 row.col(|ui| {
                     let time = trace.time_of(line).map(|time| time.strftime(TIME).to_string()).unwrap_or_default();
-                    ui.label(skin.mono(time).color(palette.muted));
+                    ui.label(theme.mono(time).color(palette.muted));
                 });
                 row.col(|ui| {
-                    ui.label(skin.mono(arrow).color(palette.accent));
+                    ui.label(theme.mono(arrow).color(palette.accent));
                 });
                 row.col(|ui| {
-                    ui.label(skin.mono(&line.bytes).color(colour));
+                    ui.label(theme.mono(&line.bytes).color(colour));
                 });
-                let meaning = line.words(skin.language);
+                let meaning = line.words(theme.language);
                 row.col(|ui| {
                     ui.label(RichText::new(&meaning).color(colour));
                 });

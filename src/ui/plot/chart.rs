@@ -6,16 +6,16 @@ use super::lanes::{Lane, Layout, Reduced};
 use super::pointer::Drag;
 use super::trace::{self, Pen};
 use super::{Context, axes};
-use crate::app::recorder::{Cursor, Line, TriggerState};
-use crate::ui::Skin;
+use crate::app::recorder::{Cursor, Series, TriggerState};
+use crate::ui::Theme;
 
 /// Height of a lane in points below which there is no room for names in it.
 const LOW: f32 = 40.0;
 
 /// The colour of a line.
-pub(super) fn colour(skin: &Skin, line: &Line) -> Color32 {
-    let series = &skin.palette.series;
-    series.get(line.colour % series.len()).copied().unwrap_or(skin.palette.accent).into()
+pub(super) fn colour(theme: &Theme, line: &Series) -> Color32 {
+    let series = &theme.palette.series;
+    series.get(line.colour % series.len()).copied().unwrap_or(theme.palette.accent).into()
 }
 
 pub(super) fn paint(
@@ -26,11 +26,11 @@ pub(super) fn paint(
     drag: Option<&Drag>,
     hovered: Option<Pos2>,
 ) {
-    let skin = context.skin;
-    let font = FontId::monospace(skin.sizes.caption);
+    let theme = context.theme;
+    let font = FontId::monospace(theme.sizes.caption);
     time_axis(painter, context, layout, &font);
     for lane in &layout.lanes {
-        value_axis(painter, skin, lane, &font);
+        value_axis(painter, theme, lane, &font);
         lines(painter, context, layout, lane, reduced);
         names(painter, context, lane);
     }
@@ -40,23 +40,23 @@ pub(super) fn paint(
         under_pointer(painter, context, layout, place);
     }
     if let Some(Drag::Box { from, to }) = drag {
-        let colour = Color32::from(skin.palette.accent);
+        let colour = Color32::from(theme.palette.accent);
         let chosen = Rect::from_two_pos(*from, *to).intersect(layout.chart);
         painter.rect(chosen, 0.0, colour.gamma_multiply(0.15), Stroke::new(1.0, colour), egui::StrokeKind::Inside);
     }
 }
 
 fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
-    let (skin, chart) = (context.skin, layout.chart);
+    let (theme, chart) = (context.theme, layout.chart);
     let most = (chart.width() / 76.0).max(1.0) as usize;
     let (from, to) = (layout.time.time(chart.left()), layout.time.time(chart.right()));
     let ticks = if context.recorder.counts() { axes::sample_ticks } else { axes::time_ticks };
-    let ticks = ticks(from, to, most, skin.language);
-    let grid = Stroke::new(1.0, skin.palette.line);
+    let ticks = ticks(from, to, most, theme.language);
+    let grid = Stroke::new(1.0, theme.palette.line);
     let foot = chart.bottom() + 3.0;
     let mut free = chart.left() - 30.0;
     if let Some(base) = &ticks.base {
-        let words = painter.layout_no_wrap(base.clone(), font.clone(), skin.palette.text.into());
+        let words = painter.layout_no_wrap(base.clone(), font.clone(), theme.palette.text.into());
         free = chart.left() + words.size().x + 8.0;
         painter.galley(pos2(chart.left(), foot), words, Color32::PLACEHOLDER);
     }
@@ -68,7 +68,7 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
         for lane in &layout.lanes {
             painter.vline(x, lane.rect.y_range(), grid);
         }
-        let words = painter.layout_no_wrap(label, font.clone(), skin.palette.muted.into());
+        let words = painter.layout_no_wrap(label, font.clone(), theme.palette.muted.into());
         let left = (x - words.size().x / 2.0).min(painter.clip_rect().right() - words.size().x - 4.0);
         if left >= free {
             free = left + words.size().x + 8.0;
@@ -77,31 +77,31 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
     }
 }
 
-fn value_axis(painter: &Painter, skin: &Skin, lane: &Lane, font: &FontId) {
+fn value_axis(painter: &Painter, theme: &Theme, lane: &Lane, font: &FontId) {
     let axis = lane.axis();
     let rect = lane.rect;
     for value in axes::ticks(lane.range.0, lane.range.1, lane.step) {
         let y = axis.y(value).round();
-        painter.hline(rect.x_range(), y, Stroke::new(1.0, skin.palette.line));
+        painter.hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
         // Beside its line, or not at all: between two lanes there is room for half of one.
         if lane.empty || y < rect.top() + 2.0 || y > rect.bottom() - 2.0 {
             continue;
         }
-        let label = axes::value_label(value, lane.step, skin.language);
+        let label = axes::value_label(value, lane.step, theme.language);
         let place = pos2(rect.left() - 6.0, y);
-        painter.text(place, Align2::RIGHT_CENTER, label, font.clone(), skin.palette.muted.into());
+        painter.text(place, Align2::RIGHT_CENTER, label, font.clone(), theme.palette.muted.into());
     }
-    painter.rect_stroke(rect, 0.0, Stroke::new(1.0, skin.palette.line), egui::StrokeKind::Inside);
+    painter.rect_stroke(rect, 0.0, Stroke::new(1.0, theme.palette.line), egui::StrokeKind::Inside);
 }
 
 fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, reduced: &Reduced) {
-    let palette = context.skin.palette;
+    let palette = context.theme.palette;
     let clipped = painter.with_clip_rect(lane.rect.intersect(painter.clip_rect()));
     let axis = lane.axis();
     let mut shapes = Vec::new();
     for id in &lane.lines {
         let (Some(line), Some(picture)) = (context.recorder.line(*id), reduced.picture(*id)) else { continue };
-        let colour = colour(context.skin, line);
+        let colour = colour(context.theme, line);
         let (bad, warning) = (palette.bad.into(), palette.warn.into());
         let pen = Pen { colour, factor: line.factor(), marks: !line.derived, bad, warning };
         trace::shapes(picture, lane.rect, &layout.time, &axis, &pen, &mut shapes);
@@ -111,28 +111,28 @@ fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane,
 
 /// The name and unit of each line of a lane, in its colour.
 fn names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
-    let skin = context.skin;
+    let theme = context.theme;
     if lane.rect.height() < LOW {
         // They would cover the line; the numbers below have them too.
         return;
     }
     let mut place = lane.rect.min + vec2(8.0, 4.0);
     for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
-        let unit = line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default();
-        let words = format!("{} / {unit}", skin.words(&line.name));
-        let words = painter.layout_no_wrap(words, FontId::proportional(skin.sizes.caption), colour(skin, line));
+        let unit = line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default();
+        let words = format!("{} / {unit}", theme.words(&line.name));
+        let words = painter.layout_no_wrap(words, FontId::proportional(theme.sizes.caption), colour(theme, line));
         let ground = Rect::from_min_size(place, words.size()).expand2(vec2(4.0, 1.0));
         if ground.right() > lane.rect.right() {
             break;
         }
-        painter.rect_filled(ground, 2.0, Color32::from(skin.palette.sunken).gamma_multiply(0.85));
+        painter.rect_filled(ground, 2.0, Color32::from(theme.palette.sunken).gamma_multiply(0.85));
         painter.galley(place, words.clone(), Color32::PLACEHOLDER);
         place.x += words.size().x + 16.0;
     }
 }
 
 fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
-    let palette = context.skin.palette;
+    let palette = context.theme.palette;
     for cursor in Cursor::BOTH {
         let Some(time) = context.recorder.cursor(cursor) else { continue };
         let x = layout.time.x(time).round();
@@ -158,26 +158,26 @@ fn dot(
     context: &Context<'_>,
     layout: &Layout,
     lane: &Lane,
-    line: &Line,
+    line: &Series,
     time: crate::analysis::Time,
 ) {
     let Some(sample) = context.recorder.at(line, time) else { return };
     let place = pos2(layout.time.x(sample.time), lane.axis().y(line.value(&sample)));
     if place.is_finite() && lane.rect.contains(place) {
-        painter.circle(place, 3.5, colour(context.skin, line), Stroke::new(1.0, context.skin.palette.sunken));
+        painter.circle(place, 3.5, colour(context.theme, line), Stroke::new(1.0, context.theme.palette.sunken));
     }
 }
 
 fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, place: Pos2) {
-    let faint = Stroke::new(1.0, Color32::from(context.skin.palette.muted).gamma_multiply(0.6));
+    let faint = Stroke::new(1.0, Color32::from(context.theme.palette.muted).gamma_multiply(0.6));
     painter.vline(place.x.round(), layout.chart.y_range(), faint);
     let time = layout.time.time(place.x);
     let words = match context.recorder.counts() {
         true => axes::sample_number(time),
-        false => axes::instant(time, context.recorder.span(), context.skin.language),
+        false => axes::instant(time, context.recorder.span(), context.theme.language),
     };
-    let font = FontId::monospace(context.skin.sizes.caption);
-    let words = painter.layout_no_wrap(words, font, context.skin.palette.text.into());
+    let font = FontId::monospace(context.theme.sizes.caption);
+    let words = painter.layout_no_wrap(words, font, context.theme.palette.text.into());
     let room = layout.chart.right() - words.size().x - 2.0;
     let corner = pos2(
         (place.x - words.size().x / 2.0).clamp(layout.chart.left(), room.max(layout.chart.left())),
@@ -186,7 +186,7 @@ fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, plac
     painter.rect_filled(
         Rect::from_min_size(corner, words.size()).expand2(vec2(4.0, 1.0)),
         2.0,
-        context.skin.palette.raised,
+        context.theme.palette.raised,
     );
     painter.galley(corner, words, Color32::PLACEHOLDER);
     for lane in &layout.lanes {
@@ -199,7 +199,7 @@ fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, plac
 /// The level that is waited for, and where it happened.
 fn trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
     let Some((trigger, state)) = context.recorder.trigger() else { return };
-    let palette = context.skin.palette;
+    let palette = context.theme.palette;
     let colour = Color32::from(palette.accent);
     if let Some(lane) = layout.lanes.iter().find(|lane| lane.lines.contains(&trigger.line))
         && trigger.when.has_level()

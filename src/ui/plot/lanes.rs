@@ -7,8 +7,8 @@ use egui::{Rect, pos2};
 
 use super::axes;
 use super::trace::{TimeAxis, ValueAxis};
-use crate::analysis::history::{Cut, Grid, Picture};
-use crate::app::recorder::{Line, LineId, Recorder, Stamp};
+use crate::analysis::history::{Grid, GridCut, Picture};
+use crate::app::recorder::{LineId, Recorder, Series, Stamp};
 
 /// Between two lanes, in points.
 const BETWEEN: f32 = 6.0;
@@ -73,7 +73,7 @@ impl Reduced {
         let shown = |id: &LineId| recorder.shown().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
         self.made.retain(|(id, _)| shown(id));
-        let mut cuts: Vec<(Made, Cut)> = Vec::new();
+        let mut cuts: Vec<(Made, GridCut)> = Vec::new();
         for line in recorder.shown() {
             let Some(history) = recorder.history(line) else { continue };
             let wanted = Made { samples: recorder.stamp(line), all: history.all(), grid: *grid };
@@ -98,7 +98,7 @@ impl Reduced {
     }
 
     /// The least and the greatest value of what is visible, in the line's unit.
-    fn extent(&self, line: &Line, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
+    fn extent(&self, line: &Series, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
         let picture = self.picture(line.id)?;
         // The neighbours beyond the edges are there for the line to lead to them, not to be fitted.
         let visible = |pixel: &&crate::analysis::history::Pixel| {
@@ -149,15 +149,15 @@ fn letters(lanes: &[Lane]) -> usize {
 }
 
 /// The lines of each lane.
-fn groups(recorder: &Recorder) -> Vec<Vec<&Line>> {
-    let shown: Vec<&Line> = recorder.shown().collect();
+fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
+    let shown: Vec<&Series> = recorder.shown().collect();
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }
 }
 
-fn lanes(chart: Rect, groups: &[Vec<&Line>], time: &TimeAxis, reduced: &Reduced) -> Vec<Lane> {
+fn lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduced) -> Vec<Lane> {
     let count = groups.len().max(1) as f32;
     let height = ((chart.height() - BETWEEN * (count - 1.0)) / count).max(1.0);
-    let lane = |(at, lines): (usize, &Vec<&Line>)| {
+    let lane = |(at, lines): (usize, &Vec<&Series>)| {
         let top = chart.top() + at as f32 * (height + BETWEEN);
         let rect = Rect::from_min_max(pos2(chart.left(), top), pos2(chart.right(), top + height));
         let shown = range(lines, time, chart, reduced);
@@ -169,7 +169,7 @@ fn lanes(chart: Rect, groups: &[Vec<&Line>], time: &TimeAxis, reduced: &Reduced)
 }
 
 /// The values that a lane shows: what the user chose, or what fits; `None` where there are none.
-fn range(lines: &[&Line], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
+fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
         return Some(range);
     }
@@ -192,7 +192,7 @@ mod tests {
         let mut recorder = Recorder::new(1_000_000);
         let group = recorder.add_group(&[Kind::Real], 10_000, None);
         let scales = vec![Scale::new("unit.degrees", 1.0, 4)];
-        recorder.add_line(Line::of(group, 0, Text::new("recorder.position"), "value", scales));
+        recorder.add_line(Series::of(group, 0, Text::new("recorder.position"), "value", scales));
         let times: Vec<Time> = (0..1000).map(|at| Time::from_nanoseconds(at * 1000)).collect();
         recorder.append(group, &times, &[Part::real(&[value; 1000])]).unwrap();
         recorder

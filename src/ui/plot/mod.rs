@@ -15,16 +15,16 @@ mod trigger;
 
 use egui::{Rect, Sense, Ui, WidgetInfo, vec2};
 
-use super::Skin;
+use super::Theme;
 use super::controls::empty;
 use crate::app::recorder::{self, Recorder};
-use crate::app::{Action, Desk};
+use crate::app::{Action, RecorderOwner};
 
 /// What a plot remembers while the window is open.
 #[derive(Default)]
-pub struct View {
+pub struct PlotUiState {
     /// Whose plot it was.
-    desk: Option<Desk>,
+    desk: Option<RecorderOwner>,
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
@@ -34,10 +34,10 @@ pub struct View {
     large: Option<bool>,
 }
 
-impl View {
+impl PlotUiState {
     /// Of a plot in a panel at the side, which can take the place of the page.
     pub(in crate::ui) fn in_panel() -> Self {
-        View { large: Some(false), ..View::default() }
+        PlotUiState { large: Some(false), ..PlotUiState::default() }
     }
 
     /// It takes the place of the page.
@@ -55,9 +55,9 @@ impl View {
 
 /// Whose plot it is, and where its actions go.
 pub(super) struct Context<'a> {
-    skin: &'a Skin,
+    theme: &'a Theme,
     recorder: &'a Recorder,
-    desk: Desk,
+    desk: RecorderOwner,
     actions: &'a mut Vec<Action>,
 }
 
@@ -70,18 +70,18 @@ impl Context<'_> {
 /// Draws a recorder with its toolbar in what room there is. `invitation` says what fills it.
 pub fn plot_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     recorder: &Recorder,
-    desk: Desk,
-    view: &mut View,
+    desk: RecorderOwner,
+    view: &mut PlotUiState,
     invitation: &str,
     actions: &mut Vec<Action>,
 ) {
     if view.desk.replace(desk).is_some_and(|before| before != desk) {
         // What was being dragged and typed was another's.
-        *view = View { desk: view.desk, large: view.large, ..View::default() };
+        *view = PlotUiState { desk: view.desk, large: view.large, ..PlotUiState::default() };
     }
-    let context = &mut Context { skin, recorder, desk, actions };
+    let context = &mut Context { theme, recorder, desk, actions };
     toolbar::toolbar_ui(ui, context, view);
     let top = ui.cursor().top();
     let below = ui.available_height();
@@ -108,24 +108,24 @@ pub fn plot_ui(
 fn chart_ui(
     ui: &mut Ui,
     context: &mut Context<'_>,
-    view: &mut View,
+    view: &mut PlotUiState,
     height: f32,
     invitation: &str,
 ) -> Option<crate::analysis::Time> {
-    let (skin, recorder) = (context.skin, context.recorder);
+    let (theme, recorder) = (context.theme, context.recorder);
     let size = vec2(ui.available_width().max(0.0), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    let word = skin.say("recorder.chart");
+    let word = theme.say("recorder.chart");
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &word));
-    ui.painter().rect_filled(rect, skin.radius, skin.palette.sunken);
+    ui.painter().rect_filled(rect, theme.radius, theme.palette.sunken);
     if size.x < 80.0 {
         return None;
     }
     if recorder.is_empty() || recorder.shown().next().is_none() {
-        let words = if recorder.is_empty() { invitation.to_owned() } else { skin.say("recorder.no_line") };
+        let words = if recorder.is_empty() { invitation.to_owned() } else { theme.say("recorder.no_line") };
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
         inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));
-        empty(&mut inner, skin, &words, None);
+        empty(&mut inner, theme, &words, None);
         return None;
     }
     let layout = lanes::layout(recorder, rect.shrink(6.0), ui.pixels_per_point(), &mut view.reduced);
@@ -135,8 +135,8 @@ fn chart_ui(
     let painter = ui.painter().with_clip_rect(rect);
     chart::paint(&painter, context, &layout, &view.reduced, view.drag.as_ref(), hovered);
     if response.has_focus() {
-        let stroke = egui::Stroke::new(1.0, skin.palette.accent);
-        ui.painter().rect_stroke(rect, skin.radius, stroke, egui::StrokeKind::Inside);
+        let stroke = egui::Stroke::new(1.0, theme.palette.accent);
+        ui.painter().rect_stroke(rect, theme.radius, stroke, egui::StrokeKind::Inside);
     }
     hovered.map(|place| layout.time.time(place.x))
 }

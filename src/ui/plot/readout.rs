@@ -5,26 +5,26 @@ use egui::{RichText, Sense, Ui, vec2};
 use super::{Context, axes, chart};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, Sample};
-use crate::app::recorder::{Line, Measured, SAMPLE};
-use crate::ui::Skin;
+use crate::app::recorder::{Measured, SAMPLE, Series};
+use crate::ui::Theme;
 
 pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
-    let (skin, recorder) = (context.skin, context.recorder);
+    let (theme, recorder) = (context.theme, context.recorder);
     if recorder.is_empty() {
         return;
     }
-    ui.spacing_mut().item_spacing = vec2(skin.space.between, 2.0);
+    ui.spacing_mut().item_spacing = vec2(theme.space.between, 2.0);
     ui.spacing_mut().interact_size.y = 16.0;
     if let Some(between) = recorder.between_cursors() {
         ui.horizontal_wrapped(|ui| {
             if recorder.counts() {
-                figure(ui, skin, "Δn", &(between / SAMPLE).to_string());
+                figure(ui, theme, "Δn", &(between / SAMPLE).to_string());
                 return;
             }
-            figure(ui, skin, "Δt", &axes::duration(between, skin.language));
+            figure(ui, theme, "Δt", &axes::duration(between, theme.language));
             if between != 0 {
                 let hertz = 1e9 / between.abs() as f64;
-                figure(ui, skin, "1/Δt", &format!("{} Hz", skin.number(hertz, if hertz < 100.0 { 3 } else { 1 })));
+                figure(ui, theme, "1/Δt", &format!("{} Hz", theme.number(hertz, if hertz < 100.0 { 3 } else { 1 })));
             }
         });
     }
@@ -35,12 +35,12 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
     }
     for line in recorder.shown() {
         ui.horizontal_wrapped(|ui| {
-            name(ui, skin, line);
-            ui.label(small(skin, now(context, line, hovered)));
-            ui.label(skin.caption(line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default()));
-            remarks(ui, skin, line, recorder.measure(line).as_ref());
-            for (label, value) in recorder.measure(line).map(|own| figures(skin, line, &own)).unwrap_or_default() {
-                figure(ui, skin, &label, &value);
+            name(ui, theme, line);
+            ui.label(small(theme, now(context, line, hovered)));
+            ui.label(theme.caption(line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default()));
+            remarks(ui, theme, line, recorder.measure(line).as_ref());
+            for (label, value) in recorder.measure(line).map(|own| figures(theme, line, &own)).unwrap_or_default() {
+                figure(ui, theme, &label, &value);
             }
         });
     }
@@ -51,14 +51,14 @@ const WIDE: f32 = 640.0;
 
 /// A row a line, a column a number.
 fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
-    let (skin, recorder) = (context.skin, context.recorder);
+    let (theme, recorder) = (context.theme, context.recorder);
     let right = |ui: &mut Ui, words: RichText| {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(words));
     };
-    egui::Grid::new("measured").num_columns(11).spacing(vec2(skin.space.groups, 2.0)).show(ui, |ui| {
-        let rows: Vec<(&Line, Measured)> =
+    egui::Grid::new("measured").num_columns(11).spacing(vec2(theme.space.groups, 2.0)).show(ui, |ui| {
+        let rows: Vec<(&Series, Measured)> =
             recorder.shown().filter_map(|line| recorder.measure(line).map(|own| (line, own))).collect();
-        let longest = rows.iter().map(|(line, own)| figures(skin, line, own)).max_by_key(Vec::len).unwrap_or_default();
+        let longest = rows.iter().map(|(line, own)| figures(theme, line, own)).max_by_key(Vec::len).unwrap_or_default();
         (0..3).for_each(|_| {
             ui.label("");
         });
@@ -73,35 +73,35 @@ fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
                 }
             }
         };
-        row(ui, longest.into_iter().map(|(label, _)| skin.caption(label)).collect());
+        row(ui, longest.into_iter().map(|(label, _)| theme.caption(label)).collect());
         ui.end_row();
         for (line, measured) in rows {
-            ui.horizontal(|ui| name(ui, skin, line));
-            right(ui, small(skin, now(context, line, hovered)));
-            ui.label(skin.caption(line.scale().map(|scale| skin.words(&scale.unit)).unwrap_or_default()));
-            row(ui, figures(skin, line, &measured).into_iter().map(|(_, value)| small(skin, value)).collect());
-            remarks(ui, skin, line, Some(&measured));
+            ui.horizontal(|ui| name(ui, theme, line));
+            right(ui, small(theme, now(context, line, hovered)));
+            ui.label(theme.caption(line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default()));
+            row(ui, figures(theme, line, &measured).into_iter().map(|(_, value)| small(theme, value)).collect());
+            remarks(ui, theme, line, Some(&measured));
             ui.end_row();
         }
     });
 }
 
-fn name(ui: &mut Ui, skin: &Skin, line: &Line) {
+fn name(ui: &mut Ui, theme: &Theme, line: &Series) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-    ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(skin, line));
-    ui.label(skin.caption(skin.words(&line.name)));
+    ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(theme, line));
+    ui.label(theme.caption(theme.words(&line.name)));
 }
 
 /// The raw sample under the pointer, or the newest.
-fn now(context: &Context<'_>, line: &Line, hovered: Option<Time>) -> String {
+fn now(context: &Context<'_>, line: &Series, hovered: Option<Time>) -> String {
     let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.at(line, time));
-    sample.map_or_else(|| "–".to_owned(), |sample| value(context.skin, line, &sample))
+    sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
 }
 
 /// What the cursors tell of a line: names and values.
-fn figures(skin: &Skin, line: &Line, measured: &Measured) -> Vec<(String, String)> {
+fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, String)> {
     let decimals = line.decimals();
-    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| skin.number(value, decimals));
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| theme.number(value, decimals));
     let mut figures = vec![
         ("A".to_owned(), number(measured.a)),
         ("B".to_owned(), number(measured.b)),
@@ -109,11 +109,11 @@ fn figures(skin: &Skin, line: &Line, measured: &Measured) -> Vec<(String, String
     ];
     if let Some(between) = &measured.between {
         figures.extend([
-            (skin.say("recorder.mean"), number(Some(between.mean))),
-            (skin.say("recorder.min"), number(Some(between.min))),
-            (skin.say("recorder.max"), number(Some(between.max))),
+            (theme.say("recorder.mean"), number(Some(between.mean))),
+            (theme.say("recorder.min"), number(Some(between.min))),
+            (theme.say("recorder.max"), number(Some(between.max))),
             // Noise is smaller than what is measured.
-            ("σ".to_owned(), skin.number(between.deviation, decimals + 1)),
+            ("σ".to_owned(), theme.number(between.deviation, decimals + 1)),
             ("n".to_owned(), between.count.to_string()),
         ]);
     }
@@ -121,38 +121,38 @@ fn figures(skin: &Skin, line: &Line, measured: &Measured) -> Vec<(String, String
 }
 
 /// Why there are no samples, and how many were not to be believed.
-fn remarks(ui: &mut Ui, skin: &Skin, line: &Line, measured: Option<&Measured>) {
-    let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(skin.sizes.caption).color(colour);
+fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured>) {
+    let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(theme.sizes.caption).color(colour);
     if let Some(remark) = &line.remark {
-        ui.label(caption(skin.words(remark), skin.palette.warn));
+        ui.label(caption(theme.words(remark), theme.palette.warn));
     }
     if let Some(between) = measured.and_then(|measured| measured.between.as_ref())
         && between.bad > 0
         && !line.derived
     {
-        ui.label(caption(format!("{} {}", between.bad, skin.say("recorder.bad")), skin.palette.bad));
+        ui.label(caption(format!("{} {}", between.bad, theme.say("recorder.bad")), theme.palette.bad));
     }
 }
 
 /// The last sample of a line.
-fn newest(context: &Context<'_>, line: &Line) -> Option<Sample> {
+fn newest(context: &Context<'_>, line: &Series) -> Option<Sample> {
     let history = context.recorder.history(line)?;
     history.sample(line.column(), history.all().end.checked_sub(1)?)
 }
 
-fn value(skin: &Skin, line: &Line, sample: &Sample) -> String {
+fn value(theme: &Theme, line: &Series, sample: &Sample) -> String {
     let value = line.value(sample);
     if sample.flags.contains(Flags::BAD) || !value.is_finite() {
         return "–".to_owned();
     }
-    skin.number(value, line.decimals())
+    theme.number(value, line.decimals())
 }
 
-fn small(skin: &Skin, words: impl Into<String>) -> RichText {
-    RichText::new(words).font(egui::FontId::monospace(skin.sizes.caption + 1.0))
+fn small(theme: &Theme, words: impl Into<String>) -> RichText {
+    RichText::new(words).font(egui::FontId::monospace(theme.sizes.caption + 1.0))
 }
 
-fn figure(ui: &mut Ui, skin: &Skin, label: &str, value: &str) {
+fn figure(ui: &mut Ui, theme: &Theme, label: &str, value: &str) {
     // Sign and number stay together where a line ends.
     let mut job = egui::text::LayoutJob::default();
     let format = |size, colour: crate::app::Rgb| egui::TextFormat {
@@ -160,7 +160,7 @@ fn figure(ui: &mut Ui, skin: &Skin, label: &str, value: &str) {
         color: colour.into(),
         ..egui::TextFormat::default()
     };
-    job.append(label, 0.0, format(skin.sizes.caption, skin.palette.muted));
-    job.append(value, 4.0, format(skin.sizes.caption + 1.0, skin.palette.text));
+    job.append(label, 0.0, format(theme.sizes.caption, theme.palette.muted));
+    job.append(value, 4.0, format(theme.sizes.caption + 1.0, theme.palette.text));
     ui.add(egui::Label::new(job).extend());
 }

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use super::{Context, View, chart, snapshot, trigger};
+use super::{Context, PlotUiState, chart, snapshot, trigger};
 use crate::app::Action as Studio;
 use crate::app::recorder::{Action, Cursor, TriggerState};
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, options};
@@ -22,14 +22,14 @@ const SPANS: [(i64, &str); 10] = [
     (86_400, "recorder.span_86400"),
 ];
 
-pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut View) {
-    let (skin, recorder) = (context.skin, context.recorder);
+pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut PlotUiState) {
+    let (theme, recorder) = (context.theme, context.recorder);
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = egui::vec2(skin.space.inside, skin.space.inside);
+        ui.spacing_mut().item_spacing = egui::vec2(theme.space.inside, theme.space.inside);
         // In one row beside each other in a panel at the side of the window.
         ui.spacing_mut().button_padding.x = 6.0;
         let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
-            icon_button(ui, enabled, icon, &skin.say(id)).clicked()
+            icon_button(ui, enabled, icon, &theme.say(id)).clicked()
         };
         let some = !recorder.is_empty();
         if recorder.follows() {
@@ -63,7 +63,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut View
 
 /// A button that stays in.
 fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &str, id: &'static str) -> bool {
-    let word = context.skin.say(id);
+    let word = context.theme.say(id);
     let button = egui::Button::selectable(on, icon).frame_when_inactive(true).min_size(egui::vec2(28.0, 28.0));
     let response = ui.add_enabled(enabled, button);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Switch, enabled, on, &word));
@@ -77,16 +77,16 @@ fn span(ui: &mut Ui, context: &mut Context<'_>) {
         // Seconds mean nothing here; zooming chooses how many.
         return;
     }
-    let (skin, span) = (context.skin, context.recorder.span());
+    let (theme, span) = (context.theme, context.recorder.span());
     let mut chosen = span;
     let mut options: Vec<(i64, String)> =
-        SPANS.into_iter().map(|(seconds, id)| (seconds * SECOND, skin.say(id))).collect();
+        SPANS.into_iter().map(|(seconds, id)| (seconds * SECOND, theme.say(id))).collect();
     if options.iter().all(|(own, _)| *own != span) {
-        options.insert(0, (span, super::axes::about(span, skin.language)));
+        options.insert(0, (span, super::axes::about(span, theme.language)));
     }
     ui.scope(|ui| {
         ui.spacing_mut().combo_width = 48.0;
-        if choice(ui, &skin.say("recorder.span"), &mut chosen, options) {
+        if choice(ui, &theme.say("recorder.span"), &mut chosen, options) {
             context.act(Action::SetSpan(chosen));
         }
     });
@@ -96,39 +96,39 @@ fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
     let icon = icons::LIGHTNING;
     let lines = context.recorder.shown().next().is_some();
     if !lines {
-        icon_button(ui, false, icon, &context.skin.say("recorder.trigger"));
+        icon_button(ui, false, icon, &context.theme.say("recorder.trigger"));
         return;
     }
-    let skin = context.skin;
+    let theme = context.theme;
     let mut actions = Vec::new();
-    icon_menu(ui, icon, &skin.say("recorder.trigger"), |ui| {
-        trigger::form_ui(ui, skin, context.recorder, form, &mut actions);
+    icon_menu(ui, icon, &theme.say("recorder.trigger"), |ui| {
+        trigger::form_ui(ui, theme, context.recorder, form, &mut actions);
     });
     actions.into_iter().for_each(|action| context.act(action));
 }
 
 /// Which lines are shown, each in which unit.
 fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
-    let (skin, recorder) = (context.skin, context.recorder);
+    let (theme, recorder) = (context.theme, context.recorder);
     let mut actions = Vec::new();
-    icon_menu(ui, icons::LIST_CHECKS, &skin.say("recorder.lines"), |ui| {
+    icon_menu(ui, icons::LIST_CHECKS, &theme.say("recorder.lines"), |ui| {
         ui.set_width(300.0);
         for line in recorder.lines() {
             let mut shown = line.shown;
-            let words = skin.words(&line.name);
-            let text = RichText::new(&words).color(chart::colour(skin, line));
+            let words = theme.words(&line.name);
+            let text = RichText::new(&words).color(chart::colour(theme, line));
             if ui.checkbox(&mut shown, text).changed() {
                 actions.push(Action::Show(line.id, shown));
             }
             let mut scale = line.scale_number();
-            let units = line.scales().iter().map(|scale| skin.words(&scale.unit)).enumerate();
+            let units = line.scales().iter().map(|scale| theme.words(&scale.unit)).enumerate();
             if line.scales().len() > 1 && options(ui, &words, &mut scale, units) {
                 actions.push(Action::SetScale(line.id, scale));
             }
         }
         ui.separator();
         let mut one_axis = recorder.has_one_axis();
-        if ui.checkbox(&mut one_axis, skin.say("recorder.one_axis")).changed() {
+        if ui.checkbox(&mut one_axis, theme.say("recorder.one_axis")).changed() {
             actions.push(Action::ShareAxis(one_axis));
         }
     });
@@ -136,23 +136,23 @@ fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
 }
 
 fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot) {
-    let skin = context.skin;
+    let theme = context.theme;
     let (some, desk) = (!context.recorder.is_empty(), context.desk);
     let mut chosen = None;
-    icon_menu(ui, icons::DOWNLOAD_SIMPLE, &skin.say("recorder.export"), |ui| {
+    icon_menu(ui, icons::DOWNLOAD_SIMPLE, &theme.say("recorder.export"), |ui| {
         ui.set_min_width(200.0);
         for (id, visible) in [("recorder.csv_visible", true), ("recorder.csv_all", false)] {
-            if ui.add_enabled(some, egui::Button::new(skin.say(id))).clicked() {
+            if ui.add_enabled(some, egui::Button::new(theme.say(id))).clicked() {
                 chosen = Some(Studio::AskTable { desk, visible });
                 ui.close();
             }
         }
-        if ui.button(skin.say("recorder.png")).clicked() {
+        if ui.button(theme.say("recorder.png")).clicked() {
             shot.wish(ui.ctx());
             ui.close();
         }
         ui.separator();
-        if enabled_button(ui, some, icons::TRASH, &skin.say("live.clear")).clicked() {
+        if enabled_button(ui, some, icons::TRASH, &theme.say("live.clear")).clicked() {
             chosen = Some(Studio::AskForget(desk));
             ui.close();
         }
@@ -162,7 +162,7 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot
 
 /// What is going on: a trigger that waits, a table that is being written.
 fn state(ui: &mut Ui, context: &mut Context<'_>) {
-    let (skin, recorder) = (context.skin, context.recorder);
+    let (theme, recorder) = (context.theme, context.recorder);
     if let Some((_, state)) = recorder.trigger() {
         let id = match state {
             TriggerState::Armed => "recorder.armed",
@@ -171,9 +171,9 @@ fn state(ui: &mut Ui, context: &mut Context<'_>) {
             TriggerState::Missed => "recorder.missed",
         };
         ui.horizontal(|ui| {
-            ui.label(RichText::new(icons::LIGHTNING).color(skin.palette.accent));
-            ui.label(skin.caption(skin.say(id)));
-            if ui.small_button(skin.say("recorder.disarm")).clicked() {
+            ui.label(RichText::new(icons::LIGHTNING).color(theme.palette.accent));
+            ui.label(theme.caption(theme.say(id)));
+            if ui.small_button(theme.say("recorder.disarm")).clicked() {
                 context.act(Action::Disarm);
             }
         });
@@ -183,8 +183,8 @@ fn state(ui: &mut Ui, context: &mut Context<'_>) {
         ui.horizontal(|ui| {
             let part = done as f32 / total.max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(80.0));
-            ui.label(skin.caption(skin.say("recorder.writing")));
-            if ui.small_button(skin.say("shell.cancel")).clicked() {
+            ui.label(theme.caption(theme.say("recorder.writing")));
+            if ui.small_button(theme.say("shell.cancel")).clicked() {
                 context.act(Action::CancelExport);
             }
         });

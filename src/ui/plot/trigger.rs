@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::Text;
 use crate::app::recorder::{Action, LineId, Recorder, Trigger, When};
 use crate::ui::controls::{entry, options, primary, text_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is being typed.
 pub(super) struct Form {
@@ -40,7 +40,7 @@ fn word(when: When) -> &'static str {
     }
 }
 
-pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, recorder: &Recorder, form: &mut Form, actions: &mut Vec<Action>) {
+pub(super) fn form_ui(ui: &mut Ui, theme: &Theme, recorder: &Recorder, form: &mut Form, actions: &mut Vec<Action>) {
     ui.set_width(300.0);
     if recorder.line(form.line).is_none_or(|line| !line.shown)
         && let Some(first) = recorder.shown().next()
@@ -48,31 +48,31 @@ pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, recorder: &Recorder, form: &mut 
         form.line = first.id;
     }
     let label = |ui: &mut Ui, id: &'static str| {
-        ui.label(skin.label(skin.say(id)));
-        skin.say(id)
+        ui.label(theme.label(theme.say(id)));
+        theme.say(id)
     };
     let word_of = label(ui, "trigger.line");
-    let lines: Vec<(LineId, String)> = recorder.shown().map(|line| (line.id, skin.words(&line.name))).collect();
+    let lines: Vec<(LineId, String)> = recorder.shown().map(|line| (line.id, theme.words(&line.name))).collect();
     options(ui, &word_of, &mut form.line, lines);
     let word_of = label(ui, "trigger.when");
-    options(ui, &word_of, &mut form.when, When::ALL.map(|when| (when, skin.say(word(when)))));
+    options(ui, &word_of, &mut form.when, When::ALL.map(|when| (when, theme.say(word(when)))));
     let mut enter = false;
     if form.when.has_level() {
-        entry(ui, skin, &skin.say("trigger.level"), |ui| {
-            let response = text_entry(ui, &mut form.level, 88.0, &skin.say("trigger.level"), "");
+        entry(ui, theme, &theme.say("trigger.level"), |ui| {
+            let response = text_entry(ui, &mut form.level, 88.0, &theme.say("trigger.level"), "");
             if response.changed() {
                 form.problem = None;
             }
             enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             let unit = recorder.line(form.line).and_then(|line| line.scale());
-            ui.label(skin.label(unit.map(|scale| skin.words(&scale.unit)).unwrap_or_default()));
+            ui.label(theme.label(unit.map(|scale| theme.words(&scale.unit)).unwrap_or_default()));
         });
     }
     let word_of = label(ui, "trigger.before");
     options(ui, &word_of, &mut form.before, [0, 10, 25, 50, 75, 90].map(|share| (share, format!("{share} %"))));
-    ui.checkbox(&mut form.repeat, skin.say("trigger.repeat"));
+    ui.checkbox(&mut form.repeat, theme.say("trigger.repeat"));
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        if primary(ui, skin, true, icons::LIGHTNING, &skin.say("trigger.arm")).clicked() || enter {
+        if primary(ui, theme, true, icons::LIGHTNING, &theme.say("trigger.arm")).clicked() || enter {
             match form.trigger() {
                 Ok(trigger) => {
                     form.problem = None;
@@ -84,7 +84,7 @@ pub(super) fn form_ui(ui: &mut Ui, skin: &Skin, recorder: &Recorder, form: &mut 
         }
     });
     if let Some(problem) = &form.problem {
-        ui.label(RichText::new(skin.words(problem)).color(skin.palette.bad));
+        ui.label(RichText::new(theme.words(problem)).color(theme.palette.bad));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect};
 
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 /// A cell.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +19,8 @@ pub(crate) struct BitCell<'a> {
 
 impl BitCell<'_> {
     /// Paints it.
-    pub(crate) fn paint(&self, painter: &Painter, skin: &Skin, rect: Rect) {
-        let palette = skin.palette;
+    pub(crate) fn paint(&self, painter: &Painter, theme: &Theme, rect: Rect) {
+        let palette = theme.palette;
         let corners = CornerRadius::same(2);
         let (strength, colour) = match (self.alarm, self.bit) {
             (true, _) => (1.0, Color32::from(palette.on_bad)),
@@ -31,7 +31,7 @@ impl BitCell<'_> {
         painter.rect_filled(rect, corners, palette.sunken);
         painter.rect_filled(rect, corners, self.ink.gamma_multiply(strength));
         let digit = self.bit.map_or(self.blank, |bit| if bit { "1" } else { "0" });
-        let size = if rect.width() < 11.0 || self.bit.is_none() { skin.sizes.caption } else { skin.sizes.body };
+        let size = if rect.width() < 11.0 || self.bit.is_none() { theme.sizes.caption } else { theme.sizes.body };
         painter.text(rect.center(), Align2::CENTER_CENTER, digit, FontId::monospace(size), colour);
     }
 }

@@ -11,7 +11,7 @@ use egui::accesskit::Role;
 use egui::{Align2, Color32, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use egui_plot::{AxisHints, Bar, BarChart, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::widgets::series;
 
 /// What is drawn.
@@ -58,9 +58,9 @@ pub struct Trace {
 const BARS: f64 = 0.7;
 
 /// Draws it, with a legend above where there are several series.
-pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
-    legend(ui, skin, chart.traces);
-    let own = *skin;
+pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
+    legend(ui, theme, chart.traces);
+    let own = *theme;
     let (x_unit, y_unit) = (chart.x_unit.to_owned(), chart.y_unit.to_owned());
     let told = move |hover: &HoverPosition<'_>| match hover {
         HoverPosition::NearDataPoint { plot_name, position, .. } => {
@@ -69,10 +69,10 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
         }
         HoverPosition::Elsewhere { .. } => None,
     };
-    skin.sunken().show(ui, |ui| {
+    theme.sunken().show(ui, |ui| {
         // Ticks fade from one colour into the other as they come closer together.
-        ui.visuals_mut().widgets.noninteractive.fg_stroke.color = skin.palette.muted.into();
-        ui.visuals_mut().override_text_color = Some(skin.palette.muted.into());
+        ui.visuals_mut().widgets.noninteractive.fg_stroke.color = theme.palette.muted.into();
+        ui.visuals_mut().override_text_color = Some(theme.palette.muted.into());
         let mut plot = Plot::new(chart.label)
             .height(chart.height)
             .allow_scroll(false)
@@ -82,7 +82,7 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
             .allow_double_click_reset(false)
             .show_background(false)
             .grid_spacing(egui::Rangef::new(8.0, 24.0))
-            .grid_color(skin.palette.line.into())
+            .grid_color(theme.palette.line.into())
             .set_margin_fraction(Vec2::new(0.0, if chart.marks.is_empty() { 0.08 } else { 0.16 }))
             .label_formatter(told)
             .custom_x_axes(vec![axis(AxisHints::new_x(), own, 16.0)])
@@ -100,12 +100,12 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
         }
         let response = plot.show(ui, |plot| {
             if chart.bars {
-                bars(plot, skin, chart.traces);
+                bars(plot, theme, chart.traces);
             } else {
-                lines(plot, skin, chart.traces);
+                lines(plot, theme, chart.traces);
             }
             for (x, y, words) in chart.marks {
-                let text = egui::RichText::new(words).size(skin.sizes.caption).color(skin.palette.text);
+                let text = egui::RichText::new(words).size(theme.sizes.caption).color(theme.palette.text);
                 let place = PlotPoint::new(*x, *y);
                 plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(beside(chart.traces, *x)));
             }
@@ -119,45 +119,45 @@ pub fn chart(ui: &mut Ui, skin: &Skin, chart: &Chart<'_>) {
 }
 
 /// A line in its colour beside each name.
-fn legend(ui: &mut Ui, skin: &Skin, traces: &[Trace]) {
+fn legend(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
     if traces.len() < 2 {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().interact_size.y = skin.space.groups;
+        ui.spacing_mut().interact_size.y = theme.space.groups;
         for trace in traces {
             let (rect, _) = ui.allocate_exact_size(Vec2::new(18.0, 12.0), Sense::hover());
             let ends = [rect.left_center(), rect.right_center()];
-            let stroke = Stroke::new(2.0, series(skin, trace.colour));
+            let stroke = Stroke::new(2.0, series(theme, trace.colour));
             if trace.dashed {
                 ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 5.0, 3.0));
             } else {
                 ui.painter().line_segment(ends, stroke);
             }
-            ui.label(skin.caption(&trace.name));
+            ui.label(theme.caption(&trace.name));
         }
     });
 }
 
-fn lines(plot: &mut egui_plot::PlotUi<'_>, skin: &Skin, traces: &[Trace]) {
+fn lines(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
     for trace in traces {
         let points = trace.points.iter().map(|(x, y)| PlotPoint::new(*x, *y)).collect();
         let style = if trace.dashed { LineStyle::dashed_dense() } else { LineStyle::Solid };
         let line = Line::new(trace.name.clone(), PlotPoints::Owned(points));
-        plot.line(line.color(series(skin, trace.colour)).width(1.5).style(style));
+        plot.line(line.color(series(theme, trace.colour)).width(1.5).style(style));
     }
 }
 
-fn bars(plot: &mut egui_plot::PlotUi<'_>, skin: &Skin, traces: &[Trace]) {
+fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
     let width = BARS / traces.len().max(1) as f64;
     for (number, trace) in traces.iter().enumerate() {
-        let colour = series(skin, trace.colour);
+        let colour = series(theme, trace.colour);
         let fill = if trace.dashed { Color32::TRANSPARENT } else { colour };
         let off = (number as f64 + 0.5) * width - BARS / 2.0;
         let bar = |(x, y): &(f64, f64)| {
             Bar::new(x + off, *y).width(width * 0.9).fill(fill).stroke(Stroke::new(1.0, colour)).name(&trace.name)
         };
-        let (own, name) = (*skin, trace.name.clone());
+        let (own, name) = (*theme, trace.name.clone());
         let told = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
         let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
         plot.bar_chart(chart.color(colour).element_formatter(Box::new(told)));
@@ -176,8 +176,8 @@ fn beside(traces: &[Trace], x: f64) -> Align2 {
 }
 
 /// An axis whose ticks are all labelled, down to this distance in points.
-fn axis(hints: AxisHints<'static>, skin: Skin, least: f32) -> AxisHints<'static> {
-    hints.formatter(move |mark, _| tick(&skin, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
+fn axis(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
+    hints.formatter(move |mark, _| tick(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
 /// A step of 1, 2 or 5 times a power of ten, of which about five fit.
@@ -197,13 +197,13 @@ fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
 }
 
 /// A tick with the decimals of its step.
-fn tick(skin: &Skin, mark: GridMark) -> String {
+fn tick(theme: &Theme, mark: GridMark) -> String {
     let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
-    skin.number(mark.value, decimals)
+    theme.number(mark.value, decimals)
 }
 
 /// A number with four figures.
-fn figures(skin: &Skin, value: f64) -> String {
+fn figures(theme: &Theme, value: f64) -> String {
     let decimals = (3.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 9.0) as usize;
-    skin.number(value, decimals)
+    theme.number(value, decimals)
 }

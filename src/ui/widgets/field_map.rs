@@ -18,7 +18,7 @@ use egui::accesskit::Role;
 use egui::{CursorIcon, EventFilter, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
 
 use crate::app::Text;
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 use strip::Strip;
 
@@ -79,10 +79,10 @@ pub enum MapEvent {
 }
 
 /// Draws the map and says what was done to it. One map a `Ui`: another needs an id of its own (`push_id`).
-pub fn field_map(ui: &mut Ui, skin: &Skin, map: &FieldMap<'_>) -> Option<MapEvent> {
+pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEvent> {
     let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
     let taken: usize = sizes.iter().sum();
-    let strip = Strip::new(skin, ui.available_width(), taken + map.free_blocks);
+    let strip = Strip::new(theme, ui.available_width(), taken + map.free_blocks);
     let (outer, _) = ui.allocate_exact_size(strip.size, Sense::hover());
     let strip = strip.at(outer.min);
     let base = ui.make_persistent_id("field_map");
@@ -95,7 +95,7 @@ pub fn field_map(ui: &mut Ui, skin: &Skin, map: &FieldMap<'_>) -> Option<MapEven
         let runs = strip.runs(first, first + size);
         let selected = map.selected == Some(field.number);
         let part = announce(ui, &runs, *id, &field.label, Some(selected), &field.tooltip);
-        paint::field(ui, skin, &strip, &runs, field, &paint::State { selected, ..part.state });
+        paint::field(ui, theme, &strip, &runs, field, &paint::State { selected, ..part.state });
         if part.clicked {
             event = Some(MapEvent::Select(field.number));
         }
@@ -105,13 +105,13 @@ pub fn field_map(ui: &mut Ui, skin: &Skin, map: &FieldMap<'_>) -> Option<MapEven
         let runs = strip.runs(taken, taken + map.free_blocks);
         let id = ids.last().copied().unwrap_or(base);
         let part = announce(ui, &runs, id, map.free_label, None, map.free_tooltip);
-        paint::free(ui, skin, &strip, &runs, &part.state);
+        paint::free(ui, theme, &strip, &runs, &part.state);
         if part.clicked {
             event = Some(MapEvent::SelectFree);
         }
     }
     let last = sizes.last().copied().unwrap_or_default();
-    handle(ui, skin, &strip, base, map, taken.saturating_sub(last), last).or(event)
+    handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
 /// Arrows between the parts, before they are announced: the focus is moved here and not by what lies nearest.
@@ -193,7 +193,7 @@ fn tip(response: Response, tooltip: &str) {
 /// The handle at the end of the last field.
 fn handle(
     ui: &Ui,
-    skin: &Skin,
+    theme: &Theme,
     strip: &Strip,
     base: Id,
     map: &FieldMap<'_>,
@@ -202,13 +202,13 @@ fn handle(
 ) -> Option<MapEvent> {
     let sizes = map.resize.as_ref().filter(|_| blocks > 0)?;
     let end = strip.runs(start, start + blocks).last().copied()?;
-    let width = skin.space.between;
-    let rect = Rect::from_center_size(end.right_center(), Vec2::new(width + skin.space.inside, end.height()));
+    let width = theme.space.between;
+    let rect = Rect::from_center_size(end.right_center(), Vec2::new(width + theme.space.inside, end.height()));
     let response = ui.interact(rect, base.with("handle"), Sense::DRAG);
     if response.hovered() || response.dragged() {
         ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
     }
-    paint::handle(ui, skin, end, response.hovered() || response.dragged());
+    paint::handle(ui, theme, end, response.hovered() || response.dragged());
     let pos = response.interact_pointer_pos();
     let given_up = ui.input(|input| input.key_pressed(Key::Escape));
     let wanted = pos.map(|pos| {
@@ -218,9 +218,9 @@ fn handle(
     });
     if let Some(wanted) = wanted.filter(|_| response.dragged()) {
         let text = Text::new("widget.map_size").with("bytes", wanted * map.block_bytes);
-        paint::ghost(ui, skin, strip, &strip.runs(start, start + wanted), &skin.words(&text));
+        paint::ghost(ui, theme, strip, &strip.runs(start, start + wanted), &theme.words(&text));
     } else if !response.dragged() {
-        let words = skin.say("widget.map_resize");
+        let words = theme.say("widget.map_resize");
         tip(response.clone(), &words);
     }
     let released = response.drag_stopped() && !given_up;

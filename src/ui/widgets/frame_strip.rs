@@ -18,7 +18,7 @@ use std::sync::Arc;
 use super::bit_cell::BitCell;
 use super::series;
 use crate::analysis::quality::Verdict;
-use crate::ui::{Skin, controls};
+use crate::ui::{Theme, controls};
 
 use place::{Placed, Want, place};
 
@@ -57,13 +57,13 @@ const NAME: f32 = 15.0;
 const VALUE: f32 = 18.0;
 
 /// Draws it.
-pub fn frame_strip(ui: &mut Ui, skin: &Skin, strip: &FrameStrip<'_>) {
-    let words: Vec<Words> = strip.fields.iter().map(|field| Words::of(ui, skin, field)).collect();
+pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
+    let words: Vec<Words> = strip.fields.iter().map(|field| Words::of(ui, theme, field)).collect();
     let wants = strip.fields.iter().zip(&words).map(|(field, words)| Want { bits: field.bits, words: words.width() });
-    let placing = place(&wants.collect::<Vec<_>>(), ui.available_width(), skin.space.between);
+    let placing = place(&wants.collect::<Vec<_>>(), ui.available_width(), theme.space.between);
     let has_values = strip.fields.iter().any(|field| !field.value.is_empty());
-    let line = CELL + BAR + NAME + if has_values { VALUE } else { 0.0 } + skin.space.inside;
-    let height = placing.lines as f32 * line + placing.lines.saturating_sub(1) as f32 * skin.space.between;
+    let line = CELL + BAR + NAME + if has_values { VALUE } else { 0.0 } + theme.space.inside;
+    let height = placing.lines as f32 * line + placing.lines.saturating_sub(1) as f32 * theme.space.between;
     let (outer, response) = ui.allocate_exact_size(Vec2::new(placing.width, height), Sense::hover());
     let told: Vec<String> = strip.fields.iter().map(StripField::words).collect();
     response.widget_info(|| {
@@ -73,7 +73,7 @@ pub fn frame_strip(ui: &mut Ui, skin: &Skin, strip: &FrameStrip<'_>) {
     });
     for piece in &placing.pieces {
         let (Some(field), Some(words)) = (strip.fields.get(piece.field), words.get(piece.field)) else { continue };
-        let top = outer.top() + piece.line as f32 * (line + skin.space.between);
+        let top = outer.top() + piece.line as f32 * (line + theme.space.between);
         let rect = Rect::from_min_size(pos2(outer.left() + piece.left, top), Vec2::new(piece.width, line));
         let id = response.id.with((piece.field, piece.first));
         let own = ui.interact(rect, id, Sense::hover());
@@ -83,9 +83,9 @@ pub fn frame_strip(ui: &mut Ui, skin: &Skin, strip: &FrameStrip<'_>) {
         if ui.is_rect_visible(rect) {
             let first = strip.fields.iter().take(piece.field).map(|field| field.bits).sum::<usize>() + piece.first;
             let bits = (first..first + piece.bits).map(|at| strip.bits.get(at).copied().flatten());
-            cells(ui.painter(), skin, rect, (piece, placing.cell), field, bits);
+            cells(ui.painter(), theme, rect, (piece, placing.cell), field, bits);
             if piece.first == 0 {
-                words.paint(ui.painter(), skin, rect);
+                words.paint(ui.painter(), theme, rect);
             }
         }
         if !field.tooltip.is_empty() {
@@ -101,11 +101,11 @@ impl StripField {
         if self.value.is_empty() { self.name.clone() } else { format!("{}: {}", self.name, self.value) }
     }
 
-    fn ink(&self, skin: &Skin) -> Color32 {
+    fn ink(&self, theme: &Theme) -> Color32 {
         match (self.lit, self.colour) {
-            (Some(own), _) => controls::verdict(skin, own).1.into(),
-            (None, Some(colour)) => series(skin, colour),
-            (None, None) => skin.palette.muted.into(),
+            (Some(own), _) => controls::verdict(theme, own).1.into(),
+            (None, Some(colour)) => series(theme, colour),
+            (None, None) => theme.palette.muted.into(),
         }
     }
 }
@@ -117,15 +117,15 @@ struct Words {
 }
 
 impl Words {
-    fn of(ui: &Ui, skin: &Skin, field: &StripField) -> Self {
+    fn of(ui: &Ui, theme: &Theme, field: &StripField) -> Self {
         let name = match field.lit {
-            Some(own) => format!("{} {}", controls::verdict(skin, own).0, field.name),
+            Some(own) => format!("{} {}", controls::verdict(theme, own).0, field.name),
             None => field.name.clone(),
         };
-        let ink = if field.lit.is_some() { field.ink(skin) } else { skin.palette.muted.into() };
-        let name = ui.painter().layout_no_wrap(name, FontId::proportional(skin.sizes.caption), ink);
-        let font = FontId::monospace(skin.sizes.body);
-        let value = ui.painter().layout_no_wrap(field.value.clone(), font, skin.palette.text.into());
+        let ink = if field.lit.is_some() { field.ink(theme) } else { theme.palette.muted.into() };
+        let name = ui.painter().layout_no_wrap(name, FontId::proportional(theme.sizes.caption), ink);
+        let font = FontId::monospace(theme.sizes.body);
+        let value = ui.painter().layout_no_wrap(field.value.clone(), font, theme.palette.text.into());
         Words { name, value }
     }
 
@@ -133,10 +133,10 @@ impl Words {
         self.name.size().x.max(self.value.size().x)
     }
 
-    fn paint(&self, painter: &Painter, skin: &Skin, rect: Rect) {
-        let top = rect.top() + CELL + BAR + skin.space.inside;
+    fn paint(&self, painter: &Painter, theme: &Theme, rect: Rect) {
+        let top = rect.top() + CELL + BAR + theme.space.inside;
         for (galley, y) in [(&self.name, top), (&self.value, top + NAME)] {
-            painter.galley(pos2(rect.left(), y), galley.clone(), skin.palette.text.into());
+            painter.galley(pos2(rect.left(), y), galley.clone(), theme.palette.text.into());
         }
     }
 }
@@ -144,18 +144,18 @@ impl Words {
 /// The bits of a piece, and the bar below them that holds them together.
 fn cells(
     painter: &Painter,
-    skin: &Skin,
+    theme: &Theme,
     rect: Rect,
     (piece, cell): (&Placed, f32),
     field: &StripField,
     bits: impl Iterator<Item = Option<bool>>,
 ) {
-    let ink = field.ink(skin);
+    let ink = field.ink(theme);
     for (at, bit) in bits.enumerate() {
         let left = rect.left() + piece.offset(at, field.bits, cell);
         let own = Rect::from_min_size(pos2(left, rect.top()), Vec2::new(cell - 1.0, CELL));
         let alarm = matches!(field.lit, Some(Verdict::Warn | Verdict::Fault));
-        BitCell { ink, bit, blank: "·", alarm }.paint(painter, skin, own);
+        BitCell { ink, bit, blank: "·", alarm }.paint(painter, theme, own);
     }
     let end = rect.left() + piece.offset(piece.bits.saturating_sub(1), field.bits, cell) + cell - 1.0;
     let y = rect.top() + CELL + 1.0 + BAR / 2.0;

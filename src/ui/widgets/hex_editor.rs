@@ -24,7 +24,7 @@ use egui::{Color32, EventFilter, FontId, Id, Response, ScrollArea, Sense, TextFo
 
 use super::focus_ring;
 use crate::app::Text;
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 use grid::Grid;
 pub use view::HexView;
@@ -95,7 +95,7 @@ fn address_text(at: usize, digits: usize) -> String {
 }
 
 /// Draws the editor and says what was done to it, in order; the caller changes the bytes.
-pub fn hex_editor(ui: &mut Ui, skin: &Skin, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
+pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));
     view.fit(model.wanted.len());
     view.follow_to(model.wanted);
@@ -106,31 +106,31 @@ pub fn hex_editor(ui: &mut Ui, skin: &Skin, label: &str, model: &HexModel<'_>, v
             Vec::new()
         }
     };
-    let grid = Grid::new(ui, skin, model.wanted.len());
+    let grid = Grid::new(ui, theme, model.wanted.len());
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         // A half-visible line of bytes is still one to read.
         ui.spacing_mut().scroll.fade.strength = 0.0;
-        let narrow = ui.available_width() < grid.width + skin.space.groups * 2.0;
-        let frame = skin.sunken().show(ui, |ui| {
+        let narrow = ui.available_width() < grid.width + theme.space.groups * 2.0;
+        let frame = theme.sunken().show(ui, |ui| {
             let area = ScrollArea::horizontal().id_salt(id.with("across")).scroll([narrow, false]);
-            area.show(ui, |ui| body(ui, skin, id, &grid, model, view)).inner
+            area.show(ui, |ui| body(ui, theme, id, &grid, model, view)).inner
         });
         let response = frame.inner;
         if response.has_focus() {
-            focus_ring(ui.painter(), skin, frame.response.rect, skin.radius);
+            focus_ring(ui.painter(), theme, frame.response.rect, theme.radius);
         }
         tell(ui, &response, label, &grid, model, view);
-        ui.add_space(skin.space.inside);
-        status(ui, skin, &grid, model, view);
+        ui.add_space(theme.space.inside);
+        status(ui, theme, &grid, model, view);
     });
     edits
 }
 
 /// The header and the lines.
-fn body(ui: &mut Ui, skin: &Skin, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
-    let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + skin.space.inside), Sense::hover());
-    paint::header(ui, skin, grid, header, model, view);
+fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
+    let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + theme.space.inside), Sense::hover());
+    paint::header(ui, theme, grid, header, model, view);
     let shown = grid.lines().clamp(1, model.lines.max(1));
     let height = grid.height_of(shown);
     let area = ScrollArea::vertical().id_salt(id.with("lines")).max_height(height).min_scrolled_height(height);
@@ -144,12 +144,12 @@ fn body(ui: &mut Ui, skin: &Skin, id: Id, grid: &Grid, model: &HexModel<'_>, vie
             ui.scroll_to_rect_animation(cell, None, egui::style::ScrollAnimation::none());
         }
         let hovered = response.hover_pos().and_then(|pos| grid.hit(rect.min, pos));
-        paint::lines(ui, skin, grid, rect.min, model, view, &response, hovered);
+        paint::lines(ui, theme, grid, rect.min, model, view, &response, hovered);
         if let Some((column, at)) = hovered {
             // The tooltip stands beside the byte.
             let cell = grid.cell(rect.min, column, at);
             Response { rect: cell, interact_rect: cell, ..response.clone() }
-                .on_hover_ui(|ui| tip::byte(ui, skin, grid, model, at));
+                .on_hover_ui(|ui| tip::byte(ui, theme, grid, model, at));
         }
         response
     });
@@ -218,13 +218,13 @@ fn tell(ui: &Ui, response: &Response, label: &str, grid: &Grid, model: &HexModel
 }
 
 /// Where the cursor is, or why something was not done.
-fn status(ui: &mut Ui, skin: &Skin, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
+fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     ui.horizontal(|ui| {
         ui.set_min_height(grid.row);
-        ui.spacing_mut().item_spacing.x = skin.space.groups;
+        ui.spacing_mut().item_spacing.x = theme.space.groups;
         if let Some(problem) = &view.problem {
-            let words = format!("{} {}", icons::WARNING_CIRCLE, skin.words(problem));
-            ui.add(egui::Label::new(sentence(skin, &words, skin.palette.bad.into())).wrap());
+            let words = format!("{} {}", icons::WARNING_CIRCLE, theme.words(problem));
+            ui.add(egui::Label::new(sentence(theme, &words, theme.palette.bad.into())).wrap());
             return;
         }
         let selected = view.selection();
@@ -237,20 +237,20 @@ fn status(ui: &mut Ui, skin: &Skin, grid: &Grid, model: &HexModel<'_>, view: &He
                 .with("last", address_text(selected.end.saturating_sub(1), grid.digits))
                 .with("count", count),
         };
-        ui.label(sentence(skin, &skin.words(&place), skin.palette.muted.into()));
+        ui.label(sentence(theme, &theme.words(&place), theme.palette.muted.into()));
         let changes = model.changes();
         if changes > 0 {
-            let words = skin.words(&Text::new("widget.hex_changed").with("count", changes));
-            ui.label(skin.caption(format!("{} {words}", icons::PENCIL_SIMPLE)).color(skin.palette.staged));
+            let words = theme.words(&Text::new("widget.hex_changed").with("count", changes));
+            ui.label(theme.caption(format!("{} {words}", icons::PENCIL_SIMPLE)).color(theme.palette.staged));
         }
     });
 }
 
 /// A caption with its addresses in the font for bytes: the other one would make a multiplication sign of `0x`.
-fn sentence(skin: &Skin, words: &str, colour: Color32) -> LayoutJob {
+fn sentence(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     for word in words.split_inclusive(' ') {
-        let size = skin.sizes.caption;
+        let size = theme.sizes.caption;
         let font = if word.starts_with("0x") { FontId::monospace(size) } else { FontId::proportional(size) };
         job.append(word, 0.0, TextFormat { valign: egui::Align::Center, ..TextFormat::simple(font, colour) });
     }

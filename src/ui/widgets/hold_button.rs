@@ -16,7 +16,7 @@ use egui::{
 use super::focus_ring;
 use crate::app::{HoldEvent, HoldInput, HoldScene, HoldState};
 use crate::ui::keys::press_key;
-use crate::ui::{Skin, stopping};
+use crate::ui::{Theme, stop_debounce};
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ pub(in crate::ui) struct HoldSurroundings {
 
 /// What a button keeps from one picture to the next.
 #[derive(Clone, Copy, Default)]
-struct Kept {
+struct HoldMemory {
     state: HoldState,
     /// The pass in which it was drawn last.
     pass: u64,
@@ -90,7 +90,7 @@ impl Drawn {
 }
 
 /// Draws it.
-pub fn hold_button(ui: &mut Ui, skin: &Skin, button: &HoldButton<'_>, size: Vec2) -> Option<HoldEvent> {
+pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Vec2) -> Option<HoldEvent> {
     let size = Vec2::new(size.x.max(LEAST), size.y.max(LEAST));
     let around: HoldSurroundings = ui.data(|data| data.get_temp(Id::unique("around hold buttons"))).unwrap_or_default();
     let enabled = button.enabled && !around.covered;
@@ -98,13 +98,14 @@ pub fn hold_button(ui: &mut Ui, skin: &Skin, button: &HoldButton<'_>, size: Vec2
     let (_, response) = ui.allocate_exact_size(size, sense);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, button.enabled, button.label));
     let pass = ui.ctx().cumulative_pass_nr();
-    let Kept { mut state, pass: last, mut modifiers } = ui.data(|data| data.get_temp(response.id)).unwrap_or_default();
+    let HoldMemory { mut state, pass: last, mut modifiers } =
+        ui.data(|data| data.get_temp(response.id)).unwrap_or_default();
     let now = ui.input(|input| input.time);
     let scene = HoldScene {
         enabled,
         window: ui.input(|input| input.focused),
         keyboard: response.has_focus(),
-        moving: around.moving && !state.is_held() || stopping::has_just_stopped(ui.ctx(), now),
+        moving: around.moving && !state.is_held() || stop_debounce::has_just_stopped(ui.ctx(), now),
     };
     state.begin(scene, last + 1 == pass);
     let place = response.interact_rect;
@@ -130,10 +131,10 @@ pub fn hold_button(ui: &mut Ui, skin: &Skin, button: &HoldButton<'_>, size: Vec2
         ui.ctx().request_repaint_after_secs(seconds as f32);
     }
     if event == Some(HoldEvent::Stop) {
-        stopping::means_motion(ui.ctx(), true, now);
+        stop_debounce::means_motion(ui.ctx(), true, now);
     }
     ui.data_mut(|data| {
-        data.insert_temp(response.id, Kept { state, pass, modifiers });
+        data.insert_temp(response.id, HoldMemory { state, pass, modifiers });
         let drawn: &mut Drawn = data.get_temp_mut_or_default(Drawn::id());
         if scene.keyboard {
             drawn.keyboard = Some((response.id, pass));
@@ -142,9 +143,9 @@ pub fn hold_button(ui: &mut Ui, skin: &Skin, button: &HoldButton<'_>, size: Vec2
             drawn.pointer = Some(pass);
         }
     });
-    let hint = skin.say("hold.release_first");
+    let hint = theme.say("hold.release_first");
     let caption = if state.waits_for_release() { &hint } else { button.caption };
-    paint(ui, skin, &HoldButton { caption, enabled, ..*button }, &response, state.is_held());
+    paint(ui, theme, &HoldButton { caption, enabled, ..*button }, &response, state.is_held());
     event
 }
 
@@ -171,12 +172,12 @@ fn translated(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInpu
     })
 }
 
-fn paint(ui: &Ui, skin: &Skin, button: &HoldButton<'_>, response: &Response, held: bool) {
+fn paint(ui: &Ui, theme: &Theme, button: &HoldButton<'_>, response: &Response, held: bool) {
     let rect = response.rect;
     if !ui.is_rect_visible(rect) {
         return;
     }
-    let palette = skin.palette;
+    let palette = theme.palette;
     let (fill, ink, small) = match (held, button.enabled) {
         (true, _) => (palette.accent, palette.on_accent, palette.on_accent),
         (false, true) => (palette.raised, palette.text, palette.muted),
@@ -188,15 +189,15 @@ fn paint(ui: &Ui, skin: &Skin, button: &HoldButton<'_>, response: &Response, hel
         false => palette.line,
     };
     let painter = ui.painter();
-    painter.rect_filled(rect, skin.radius, fill);
-    painter.rect_stroke(rect, skin.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
+    painter.rect_filled(rect, theme.radius, fill);
+    painter.rect_stroke(rect, theme.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
     let middle = rect.center();
-    let word = pos2(middle.x, middle.y - skin.space.between);
-    painter.text(word, Align2::CENTER_CENTER, button.word, skin.strong(skin.sizes.value), ink.into());
-    let below = pos2(middle.x, rect.bottom() - skin.space.groups);
-    let font = FontId::proportional(skin.sizes.caption);
+    let word = pos2(middle.x, middle.y - theme.space.between);
+    painter.text(word, Align2::CENTER_CENTER, button.word, theme.strong(theme.sizes.value), ink.into());
+    let below = pos2(middle.x, rect.bottom() - theme.space.groups);
+    let font = FontId::proportional(theme.sizes.caption);
     painter.text(below, Align2::CENTER_CENTER, button.caption, font, small.into());
     if response.has_focus() {
-        focus_ring(painter, skin, rect, skin.radius);
+        focus_ring(painter, theme, rect, theme.radius);
     }
 }

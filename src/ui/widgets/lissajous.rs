@@ -15,7 +15,7 @@ use egui::{
 
 use crate::analysis::lissajous::{Density, Square};
 use crate::app::Text;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::widgets::series;
 
 /// What is drawn.
@@ -53,12 +53,12 @@ const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
 /// The square on the screen, and volts to its edge.
 #[derive(Clone, Copy)]
-struct Place {
+struct PlotArea {
     rect: Rect,
     range_v: f64,
 }
 
-impl Place {
+impl PlotArea {
     fn at(&self, (x, y): (f64, f64)) -> Pos2 {
         let scale = |volts: f64| (volts / self.range_v).clamp(-4.0, 4.0) as f32 * self.rect.width() / 2.0;
         self.rect.center() + Vec2::new(scale(x), -scale(y))
@@ -76,7 +76,7 @@ impl Place {
 }
 
 /// Draws it.
-pub fn lissajous(ui: &mut Ui, skin: &Skin, figure: &Lissajous<'_>, side: f32) {
+pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side.max(40.0)), Sense::hover());
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, figure.label);
@@ -87,18 +87,18 @@ pub fn lissajous(ui: &mut Ui, skin: &Skin, figure: &Lissajous<'_>, side: f32) {
         return;
     }
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-    painter.rect_filled(rect, skin.radius, skin.palette.sunken);
-    let place = Place { rect, range_v: range(figure) };
-    grid(&painter, skin, &place);
-    rings(&painter, skin, &place, figure);
+    painter.rect_filled(rect, theme.radius, theme.palette.sunken);
+    let place = PlotArea { rect, range_v: range(figure) };
+    grid(&painter, theme, &place);
+    rings(&painter, theme, &place, figure);
     for own in figure.figures {
         samples(&painter, &place, own);
     }
     for own in figure.figures {
-        curve(&painter, &place, own, series(skin, own.colour));
+        curve(&painter, &place, own, series(theme, own.colour));
     }
     if let Some(pos) = response.hover_pos() {
-        told(&painter, skin, &place, pos);
+        told(&painter, theme, &place, pos);
     }
 }
 
@@ -126,12 +126,12 @@ fn range(figure: &Lissajous<'_>) -> f64 {
     curves.chain(pictures).fold(figure.ok_v.1 * 1.12, f64::max)
 }
 
-fn grid(painter: &Painter, skin: &Skin, place: &Place) {
-    let line = Stroke::new(1.0, skin.palette.line);
+fn grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
+    let line = Stroke::new(1.0, theme.palette.line);
     let step = STEPS.into_iter().find(|step| place.range_v / step < 3.0).unwrap_or(place.range_v / 2.0);
-    let font = FontId::proportional(skin.sizes.caption);
-    let muted = Color32::from(skin.palette.muted);
-    let (rect, inside) = (place.rect, skin.space.inside);
+    let font = FontId::proportional(theme.sizes.caption);
+    let muted = Color32::from(theme.palette.muted);
+    let (rect, inside) = (place.rect, theme.space.inside);
     let count = (place.range_v / step).floor().min(4.0) as i32;
     for number in -count..=count {
         let volts = f64::from(number) * step;
@@ -140,21 +140,21 @@ fn grid(painter: &Painter, skin: &Skin, place: &Place) {
         painter.hline(rect.x_range(), y, line);
         if number != 0 {
             let words =
-                skin.number(volts, if step < 0.1 { 2 } else { usize::from(step < 1.0) + usize::from(step == 0.25) });
+                theme.number(volts, if step < 0.1 { 2 } else { usize::from(step < 1.0) + usize::from(step == 0.25) });
             painter.text(Pos2::new(x + 2.0, rect.bottom() - inside), Align2::LEFT_BOTTOM, &words, font.clone(), muted);
             painter.text(Pos2::new(rect.left() + inside, y - 2.0), Align2::LEFT_BOTTOM, words, font.clone(), muted);
         }
     }
-    let sine = format!("{} / V", skin.say("signals.sine"));
-    let cosine = format!("{} / V", skin.say("signals.cosine"));
+    let sine = format!("{} / V", theme.say("signals.sine"));
+    let cosine = format!("{} / V", theme.say("signals.cosine"));
     // Each at the end of its own axis.
     let (top, right) = (Pos2::new(rect.center().x + inside, rect.top() + inside), rect.right_center());
     painter.text(top, Align2::LEFT_TOP, sine, font.clone(), muted);
     painter.text(right - Vec2::splat(inside), Align2::RIGHT_BOTTOM, cosine, font, muted);
 }
 
-fn rings(painter: &Painter, skin: &Skin, place: &Place, figure: &Lissajous<'_>) {
-    let good = Color32::from(skin.palette.good);
+fn rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Lissajous<'_>) {
+    let good = Color32::from(theme.palette.good);
     let (inner, outer) = (place.circle(figure.ok_v.0), place.circle(figure.ok_v.1));
     let mut band = Mesh::default();
     for (at, (inner, outer)) in (0_u32..).zip(inner.iter().zip(&outer)) {
@@ -169,13 +169,13 @@ fn rings(painter: &Painter, skin: &Skin, place: &Place, figure: &Lissajous<'_>) 
     for ring in [inner, outer] {
         painter.add(Shape::line(ring, PathStroke::new(1.0, good.gamma_multiply(0.7))));
     }
-    let bad = Stroke::new(1.0, Color32::from(skin.palette.bad).gamma_multiply(0.8));
+    let bad = Stroke::new(1.0, Color32::from(theme.palette.bad).gamma_multiply(0.8));
     for radius in [figure.fault_v.0, figure.fault_v.1] {
         painter.extend(Shape::dashed_line(&place.circle(radius), bad, 4.0, 4.0));
     }
 }
 
-fn samples(painter: &Painter, place: &Place, figure: &Figure) {
+fn samples(painter: &Painter, place: &PlotArea, figure: &Figure) {
     let Some((texture, square)) = figure.picture else { return };
     let Square { cosine_v, sine_v, half_v } = square;
     let corners = [(cosine_v - half_v, sine_v + half_v), (cosine_v + half_v, sine_v - half_v)];
@@ -184,7 +184,7 @@ fn samples(painter: &Painter, place: &Place, figure: &Figure) {
     painter.image(texture, rect, whole, Color32::WHITE);
 }
 
-fn curve(painter: &Painter, place: &Place, figure: &Figure, colour: Color32) {
+fn curve(painter: &Painter, place: &PlotArea, figure: &Figure, colour: Color32) {
     let points: Vec<Pos2> = figure.curve.iter().map(|point| place.at(*point)).collect();
     if figure.dashed {
         painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, colour), 7.0, 4.0));
@@ -194,19 +194,19 @@ fn curve(painter: &Painter, place: &Place, figure: &Figure, colour: Color32) {
 }
 
 /// Where the pointer is: both voltages, length and angle.
-fn told(painter: &Painter, skin: &Skin, place: &Place, pos: Pos2) {
+fn told(painter: &Painter, theme: &Theme, place: &PlotArea, pos: Pos2) {
     let (x, y) = place.volts(pos);
-    let muted = Stroke::new(1.0, Color32::from(skin.palette.muted).gamma_multiply(0.6));
+    let muted = Stroke::new(1.0, Color32::from(theme.palette.muted).gamma_multiply(0.6));
     painter.line_segment([place.rect.center(), pos], muted);
     let text = Text::new("signals.lissajous_place")
         .with_number("sine", y, 3)
         .with_number("cosine", x, 3)
         .with_number("length", x.hypot(y), 3)
         .with_number("angle", y.atan2(x).to_degrees().rem_euclid(360.0), 1);
-    let font = FontId::monospace(skin.sizes.caption);
-    let words = painter.layout(skin.words(&text), font, skin.palette.text.into(), f32::INFINITY);
-    let inside = skin.space.inside;
+    let font = FontId::monospace(theme.sizes.caption);
+    let words = painter.layout(theme.words(&text), font, theme.palette.text.into(), f32::INFINITY);
+    let inside = theme.space.inside;
     let at = Pos2::new(place.rect.right() - words.size().x - inside, place.rect.top() + inside);
-    painter.rect_filled(Rect::from_min_size(at, words.size()).expand(2.0), 2.0, skin.palette.raised);
-    painter.galley(at, words, skin.palette.text.into());
+    painter.rect_filled(Rect::from_min_size(at, words.size()).expand(2.0), 2.0, theme.palette.raised);
+    painter.galley(at, words, theme.palette.text.into());
 }

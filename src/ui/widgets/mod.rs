@@ -15,7 +15,7 @@ mod typed_view;
 
 use egui::{Color32, CornerRadius, Painter, Rect, Stroke, StrokeKind};
 
-use super::Skin;
+use super::Theme;
 
 pub(crate) use bit_cell::BitCell;
 pub use chart::{Chart, Trace, chart};
@@ -28,34 +28,34 @@ pub(in crate::ui) use hold_button::{
 };
 pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
 pub use register_table::{
-    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterOutput, RegisterRow, RegisterTable,
-    RegisterView, register_table,
+    RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterOutput, RegisterRow,
+    RegisterTable, RegisterView, register_table,
 };
 pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 pub use typed_view::typed_view;
 
 /// The ring around what has the keyboard: two points of the accent, one point off the widget.
-pub(crate) fn focus_ring(painter: &Painter, skin: &Skin, rect: Rect, corners: impl Into<CornerRadius>) {
+pub(crate) fn focus_ring(painter: &Painter, theme: &Theme, rect: Rect, corners: impl Into<CornerRadius>) {
     let corners = corners.into() + CornerRadius::same(1);
-    painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, skin.palette.accent), StrokeKind::Outside);
+    painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, theme.palette.accent), StrokeKind::Outside);
 }
 
 /// Diagonal lines.
-pub(crate) fn hatch(painter: &Painter, skin: &Skin, rect: Rect, colour: Color32) {
+pub(crate) fn hatch(painter: &Painter, theme: &Theme, rect: Rect, colour: Color32) {
     let painter = painter.with_clip_rect(rect.shrink(1.0).intersect(painter.clip_rect()));
     let mut x = rect.left() - rect.height();
     while x < rect.right() {
         let line = [egui::pos2(x, rect.bottom()), egui::pos2(x + rect.height(), rect.top())];
         painter.line_segment(line, Stroke::new(1.0, colour));
-        x += skin.space.between;
+        x += theme.space.between;
     }
 }
 
 /// The colour of a series; they begin again after the eighth.
-pub(crate) fn series(skin: &Skin, number: usize) -> Color32 {
-    let colours = &skin.palette.series;
-    colours.iter().cycle().nth(number % colours.len()).copied().map_or(skin.palette.muted.into(), Color32::from)
+pub(crate) fn series(theme: &Theme, number: usize) -> Color32 {
+    let colours = &theme.palette.series;
+    colours.iter().cycle().nth(number % colours.len()).copied().map_or(theme.palette.muted.into(), Color32::from)
 }
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ use egui::{Id, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInf
 
 use super::focus_ring;
 use crate::app::Text;
-use crate::ui::{Skin, controls};
+use crate::ui::{Theme, controls};
 
 use columns::Columns;
 use lines::{LineKind, Lines};
@@ -36,7 +36,7 @@ use view::Selected;
 
 /// Where a register stands: its group, and its number in that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Place {
+pub struct RegisterLocation {
     /// Number of the group.
     pub group: usize,
     /// Number in the group.
@@ -51,7 +51,7 @@ pub struct RegisterTable<'a> {
     /// Banks.
     pub groups: &'a [RegisterGroup],
     /// A register of a group; asked for what is in sight or unfolded.
-    pub row: &'a dyn Fn(Place) -> RegisterRow,
+    pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
     /// What the values are.
     pub kind: RegisterKind,
 }
@@ -135,7 +135,7 @@ pub struct RegisterBits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterEvent {
     /// The device's value back in an edited register.
-    Revert(Place),
+    Revert(RegisterLocation),
 }
 
 /// What came of drawing the table.
@@ -155,22 +155,22 @@ const MARGIN: i8 = 4;
 const NUMBER: usize = 12;
 
 /// Width of a value, with the distance to the next column.
-fn value_width(skin: &Skin, kind: RegisterKind) -> f32 {
+fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
     let characters = match kind {
         RegisterKind::Bytes { widest } => widest * 3,
         RegisterKind::Numbers => NUMBER,
     };
     // Every character of the font for bytes is 0.6 of its size wide.
-    characters as f32 * 0.6 * skin.sizes.body + skin.space.between
+    characters as f32 * 0.6 * theme.sizes.body + theme.space.between
 }
 
 impl RegisterRow {
     /// What a screen reader says of it.
-    fn words(&self, skin: &Skin) -> String {
+    fn words(&self, theme: &Theme) -> String {
         let mut parts = vec![self.value.clone(), self.decimal.clone(), self.meaning.clone()];
-        parts.extend(self.differs.then(|| skin.say("widget.register_differs")));
-        parts.extend(self.changed.then(|| skin.say("widget.register_changed")));
-        parts.extend(self.edited.then(|| skin.say("widget.register_edited")));
+        parts.extend(self.differs.then(|| theme.say("widget.register_differs")));
+        parts.extend(self.changed.then(|| theme.say("widget.register_changed")));
+        parts.extend(self.edited.then(|| theme.say("widget.register_edited")));
         parts.retain(|part| !part.is_empty());
         parts.join(", ")
     }
@@ -184,11 +184,11 @@ impl RegisterRow {
 /// why it cannot be.
 pub fn register_table(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     table: &RegisterTable<'_>,
     height: f32,
     view: &mut RegisterView,
-    take: &mut dyn FnMut(Place, &str) -> Result<(), Text>,
+    take: &mut dyn FnMut(RegisterLocation, &str) -> Result<(), Text>,
 ) -> RegisterOutput {
     let id = ui.make_persistent_id(("register_table", table.label));
     let mut output = RegisterOutput::default();
@@ -200,21 +200,21 @@ pub fn register_table(
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         ui.spacing_mut().scroll.fade.strength = 0.0;
-        let frame = skin.sunken().inner_margin(MARGIN).show(ui, |ui| {
+        let frame = theme.sunken().inner_margin(MARGIN).show(ui, |ui| {
             controls::fill(ui);
             // The lines lie beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
-            let columns = Columns::new(table.kind, width, value_width(skin, table.kind));
-            paint::header(ui, skin, table.kind, &columns);
+            let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
+            paint::header(ui, theme, table.kind, &columns);
             let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
-            body(ui, skin, id, &columns, table, &lines, room, view, take, &mut output)
+            body(ui, theme, id, &columns, table, &lines, room, view, take, &mut output)
         });
         let response = frame.inner;
         if response.has_focus() {
             keys::hold(ui, id);
-            focus_ring(ui.painter(), skin, frame.response.rect, skin.radius);
+            focus_ring(ui.painter(), theme, frame.response.rect, theme.radius);
         }
-        tell(&response, skin, table, view);
+        tell(&response, theme, table, view);
     });
     output
 }
@@ -223,14 +223,14 @@ pub fn register_table(
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
 fn body(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     id: Id,
     columns: &Columns,
     table: &RegisterTable<'_>,
     lines: &Lines,
     height: f32,
     view: &mut RegisterView,
-    take: &mut dyn FnMut(Place, &str) -> Result<(), Text>,
+    take: &mut dyn FnMut(RegisterLocation, &str) -> Result<(), Text>,
     output: &mut RegisterOutput,
 ) -> Response {
     view.page = ((height / LINE) as usize).saturating_sub(1);
@@ -259,11 +259,11 @@ fn body(
             let Some(kind) = lines.at(line) else { continue };
             let rect = at(line);
             match kind {
-                LineKind::Group(group) => heading(ui, skin, id, rect, table, group, view),
-                LineKind::Row(place) => row(ui, skin, id, rect, columns, table, place, view),
+                LineKind::Group(group) => heading(ui, theme, id, rect, table, group, view),
+                LineKind::Row(place) => row(ui, theme, id, rect, columns, table, place, view),
                 LineKind::Bits(place, number) => {
                     if let Some(bits) = (table.row)(place).fields.get(number) {
-                        paint::bits(ui, skin, rect, columns, bits);
+                        paint::bits(ui, theme, rect, columns, bits);
                         let own = ui.interact(rect, id.with((place, number)), Sense::hover());
                         let words = format!("{} {}", bits.bits, bits.name);
                         own.widget_info(|| told(Role::Row, &words, &format!("{} {}", bits.value, bits.meaning)));
@@ -278,7 +278,7 @@ fn body(
             let own = at(line);
             let cell = Rect::from_x_y_ranges(own.left() + range.min..=own.left() + range.max, own.y_range());
             let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
-            editor::editor_ui(&mut ui.new_child(builder), skin, id, cell, table, view, take);
+            editor::editor_ui(&mut ui.new_child(builder), theme, id, cell, table, view, take);
         }
         // What was refused by that stays to be seen, and gives way to the next press.
         let refused_now = view.is_refused() && !was_refused;
@@ -293,7 +293,15 @@ fn body(
     shown.inner
 }
 
-fn heading(ui: &Ui, skin: &Skin, id: Id, rect: Rect, table: &RegisterTable<'_>, group: usize, view: &mut RegisterView) {
+fn heading(
+    ui: &Ui,
+    theme: &Theme,
+    id: Id,
+    rect: Rect,
+    table: &RegisterTable<'_>,
+    group: usize,
+    view: &mut RegisterView,
+) {
     let Some(own) = table.groups.get(group) else { return };
     let response = ui.interact(rect, id.with("group").with(group), Sense::CLICK);
     let selected = view.selected == Some(Selected::Group(group));
@@ -309,24 +317,24 @@ fn heading(ui: &Ui, skin: &Skin, id: Id, rect: Rect, table: &RegisterTable<'_>, 
         view.refused = None;
         ui.memory_mut(|memory| memory.request_focus(id));
     }
-    paint::heading(ui, skin, rect, own, view.is_folded(group), paint::State::of(selected, &response));
+    paint::heading(ui, theme, rect, own, view.is_folded(group), paint::State::of(selected, &response));
 }
 
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
 fn row(
     ui: &Ui,
-    skin: &Skin,
+    theme: &Theme,
     id: Id,
     rect: Rect,
     columns: &Columns,
     table: &RegisterTable<'_>,
-    place: Place,
+    place: RegisterLocation,
     view: &mut RegisterView,
 ) {
     let row = (table.row)(place);
     let response = ui.interact(rect, id.with(place), Sense::CLICK);
     let selected = view.selected == Some(Selected::Row(place));
-    response.widget_info(|| told(Role::Row, &row.label(), &row.words(skin)));
+    response.widget_info(|| told(Role::Row, &row.label(), &row.words(theme)));
     ui.accesskit_node_builder(response.id, |node| node.set_selected(selected));
     let open = view.open.contains(&place);
     if response.clicked() {
@@ -343,7 +351,7 @@ fn row(
         ui.memory_mut(|memory| memory.request_focus(id));
     }
     let boxed = (table.kind == RegisterKind::Numbers && row.read_only.is_none())
-        .then(|| columns.range(columns::Column::Value).map(|value| paint::box_of(skin, rect, value)))
+        .then(|| columns.range(columns::Column::Value).map(|value| paint::box_of(theme, rect, value)))
         .flatten();
     let in_box = response.clicked()
         && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));
@@ -352,9 +360,9 @@ fn row(
         view.wanted = Some(place);
     }
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);
-    paint::row(ui, skin, rect, (table.kind, columns), &row, (open, typing), paint::State::of(selected, &response));
+    paint::row(ui, theme, rect, (table.kind, columns), &row, (open, typing), paint::State::of(selected, &response));
     if response.hovered() && !typing {
-        response.on_hover_ui(|ui| paint::tip(ui, skin, (table.kind, columns), &row));
+        response.on_hover_ui(|ui| paint::tip(ui, theme, (table.kind, columns), &row));
     }
 }
 
@@ -365,11 +373,11 @@ fn told(role: Role, label: &str, value: &str) -> WidgetInfo {
 }
 
 /// What a screen reader hears of the whole.
-fn tell(response: &Response, skin: &Skin, table: &RegisterTable<'_>, view: &RegisterView) {
+fn tell(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &RegisterView) {
     let value = match view.selected {
         Some(Selected::Row(place)) => {
             let row = (table.row)(place);
-            format!("{}: {}", row.label(), row.words(skin))
+            format!("{}: {}", row.label(), row.words(theme))
         }
         Some(Selected::Group(group)) => table.groups.get(group).map(|own| own.title.clone()).unwrap_or_default(),
         None => String::new(),

@@ -11,7 +11,7 @@ use egui::accesskit::Role;
 use egui::epaint::PathStroke;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
 
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::widgets::series;
 
 /// What is drawn.
@@ -58,7 +58,7 @@ impl Dial {
 }
 
 /// Draws it.
-pub fn step_ring(ui: &mut Ui, skin: &Skin, ring: &StepRing<'_>, side: f32) {
+pub fn step_ring(ui: &mut Ui, theme: &Theme, ring: &StepRing<'_>, side: f32) {
     let side = side.max(80.0);
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
     response.widget_info(|| {
@@ -69,36 +69,36 @@ pub fn step_ring(ui: &mut Ui, skin: &Skin, ring: &StepRing<'_>, side: f32) {
     if !ui.is_rect_visible(rect) {
         return;
     }
-    let dial = Dial { middle: rect.center(), radius: side / 2.0 - skin.space.groups };
+    let dial = Dial { middle: rect.center(), radius: side / 2.0 - theme.space.groups };
     let painter = ui.painter();
-    segments(painter, skin, dial, ring.step);
-    quarters(painter, skin, dial);
+    segments(painter, theme, dial, ring.step);
+    quarters(painter, theme, dial);
     if let Some(apart) = ring.apart {
         let arc = dial.arc(ring.phase, ring.phase + apart, 1.0 - 1.7 * WIDTH);
         painter.add(Shape::line(arc, PathStroke::new(3.0, ring.colour)));
     }
-    let hand = Stroke::new(2.0, series(skin, 1));
+    let hand = Stroke::new(2.0, series(theme, 1));
     painter.line_segment([dial.at(ring.phase, 0.18), dial.at(ring.phase, 1.0 - WIDTH)], hand);
     painter.circle_filled(dial.at(ring.phase, 1.0 - WIDTH), 3.5, hand.color);
 }
 
-fn segments(painter: &Painter, skin: &Skin, dial: Dial, own: u64) {
+fn segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
     let width = WIDTH * dial.radius;
     for step in 0..STEPS {
         let (from, to) = (f64::from(step) + GAP, f64::from(step) + 1.0 - GAP);
         let arc = dial.arc(from / f64::from(STEPS), to / f64::from(STEPS), 1.0 - WIDTH / 2.0);
-        let colour = if u64::from(step) == own { series(skin, 0) } else { skin.palette.line.into() };
+        let colour = if u64::from(step) == own { series(theme, 0) } else { theme.palette.line.into() };
         painter.add(Shape::line(arc, PathStroke::new(width, colour)));
     }
 }
 
 /// The numbers of every eighth step.
-fn quarters(painter: &Painter, skin: &Skin, dial: Dial) {
-    let font = FontId::monospace(skin.sizes.caption);
+fn quarters(painter: &Painter, theme: &Theme, dial: Dial) {
+    let font = FontId::monospace(theme.sizes.caption);
     for (step, align) in
         [(0, Align2::CENTER_BOTTOM), (8, Align2::LEFT_CENTER), (16, Align2::CENTER_TOP), (24, Align2::RIGHT_CENTER)]
     {
         let place = dial.at(f64::from(step) / f64::from(STEPS), 1.02);
-        painter.text(place, align, step.to_string(), font.clone(), skin.palette.muted.into());
+        painter.text(place, align, step.to_string(), font.clone(), theme.palette.muted.into());
     }
 }

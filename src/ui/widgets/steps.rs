@@ -18,7 +18,7 @@ use egui::{Align, Align2, FontId, Layout, Painter, Pos2, Rect, RichText, Sense, 
 
 use crate::app::Rgb;
 use crate::ui::controls::{enabled_button, fill, paragraph, primary};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// A step of a procedure.
 #[derive(Clone, Debug, Default)]
@@ -111,8 +111,8 @@ impl StepState {
         matches!(self, StepState::Waiting | StepState::Running)
     }
 
-    fn mark(self, skin: &Skin) -> (&'static str, Rgb) {
-        let palette = skin.palette;
+    fn mark(self, theme: &Theme) -> (&'static str, Rgb) {
+        let palette = theme.palette;
         match self {
             StepState::ToCome => ("", palette.muted),
             StepState::Waiting => (icons::CARET_RIGHT, palette.accent),
@@ -129,13 +129,13 @@ const DOT: f32 = 9.0;
 const RAIL: f32 = 32.0;
 
 /// Draws the list and says what was pressed.
-pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
+pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     let mut dots: Vec<Pos2> = Vec::new();
     // The step that was in turn the last time, and its height.
     let at = ui.scope_id().with("step");
     ui.scope(|ui| {
-        ui.spacing_mut().item_spacing.y = skin.space.inside;
+        ui.spacing_mut().item_spacing.y = theme.space.inside;
         for (number, step) in (1_usize..).zip(model.steps) {
             let left = ui.cursor().left();
             let mut middle = pos2(left + DOT + 1.0, 0.0);
@@ -143,8 +143,8 @@ pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> 
                 ui.add_space(RAIL);
                 ui.vertical(|ui| {
                     fill(ui);
-                    middle.y = title(ui, skin, step);
-                    event = event.or(content(ui, skin, model, step));
+                    middle.y = title(ui, theme, step);
+                    event = event.or(content(ui, theme, model, step));
                 });
             });
             // Again when more of it comes: its gauges and buttons are what it is about.
@@ -154,28 +154,28 @@ pub fn steps(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> 
                 ui.data_mut(|data| data.insert_temp(at, (number, height)));
                 drawn.response.scroll_to_me(None);
             }
-            dot(ui.painter(), skin, middle, number, step);
+            dot(ui.painter(), theme, middle, number, step);
             dots.push(middle);
-            ui.add_space(skin.space.between + skin.space.inside);
+            ui.add_space(theme.space.between + theme.space.inside);
         }
     });
     for (upper, lower) in dots.iter().zip(dots.iter().skip(1)) {
-        let (from, to) = (upper.y + DOT + skin.space.inside, lower.y - DOT - skin.space.inside);
-        ui.painter().vline(upper.x, from..=to, Stroke::new(1.0, skin.palette.line));
+        let (from, to) = (upper.y + DOT + theme.space.inside, lower.y - DOT - theme.space.inside);
+        ui.painter().vline(upper.x, from..=to, Stroke::new(1.0, theme.palette.line));
     }
     event
 }
 
 /// Draws the title, which may have several lines; the middle of the first of them.
-fn title(ui: &mut Ui, skin: &Skin, step: &Step) -> f32 {
-    let palette = skin.palette;
+fn title(ui: &mut Ui, theme: &Theme, step: &Step) -> f32 {
+    let palette = theme.palette;
     let ink = match step.state {
         StepState::ToCome | StepState::Skipped => palette.muted,
         StepState::Failed => palette.bad,
         StepState::Waiting | StepState::Running | StepState::Done => palette.text,
     };
     let font =
-        if step.state.counts() { skin.strong(skin.sizes.section) } else { FontId::proportional(skin.sizes.body) };
+        if step.state.counts() { theme.strong(theme.sizes.section) } else { FontId::proportional(theme.sizes.body) };
     let half = ui.fonts_mut(|fonts| fonts.row_height(&font)) / 2.0;
     let response = ui.add(egui::Label::new(RichText::new(&step.title).font(font).color(ink)).wrap());
     let words = format!("{}: {}", step.title, step.word);
@@ -183,8 +183,8 @@ fn title(ui: &mut Ui, skin: &Skin, step: &Step) -> f32 {
     response.rect.top() + half
 }
 
-fn content(ui: &mut Ui, skin: &Skin, model: &Steps<'_>, step: &Step) -> Option<StepsEvent> {
-    let palette = skin.palette;
+fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &Step) -> Option<StepsEvent> {
+    let palette = theme.palette;
     if !step.note.is_empty() {
         let ink = match step.state {
             StepState::Failed => palette.bad,
@@ -196,19 +196,19 @@ fn content(ui: &mut Ui, skin: &Skin, model: &Steps<'_>, step: &Step) -> Option<S
     if !step.state.counts() {
         return None;
     }
-    gauge::gauges_ui(ui, skin, &step.gauges);
+    gauge::gauges_ui(ui, theme, &step.gauges);
     if let Some(share) = step.progress {
-        progress(ui, skin, &step.title, share);
+        progress(ui, theme, &step.title, share);
     }
     if step.state != StepState::Waiting {
         return None;
     }
-    buttons(ui, skin, model)
+    buttons(ui, theme, model)
 }
 
 /// Start where the eye ends, leaving out and why it cannot start beside it: it stays where it is while a motor is brought to
 /// its speed.
-fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
+fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {
         return None;
@@ -217,7 +217,7 @@ fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
     let size = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if let Some((word, allowed)) = model.start {
-            let response = primary(ui, skin, allowed.is_ok(), icons::PLAY, word);
+            let response = primary(ui, theme, allowed.is_ok(), icons::PLAY, word);
             if response.clicked() {
                 event = Some(StepsEvent::Start);
             }
@@ -232,8 +232,8 @@ fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
         }
         if let Some((_, Err(why))) = model.start {
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-                paragraph(ui, RichText::new(why).color(skin.palette.warn));
+                ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+                paragraph(ui, RichText::new(why).color(theme.palette.warn));
             });
         }
     });
@@ -241,12 +241,12 @@ fn buttons(ui: &mut Ui, skin: &Skin, model: &Steps<'_>) -> Option<StepsEvent> {
 }
 
 /// How much is done.
-fn progress(ui: &mut Ui, skin: &Skin, label: &str, share: f32) {
+fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width().max(0.0), 6.0), Sense::hover());
     let done = Rect::from_min_size(rect.min, Vec2::new(rect.width() * share, rect.height()));
-    ui.painter().rect_filled(rect, 3.0, skin.palette.sunken);
-    ui.painter().rect_filled(done, 3.0, skin.palette.accent);
+    ui.painter().rect_filled(rect, 3.0, theme.palette.sunken);
+    ui.painter().rect_filled(done, 3.0, theme.palette.accent);
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::ProgressIndicator, true, label);
         info.current_text_value = Some(format!("{:.0} %", share * 100.0));
@@ -255,22 +255,22 @@ fn progress(ui: &mut Ui, skin: &Skin, label: &str, share: f32) {
 }
 
 /// The dot of a step: its number, or how it stands.
-fn dot(painter: &Painter, skin: &Skin, middle: Pos2, number: usize, step: &Step) {
-    let palette = skin.palette;
-    let (icon, colour) = step.state.mark(skin);
+fn dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &Step) {
+    let palette = theme.palette;
+    let (icon, colour) = step.state.mark(theme);
     let (font, ink) = match step.state {
         StepState::Done | StepState::Failed => {
             painter.circle_filled(middle, DOT, egui::Color32::from(colour).gamma_multiply(0.22));
-            (skin.sizes.body, colour)
+            (theme.sizes.body, colour)
         }
         StepState::Waiting | StepState::Running => {
             painter.circle_filled(middle, DOT, egui::Color32::from(colour).gamma_multiply(0.22));
             painter.circle_stroke(middle, DOT, Stroke::new(2.0, colour));
-            (skin.sizes.caption, palette.text)
+            (theme.sizes.caption, palette.text)
         }
         StepState::ToCome | StepState::Skipped => {
             painter.circle_stroke(middle, DOT, Stroke::new(1.0, colour));
-            (skin.sizes.caption, palette.muted)
+            (theme.sizes.caption, palette.muted)
         }
     };
     let has_icon = matches!(step.state, StepState::Done | StepState::Failed | StepState::Skipped);

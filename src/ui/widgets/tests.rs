@@ -4,8 +4,8 @@ use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::app::{Language, Look, Theme};
-use crate::ui::{Skin, install_fonts};
+use crate::app::{ColorScheme, Language, ThemeData};
+use crate::ui::{Theme, install_fonts};
 
 mod field_map;
 mod frame_strip;
@@ -15,8 +15,8 @@ mod register_table;
 mod steps;
 mod typed_view;
 
-pub(crate) fn skin() -> Skin {
-    Skin::new(Look::built_in().unwrap(), Theme::Dark, Language::English)
+pub(crate) fn theme() -> Theme {
+    Theme::new(ThemeData::built_in().unwrap(), ColorScheme::Dark, Language::English)
 }
 
 /// A widget with its state between two buttons, in a window.
@@ -28,7 +28,7 @@ pub(crate) fn window<State>(
         .with_size(Vec2::new(900.0, 500.0))
         .with_context_setup(|ctx| {
             install_fonts(ctx);
-            skin().dress(ctx);
+            theme().dress(ctx);
         })
         // A double click is two within a third of a second.
         .with_step_dt(0.02)

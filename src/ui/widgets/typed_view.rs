@@ -11,7 +11,7 @@ use egui::{Align2, FontId, Id, Rect, Response, Sense, Stroke, TextWrapMode, Ui, 
 
 use super::focus_ring;
 use crate::bits::{self, TypedKind, TypedRow};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// How long a copied value says so, in seconds.
 const COPIED: f64 = 1.2;
@@ -24,64 +24,64 @@ struct Columns {
 }
 
 /// Draws the table for the beginning of `bytes`.
-pub fn typed_view(ui: &mut Ui, skin: &Skin, bytes: &[u8]) {
-    let font = FontId::monospace(skin.sizes.body);
+pub fn typed_view(ui: &mut Ui, theme: &Theme, bytes: &[u8]) {
+    let font = FontId::monospace(theme.sizes.body);
     let glyph = ui.fonts_mut(|fonts| fonts.glyph_width(&font, '0'));
     // The longest is a float: -3.4028235e38.
-    let value = (glyph * 13.0 / 4.0).ceil() * 4.0 + skin.space.groups;
-    let columns = Columns { name: skin.space.groups * 4.0, value, row: skin.space.inside * 5.0 };
-    skin.sunken().show(ui, |ui| {
+    let value = (glyph * 13.0 / 4.0).ceil() * 4.0 + theme.space.groups;
+    let columns = Columns { name: theme.space.groups * 4.0, value, row: theme.space.inside * 5.0 };
+    theme.sunken().show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
-        header(ui, skin, &columns);
+        header(ui, theme, &columns);
         for row in bits::typed(bytes) {
-            line(ui, skin, &columns, &row);
+            line(ui, theme, &columns, &row);
         }
     });
 }
 
-fn header(ui: &mut Ui, skin: &Skin, columns: &Columns) {
-    let size = Vec2::new(columns.name + columns.value * 2.0, columns.row + skin.space.inside);
+fn header(ui: &mut Ui, theme: &Theme, columns: &Columns) {
+    let size = Vec2::new(columns.name + columns.value * 2.0, columns.row + theme.space.inside);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-    let font = FontId::proportional(skin.sizes.caption);
+    let font = FontId::proportional(theme.sizes.caption);
     let y = rect.top() + columns.row / 2.0;
-    let inside = skin.space.between;
+    let inside = theme.space.between;
     for (at, words) in [
-        (rect.left(), skin.say("widget.typed_type")),
-        (rect.left() + columns.name + inside, skin.say("widget.typed_little")),
-        (rect.left() + columns.name + columns.value + inside, skin.say("widget.typed_big")),
+        (rect.left(), theme.say("widget.typed_type")),
+        (rect.left() + columns.name + inside, theme.say("widget.typed_little")),
+        (rect.left() + columns.name + columns.value + inside, theme.say("widget.typed_big")),
     ] {
-        let colour = skin.palette.muted.into();
+        let colour = theme.palette.muted.into();
         ui.painter().text(egui::pos2(at, y), Align2::LEFT_CENTER, words, font.clone(), colour);
     }
     let y = rect.top() + columns.row + 0.5;
-    ui.painter().hline(rect.x_range(), y, Stroke::new(1.0, skin.palette.line));
+    ui.painter().hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
 }
 
-fn line(ui: &mut Ui, skin: &Skin, columns: &Columns, row: &TypedRow) {
+fn line(ui: &mut Ui, theme: &Theme, columns: &Columns, row: &TypedRow) {
     let size = Vec2::new(columns.name + columns.value * 2.0, columns.row);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-    let name = name(skin, row.kind);
-    let font = FontId::proportional(skin.sizes.body);
-    let colour = skin.palette.muted.into();
+    let name = name(theme, row.kind);
+    let font = FontId::proportional(theme.sizes.body);
+    let colour = theme.palette.muted.into();
     ui.painter().text(rect.left_center(), Align2::LEFT_CENTER, &name, font, colour);
     let cell = |left: f32, width: f32| Rect::from_min_size(rect.min + Vec2::new(left, 0.0), Vec2::new(width, size.y));
     let id = ui.make_persistent_id(("typed_view", row.kind));
     if row.kind.has_byte_order() {
-        let (little, big) = (skin.say("widget.typed_little"), skin.say("widget.typed_big"));
+        let (little, big) = (theme.say("widget.typed_little"), theme.say("widget.typed_big"));
         let first = cell(columns.name, columns.value);
-        value(ui, skin, first, id.with("little"), &format!("{name} {little}"), row.little.as_deref());
+        value(ui, theme, first, id.with("little"), &format!("{name} {little}"), row.little.as_deref());
         let second = cell(columns.name + columns.value, columns.value);
-        value(ui, skin, second, id.with("big"), &format!("{name} {big}"), row.big.as_deref());
+        value(ui, theme, second, id.with("big"), &format!("{name} {big}"), row.big.as_deref());
     } else {
-        value(ui, skin, cell(columns.name, columns.value * 2.0), id, &name, row.little.as_deref());
+        value(ui, theme, cell(columns.name, columns.value * 2.0), id, &name, row.little.as_deref());
     }
 }
 
-fn value(ui: &Ui, skin: &Skin, rect: Rect, id: Id, label: &str, shown: Option<&str>) {
-    let left = rect.left_center() + Vec2::new(skin.space.between, 0.0);
+fn value(ui: &Ui, theme: &Theme, rect: Rect, id: Id, label: &str, shown: Option<&str>) {
+    let left = rect.left_center() + Vec2::new(theme.space.between, 0.0);
     let Some(shown) = shown else {
-        let font = FontId::monospace(skin.sizes.body);
-        ui.painter().text(left, Align2::LEFT_CENTER, "–", font, skin.palette.muted.into());
+        let font = FontId::monospace(theme.sizes.body);
+        ui.painter().text(left, Align2::LEFT_CENTER, "–", font, theme.palette.muted.into());
         return;
     };
     let response = ui.interact(rect, id, Sense::click());
@@ -98,33 +98,33 @@ fn value(ui: &Ui, skin: &Skin, rect: Rect, id: Id, label: &str, shown: Option<&s
     let copied = is_copied(ui, id);
     if response.hovered() {
         let fill = ui.visuals().widgets.hovered.bg_fill;
-        ui.painter().rect_filled(rect.shrink(1.0), skin.space.inside, fill);
+        ui.painter().rect_filled(rect.shrink(1.0), theme.space.inside, fill);
         ui.set_cursor_icon(egui::CursorIcon::PointingHand);
     }
     if response.has_focus() {
-        focus_ring(ui.painter(), skin, rect.shrink(2.0), skin.space.inside);
+        focus_ring(ui.painter(), theme, rect.shrink(2.0), theme.space.inside);
     }
-    let room = rect.width() - skin.space.between * 2.0 - if copied { skin.space.groups } else { 0.0 };
-    let text = WidgetText::from(skin.mono(shown).color(skin.palette.text));
+    let room = rect.width() - theme.space.between * 2.0 - if copied { theme.space.groups } else { 0.0 };
+    let text = WidgetText::from(theme.mono(shown).color(theme.palette.text));
     let galley = text.into_galley(ui, Some(TextWrapMode::Truncate), room, egui::TextStyle::Monospace);
     let cut = galley.elided;
     let top = left - Vec2::new(0.0, galley.size().y / 2.0);
-    ui.painter().galley(top, galley, skin.palette.text.into());
+    ui.painter().galley(top, galley, theme.palette.text.into());
     if copied {
-        let right = rect.right_center() - Vec2::new(skin.space.between, 0.0);
-        let font = FontId::proportional(skin.sizes.body);
-        ui.painter().text(right, Align2::RIGHT_CENTER, icons::CHECK, font, skin.palette.good.into());
+        let right = rect.right_center() - Vec2::new(theme.space.between, 0.0);
+        let font = FontId::proportional(theme.sizes.body);
+        ui.painter().text(right, Align2::RIGHT_CENTER, icons::CHECK, font, theme.palette.good.into());
     }
-    tip(skin, response, shown, cut, copied);
+    tip(theme, response, shown, cut, copied);
 }
 
-fn tip(skin: &Skin, response: Response, shown: &str, cut: bool, copied: bool) {
+fn tip(theme: &Theme, response: Response, shown: &str, cut: bool, copied: bool) {
     response.on_hover_ui(|ui| {
         if cut {
-            ui.label(skin.mono(shown));
+            ui.label(theme.mono(shown));
         }
-        let words = if copied { skin.say("widget.typed_copied") } else { skin.say("widget.typed_copy") };
-        ui.label(skin.caption(words));
+        let words = if copied { theme.say("widget.typed_copied") } else { theme.say("widget.typed_copy") };
+        ui.label(theme.caption(words));
     });
 }
 
@@ -137,7 +137,7 @@ fn is_copied(ui: &Ui, id: Id) -> bool {
     left > 0.0
 }
 
-fn name(skin: &Skin, kind: TypedKind) -> String {
+fn name(theme: &Theme, kind: TypedKind) -> String {
     let name = match kind {
         TypedKind::U8 => "u8",
         TypedKind::I8 => "i8",
@@ -146,8 +146,8 @@ fn name(skin: &Skin, kind: TypedKind) -> String {
         TypedKind::U32 => "u32",
         TypedKind::I32 => "i32",
         TypedKind::F32 => "f32",
-        TypedKind::Binary => return skin.say("widget.typed_binary"),
-        TypedKind::Text => return skin.say("widget.typed_text"),
+        TypedKind::Binary => return theme.say("widget.typed_binary"),
+        TypedKind::Text => return theme.say("widget.typed_text"),
     };
     name.to_owned()
 }

@@ -151,13 +151,13 @@ fn device() -> DeviceKey {
     DeviceKey { kind, device_type: one.clone(), serial_number: one, is_virtual: true }
 }
 
-fn agreed(seen: Option<u64>, ops: &[u64], force_wear: bool) -> Agreed<Prepared> {
+fn agreed(seen: Option<u64>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prepared> {
     let plan = Plan { base: (), ops: ops.iter().copied().map(Op).collect() };
     let consent = Consent::to(plan.id());
-    Agreed { prepared: Prepared { seen, plan }, consent, force_wear }
+    ApprovedPlan { prepared: Prepared { seen, plan }, consent, force_wear }
 }
 
-fn write(spy: &mut Spy, agreed: &Agreed<Prepared>) -> Result<Committed<Written>, Unfinished<Prepared, Spy, ()>> {
+fn write(spy: &mut Spy, agreed: &ApprovedPlan<Prepared>) -> Result<Committed<Written>, Unfinished<Prepared, Spy, ()>> {
     let (store, mut told) = (spy.store.clone(), Vec::new());
     let ended = write_plan(&store, true, agreed, spy, &mut |at| told.push((at.done, at.total, at.what.0)));
     let applied = spy.steps.iter().filter(|step| **step == "apply").count();
@@ -201,7 +201,7 @@ fn nothing_is_written_without_operations_or_with_a_consent_to_another_plan() {
     let done = write(&mut spy, &agreed(Some(0), &[], false)).ok().unwrap();
     assert_eq!((done.written, done.backup), (Written::default(), None));
     let consent = agreed(Some(0), &[2], false).consent;
-    let ended = write(&mut spy, &Agreed { consent, ..agreed(Some(0), &[1], false) });
+    let ended = write(&mut spy, &ApprovedPlan { consent, ..agreed(Some(0), &[1], false) });
     assert!(matches!(ended, Err(JobError::NotBegun(NotBegun::OtherPlan))) && spy.steps.is_empty());
 }
 

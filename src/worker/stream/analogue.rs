@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::{Batch, Producer};
 use crate::analysis::Time;
-use crate::analysis::wires::Wires;
+use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
@@ -35,7 +35,7 @@ impl Analogue {
 }
 
 impl Producer for Analogue {
-    type Wish = Checked;
+    type Request = Checked;
     type Samples = Wires;
     type Error = Forgotten;
 

@@ -28,7 +28,7 @@ fn numbers(sizes: impl IntoIterator<Item = usize>, fails: bool) -> (Numbers, Rec
 }
 
 impl Producer for Numbers {
-    type Wish = u64;
+    type Request = u64;
     type Samples = Vec<u64>;
     type Error = &'static str;
 

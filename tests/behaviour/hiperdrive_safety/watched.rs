@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Phase, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, MotionRequest, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, State};
 
 use super::super::support::{Bench, Foreign};
@@ -116,7 +116,7 @@ fn a_drive_of_a_hub_that_ignores_its_limits() {
 /// Issues 21.4 and 21.5: it turns the wrong way.
 #[test]
 fn a_drive_of_a_hub_that_turns_the_wrong_way() {
-    for wish in [JOG, Wish::Move { target: 3 * TURN, effort: FAST }] {
+    for wish in [JOG, MotionRequest::Move { target: 3 * TURN, effort: FAST }] {
         let bench = Bench::new();
         let Some(mut hub) = Hub::with(&bench, &["reverse on"]) else { return };
         let act = hub.host.motion.intend(third(), wish);
@@ -133,7 +133,7 @@ fn a_drive_of_a_hub_that_turns_the_wrong_way() {
 fn a_drive_of_a_hub_that_passes_its_target() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["overrun on"]) else { return };
-    let act = hub.host.motion.intend(third(), Wish::Move { target: TURN, effort: FAST });
+    let act = hub.host.motion.intend(third(), MotionRequest::Move { target: TURN, effort: FAST });
     let ended = hub.until_over(act);
     assert!(matches!(ended, Ended::WrongWay { position } if position > TURN), "{ended:?}");
     let (packets, _) = hub.record();
@@ -147,14 +147,14 @@ fn a_drive_of_a_hub_that_passes_its_target() {
 fn a_drive_of_a_hub_that_ignores_a_pause() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["pauseless on"]) else { return };
-    hub.host.motion.intend(third(), Wish::Move { target: 20 * TURN, effort: FAST });
+    hub.host.motion.intend(third(), MotionRequest::Move { target: 20 * TURN, effort: FAST });
     let until = Instant::now() + Duration::from_secs(20);
     while !matches!(hub.phase(), Phase::Moving(_)) {
         assert!(Instant::now() < until, "it does not move: {:?}", hub.phase());
         hub.host.motion.refresh();
         sleep(Duration::from_millis(5));
     }
-    let act = hub.host.motion.intend(third(), Wish::Pause);
+    let act = hub.host.motion.intend(third(), MotionRequest::Pause);
     let ended = hub.until_over(act - 1);
     assert_eq!(ended, Ended::Left(State::Moving));
     hub.host.holds(Duration::from_millis(500));

@@ -20,7 +20,7 @@ use super::sim::Virtual;
 type Runner = encoder_studio::cli::Runner<Novo>;
 
 impl Runs for Novo {
-    type Kept = ();
+    type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &NovoCommands;
 
     fn begin(_: &mut Session<Self>, _: &Given) {}
@@ -66,7 +66,7 @@ impl DeviceCommands for NovoCommands {
             check_wear::<Novo>(&restore.consent, &prepared)?;
             let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
             match runner.run(Job::Commit(Box::new(agreed)))? {
-                Came::Committed(done) => Ok(plan::Spent::of(output, *done)),
+                Came::Committed(done) => Ok(plan::WriteSummary::of(output, *done)),
                 other => Err(unexpected(&other)),
             }
         })
@@ -115,12 +115,12 @@ fn survey(runner: &mut Runner) -> Result<NovoProfile> {
     }
 }
 
-fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::Shown {
+fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::PlanReport {
     let step = |op: &super::profile::Op| {
         let (old, new) = (Some(op.from.to_string()), Some(op.to.to_string()));
         plan::Step { item: op.name().to_owned(), old, new, write_cycles: op.write_cycles() }
     };
     let text = plan::text(plan, plan::lines(plan.ops.iter().map(step)), *seen, Some(LIFE));
     let operations = plan.ops.iter().map(|op| step(op).json()).collect();
-    plan::Shown { operations, text, write_cycles: plan.write_cycles() }
+    plan::PlanReport { operations, text, write_cycles: plan.write_cycles() }
 }

@@ -16,7 +16,7 @@ use super::state::{Encoder, TEXTS};
 impl Kind for Novo {
     const KIND: &'static str = KIND;
     type Edits = Vec<(usize, u16)>;
-    type Aside = ();
+    type SessionHandle = ();
     type Review = Review<Self>;
 
     fn aside(_: &worker::Session<Self>) {}

@@ -9,9 +9,9 @@ use encoder_studio::link::{ByteLink, Clock, Ctx, Direction, LinkError, LinkUrl, 
 use encoder_studio::profile::{Interrupted, RestoreOptions, Written};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
-use encoder_studio::worker::commit::{Agreed, cycles_seen, write_plan};
+use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
 use encoder_studio::worker::open::{check_parameters, inside, leads_elsewhere, open_bytes};
-use encoder_studio::worker::{self, Desk, Device, OpenError, Progress, Session, Tell, Watched};
+use encoder_studio::worker::{self, Device, OpenError, Progress, Session, SessionContext, Tell, Watched};
 
 use super::profile::{NovoPlan, NovoProfile, Op, plan};
 use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of, parse_reply};
@@ -50,7 +50,7 @@ pub(crate) enum Job {
     Survey,
     Position,
     Prepare(Change),
-    Commit(Box<Agreed<Prepared>>),
+    Commit(Box<ApprovedPlan<Prepared>>),
 }
 
 #[derive(Debug)]
@@ -103,7 +103,7 @@ pub(crate) fn device_key(serial: u16, is_virtual: bool) -> DeviceKey {
 }
 
 impl Novo {
-    pub(super) fn ask(&mut self, desk: &mut Desk, request: Request) -> Result<u16, Error> {
+    pub(super) fn ask(&mut self, desk: &mut SessionContext, request: Request) -> Result<u16, Error> {
         let Ctx { wire, clock, cancel, trace } = desk.ctx(&mut *self.0);
         for _ in 0..TRIES {
             if cancel.stops_transaction() {
@@ -122,7 +122,7 @@ impl Novo {
         }
         Err(Error::Silent)
     }
-    pub(super) fn survey(&mut self, desk: &mut Desk) -> Result<NovoProfile, Error> {
+    pub(super) fn survey(&mut self, desk: &mut SessionContext) -> Result<NovoProfile, Error> {
         let serial = self.ask(desk, Request::Read(SERIAL))?;
         let mut values = Values::default();
         for (item, value) in values.iter_mut().enumerate() {
@@ -130,7 +130,7 @@ impl Novo {
         }
         Ok(NovoProfile { serial, values })
     }
-    fn prepare(&mut self, desk: &mut Desk, change: &Change) -> Result<Prepared, Error> {
+    fn prepare(&mut self, desk: &mut SessionContext, change: &Change) -> Result<Prepared, Error> {
         let now = self.survey(desk)?;
         if let Some(profile) = change.restored.filter(|own| *own != now.serial && !change.options.allow_other_device) {
             return Err(Error::OtherDevice { profile, device: now.serial });
@@ -146,13 +146,13 @@ impl Device for Novo {
     type Job = Job;
     type Output = Output;
     type Error = JobError;
-    type Remark = Infallible;
+    type DeviceMessage = Infallible;
     type Sample = Sample;
     type Watch = Infallible;
     /// The item that is written.
-    type Doing = usize;
+    type JobStep = usize;
 
-    fn run(&mut self, desk: &mut Desk, job: Job, tell: Told<'_>) -> Result<Output, JobError> {
+    fn run(&mut self, desk: &mut SessionContext, job: Job, tell: Told<'_>) -> Result<Output, JobError> {
         Ok(match job {
             Job::Survey => Output::Surveyed(self.survey(desk)?),
             Job::Position => Output::Position(self.sample(desk)?),
@@ -165,11 +165,11 @@ impl Device for Novo {
             }
         })
     }
-    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<Sample, JobError> {
         let position = self.ask(desk, Request::Read(POSITION))?;
         Ok((desk.clock.now(), position))
     }
-    fn watch(&mut self, _: &mut Desk, what: &Infallible) -> Result<Watched<Sample>, JobError> {
+    fn watch(&mut self, _: &mut SessionContext, what: &Infallible) -> Result<Watched<Sample>, JobError> {
         match *what {}
     }
     fn check(&mut self) -> Result<(), LinkError> {

@@ -1,7 +1,7 @@
 //! What a person wants a Novo encoder to keep: kept over a crash, reviewed, written, saved and restored.
 
 use encoder_studio::app::review::{OpWords, Permit, Reviewed};
-use encoder_studio::app::session::{Agreed, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
+use encoder_studio::app::session::{ApprovedPlanOf, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
 use encoder_studio::app::{PendingEdits, Services, Text, explain};
 use encoder_studio::profile::{Body, Document, ProfileError, Written};
 use encoder_studio::store::DeviceKey;
@@ -73,7 +73,7 @@ impl WithMemory for Encoder {
     fn prepare(change: Change) -> Job {
         Job::Prepare(change)
     }
-    fn commit(&mut self, agreed: Agreed<Novo>) -> Job {
+    fn commit(&mut self, agreed: ApprovedPlanOf<Novo>) -> Job {
         Job::Commit(Box::new(agreed))
     }
     fn forget_device(&mut self) {

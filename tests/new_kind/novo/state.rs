@@ -2,8 +2,8 @@
 
 use std::convert::Infallible;
 
-use encoder_studio::app::session::{Cut, Drafted, OnDesk, OnLine, Saved, Session, WithMemory};
-use encoder_studio::app::track::{Meaning, Sighting, Track};
+use encoder_studio::app::session::{Drafted, EarlyEnd, HasSession, Saved, Session, SessionEvents, WithMemory};
+use encoder_studio::app::track::{Meaning, PositionSample, Track};
 use encoder_studio::app::{
     ActContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobEnd, Opened, PendingEdits,
     Recording, Services, Tab, Text,
@@ -73,7 +73,7 @@ impl Encoder {
         self.staged.read_again(|own| own.0 = Some(read));
     }
     fn see(&mut self, samples: &[Sample], dropped: u64) {
-        let sighting = |(at, position): &Sample| Sighting {
+        let sighting = |(at, position): &Sample| PositionSample {
             at: *at,
             position: Some(i64::from(*position)),
             is_bad: false,
@@ -102,7 +102,7 @@ impl Encoder {
     }
 }
 
-impl OnDesk for Encoder {
+impl HasSession for Encoder {
     type Device = Novo;
 
     fn session(&self) -> &Session<Novo> {
@@ -113,7 +113,7 @@ impl OnDesk for Encoder {
     }
 }
 
-impl OnLine for Encoder {
+impl SessionEvents for Encoder {
     fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.see(&samples, dropped);
     }
@@ -137,7 +137,7 @@ impl OnLine for Encoder {
     fn forget_asked(&mut self) {
         self.forget_plan();
     }
-    fn cut_off(&mut self, how: Cut<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn cut_off(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
         self.cut_write(how, texts)
     }
 }

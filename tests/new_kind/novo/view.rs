@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 use encoder_studio::app::connect::Connect as Dialog;
 use encoder_studio::app::{Action as StudioAction, AnyDevice, PendingEdits, Rgb, Studio, Text, explain};
 use encoder_studio::ui::controls::{card, entry, settled_entry, text_entry};
-use encoder_studio::ui::{PageInfo, Skin, TabPage, TypedConnectForm, TypedDeviceView, backups, foot, icons, page};
+use encoder_studio::ui::{PageInfo, TabPage, Theme, TypedConnectForm, TypedDeviceView, backups, edit_bar, icons, page};
 
 use super::device_type::NovoForm;
 use super::protocol::ITEMS;
@@ -42,19 +42,19 @@ impl TypedDeviceView for NovoView {
     }
     fn page_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         (studio, device): (&Studio, &AnyDevice),
         encoder: &Encoder,
         (page, typed): (Page, &mut Typed),
         actions: &mut Vec<StudioAction>,
     ) {
-        page::scrolling(ui, skin, (device.id(), page.place()), |ui| match page {
-            Page::Backups => backups::page_ui(ui, skin, device, actions),
+        page::scrolling(ui, theme, (device.id(), page.place()), |ui| match page {
+            Page::Backups => backups::page_ui(ui, theme, device, actions),
             Page::Values => {
-                card(ui, skin, TEXTS.text("novo.values"), |ui| {
+                card(ui, theme, TEXTS.text("novo.values"), |ui| {
                     for (item, (name, typed)) in ITEMS.into_iter().zip(typed).enumerate() {
                         let shown = encoder.wanted().map_or(String::new(), |values| values[item].to_string());
-                        entry(ui, skin, name, |ui| {
+                        entry(ui, theme, name, |ui| {
                             settled_entry(ui, typed, &shown, 96.0, name, |text| {
                                 let value = text.parse().map_err(|_| explain::plain(text))?;
                                 actions.push(StudioAction::device(device.id(), Action::Set(item, value)));
@@ -63,13 +63,13 @@ impl TypedDeviceView for NovoView {
                         });
                     }
                 });
-                foot::foot_ui(ui, skin, (studio, device), foot::Edited::Values, actions);
+                edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions);
             }
         });
     }
-    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+    fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
         let position = encoder.last.map_or("–".to_owned(), |(_, position)| position.to_string());
-        ui.label(RichText::new(position).monospace().size(skin.sizes.live).color(ink));
+        ui.label(RichText::new(position).monospace().size(theme.sizes.live).color(ink));
     }
 }
 
@@ -81,13 +81,13 @@ impl TypedConnectForm for NovoConnectForm {
 
     fn form_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         _: &Dialog,
         form: &mut NovoForm,
         _: (&mut (), &mut bool),
         _: &mut Vec<StudioAction>,
     ) {
-        let word = skin.words(&TEXTS.text("novo.link"));
-        entry(ui, skin, &word, |ui| text_entry(ui, &mut form.link, 300.0, &word, "sim:"));
+        let word = theme.words(&TEXTS.text("novo.link"));
+        entry(ui, theme, &word, |ui| text_entry(ui, &mut form.link, 300.0, &word, "sim:"));
     }
 }

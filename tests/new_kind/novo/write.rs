@@ -2,7 +2,7 @@
 
 use encoder_studio::profile::{Body, Confirmed, DeviceError, Write, Written};
 use encoder_studio::store::DeviceKey;
-use encoder_studio::worker::Desk;
+use encoder_studio::worker::SessionContext;
 use encoder_studio::worker::commit::{Planned, backup_of};
 
 use super::jobs::{Error, LIFE, Novo, Prepared, device_key};
@@ -11,7 +11,7 @@ use super::protocol::{Request, Values, address_of};
 
 pub(super) struct NovoWrite<'w> {
     pub(super) novo: &'w mut Novo,
-    pub(super) desk: &'w mut Desk,
+    pub(super) desk: &'w mut SessionContext,
 }
 
 impl Write for NovoWrite<'_> {

@@ -4,24 +4,24 @@
 use std::time::Duration;
 
 use encoder_studio::devices::biss::jobs::{
-    Attendance, BissJob, BissOutput, Change, Commit, Committed, JobError, Prepared,
+    BissJob, BissOutput, Change, Commit, Committed, JobError, OperatorPresence, Prepared,
 };
 use encoder_studio::devices::biss::procedures::procedure::{
-    Answer, Demand, Detail, News, Seat, Step, Task, Unattended,
+    Answer, Demand, Detail, News, OperatorChannel, Step, Task, Unattended,
 };
 use encoder_studio::devices::biss::procedures::write::{Interrupted, Left};
 use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
 use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::profile::Consent;
 use encoder_studio::sim::Motor;
-use encoder_studio::worker::commit::Agreed;
+use encoder_studio::worker::commit::ApprovedPlan;
 
 use super::support::{Bench, at};
 
 /// Does what is asked, and remembers it.
 pub(crate) struct Hands {
     motor: Motor,
-    pub(crate) seat: Seat,
+    pub(crate) seat: OperatorChannel,
     /// Revolutions a minute in the calibration and in the Wiegand test.
     pub(crate) rpm: (f64, f64),
     /// What was told: operation and step, each when it began.
@@ -36,7 +36,7 @@ impl Hands {
     pub(crate) fn on(bench: &Bench) -> Self {
         Hands {
             motor: bench.motor(),
-            seat: Seat::default(),
+            seat: OperatorChannel::default(),
             rpm: (500.0, 1000.0),
             steps: Vec::new(),
             demands: Vec::new(),
@@ -54,10 +54,10 @@ impl Hands {
 
     /// Carrying this plan out, with this person at the motor.
     pub(crate) fn commit_of(&self, prepared: &Prepared) -> BissJob {
-        let attendance = Attendance::Seat(self.seat.clone());
+        let attendance = OperatorPresence::Attended(self.seat.clone());
         let consent = Consent::to(prepared.plan.id());
         BissJob::Commit(Box::new(Commit {
-            agreed: Agreed { prepared: prepared.clone(), consent, force_wear: false },
+            agreed: ApprovedPlan { prepared: prepared.clone(), consent, force_wear: false },
             attendance,
         }))
     }
@@ -132,9 +132,10 @@ impl Bench {
 
     /// Carries a plan out with nobody at the motor.
     pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
-        let attendance = Attendance::Nobody(Unattended { patience });
+        let attendance = OperatorPresence::Unattended(Unattended { patience });
         let consent = Consent::to(prepared.plan.id());
-        let commit = Commit { agreed: Agreed { prepared: prepared.clone(), consent, force_wear: false }, attendance };
+        let commit =
+            Commit { agreed: ApprovedPlan { prepared: prepared.clone(), consent, force_wear: false }, attendance };
         match self.run(BissJob::Commit(Box::new(commit)))? {
             BissOutput::Committed(committed) => Ok(*committed),
             other => panic!("{other:?}"),

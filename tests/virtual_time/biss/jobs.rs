@@ -4,7 +4,7 @@ use std::fs;
 use std::time::Duration;
 
 use encoder_studio::devices::biss::jobs::{
-    Biss, BissJob, BissOutput, Doing, JobError, ReadRegisters, Remark, device_key, open,
+    Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep, ReadRegisters, device_key, open,
 };
 use encoder_studio::devices::biss::procedures::{
     self as device, Error, FrameSource, PositionReading, Sample, Status, Survey,
@@ -236,8 +236,8 @@ fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
     assert!(matches!(end, Event::Finished(..)));
     assert!(told.is_sorted_by_key(|(done, ..)| *done), "{told:?}");
     assert!(told.iter().all(|(done, total, _)| done < total && *total == told[0].1));
-    assert_eq!(told.last().unwrap().2, Doing::Bank(0x43));
-    assert_eq!(told.iter().filter(|(.., what)| matches!(what, Doing::Bank(_))).count(), 64);
+    assert_eq!(told.last().unwrap().2, JobStep::Bank(0x43));
+    assert_eq!(told.iter().filter(|(.., what)| matches!(what, JobStep::Bank(_))).count(), 64);
     let mut stopped = Bench::new(Way::ConfigPin, "");
     stopped.session.set_cancel(Cancel::after(1000));
     assert_eq!(device_error(save(&mut stopped).unwrap_err()), Error::Cancelled);
@@ -415,7 +415,7 @@ fn broken_descriptions_are_told_once_with_the_first_job() {
             }
         });
         assert_eq!(remarks.len(), expected);
-        if let Some(Remark::Descriptions(errors)) = remarks.first() {
+        if let Some(DeviceMessage::Descriptions(errors)) = remarks.first() {
             assert!(errors[0].to_string().contains("mine.ron, line 1, column"), "{}", errors[0]);
         }
     }

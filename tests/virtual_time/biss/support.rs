@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::buses::bridge::procedures::{SupplyAfter, Tap as Stream, Wanted};
 use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
-use encoder_studio::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, JobError};
+use encoder_studio::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, JobStep};
 pub(crate) use encoder_studio::devices::biss::procedures::Way;
 use encoder_studio::devices::biss::procedures::procedure::News;
 use encoder_studio::devices::biss::procedures::{Master, Station, Supply};
@@ -293,7 +293,7 @@ impl Bench {
         told: &mut dyn FnMut(&News),
     ) -> Result<BissOutput, Box<JobError>> {
         let event = self.session.run(JobId::default(), job, &mut |event| {
-            if let Event::Progress(_, Progress { what: Doing::Operation { news, .. }, .. }) = event {
+            if let Event::Progress(_, Progress { what: JobStep::Operation { news, .. }, .. }) = event {
                 told(&news);
             }
         });

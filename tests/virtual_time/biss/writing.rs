@@ -3,7 +3,9 @@
 
 use std::time::Duration;
 
-use encoder_studio::devices::biss::jobs::{Attendance, BissJob, Change, Commit, JobError, WEAR_LIMIT, device_key};
+use encoder_studio::devices::biss::jobs::{
+    BissJob, Change, Commit, JobError, OperatorPresence, WEAR_LIMIT, device_key,
+};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{Failure, Outcome};
 use encoder_studio::devices::biss::profile::{BissProfile, Op, PlanError, PresetSetting, RestoreOptions};
@@ -12,7 +14,7 @@ use encoder_studio::kinds::program;
 use encoder_studio::profile::{Consent, Document};
 use encoder_studio::store::{Entry, Logbook, Outcome as Noted, read_text};
 use encoder_studio::worker::NotBegun;
-use encoder_studio::worker::commit::Agreed;
+use encoder_studio::worker::commit::ApprovedPlan;
 use jiff::Timestamp;
 
 use super::hands::{
@@ -166,8 +168,8 @@ fn a_consent_covers_one_plan() {
     let shown = bench.prepare(filter()).unwrap();
     let prepared = bench.prepare(data()).unwrap();
     let consent = Consent::to(shown.plan.id());
-    let attendance = Attendance::Seat(Default::default());
-    let commit = Commit { agreed: Agreed { prepared, consent, force_wear: false }, attendance };
+    let attendance = OperatorPresence::Attended(Default::default());
+    let commit = Commit { agreed: ApprovedPlan { prepared, consent, force_wear: false }, attendance };
     let error = bench.run(BissJob::Commit(Box::new(commit))).unwrap_err();
     assert_eq!(error.to_string(), "the consent is for another plan");
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
@@ -184,11 +186,14 @@ fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
     assert!(matches!(error, JobError::NotBegun(NotBegun::WearUnknown { .. })), "{error}");
     assert_eq!((seen, bench.flash_cycles()), (None, before));
     let consent = Consent::to(prepared.plan.id());
-    let attendance = Attendance::Nobody(encoder_studio::devices::biss::procedures::procedure::Unattended {
+    let attendance = OperatorPresence::Unattended(encoder_studio::devices::biss::procedures::procedure::Unattended {
         patience: Duration::ZERO,
     });
     bench
-        .run(BissJob::Commit(Box::new(Commit { agreed: Agreed { prepared, consent, force_wear: true }, attendance })))
+        .run(BissJob::Commit(Box::new(Commit {
+            agreed: ApprovedPlan { prepared, consent, force_wear: true },
+            attendance,
+        })))
         .unwrap();
     assert_eq!(bench.flash_cycles() - before, 1);
 }
@@ -213,11 +218,14 @@ fn a_worn_encoder_is_written_only_where_that_is_wished() {
     bench.commit_alone(&one, Duration::ZERO).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     let consent = Consent::to(prepared.plan.id());
-    let attendance = Attendance::Nobody(encoder_studio::devices::biss::procedures::procedure::Unattended {
+    let attendance = OperatorPresence::Unattended(encoder_studio::devices::biss::procedures::procedure::Unattended {
         patience: Duration::ZERO,
     });
     bench
-        .run(BissJob::Commit(Box::new(Commit { agreed: Agreed { prepared, consent, force_wear: true }, attendance })))
+        .run(BissJob::Commit(Box::new(Commit {
+            agreed: ApprovedPlan { prepared, consent, force_wear: true },
+            attendance,
+        })))
         .unwrap();
     assert_eq!(bench.flash_cycles() - before, 3);
 }

@@ -5,7 +5,7 @@
 //! beside the dead-man says so ([`Model`]).
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, MotionRequest};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, RunEnd, State};
 use encoder_studio::devices::hiperdrive::sim::{Defect, Load};
 
@@ -16,20 +16,20 @@ use super::{FULL, TURN};
 const SESSIONS: u64 = 100;
 const STEPS: u64 = 5000;
 
-fn wish(dice: &mut fastrand::Rng) -> Wish {
+fn wish(dice: &mut fastrand::Rng) -> MotionRequest {
     let effort = if dice.bool() { FULL } else { Effort::JOG };
     let direction = if dice.bool() { Direction::Clockwise } else { Direction::Counterclockwise };
     match dice.u8(..14) {
-        0 => Wish::Rest,
-        1 => Wish::Lead(Goal::ALL[dice.usize(..4)]),
-        2 | 3 => Wish::Acknowledge,
-        4 | 5 => Wish::Move { target: dice.i32(-3 * TURN..3 * TURN), effort },
-        6 | 7 => Wish::Step { by: dice.i32(-TURN..TURN), effort },
-        8 => Wish::Pause,
-        9 => Wish::Resume,
-        10 | 11 => Wish::Jog { direction, effort, outward: dice.u8(..4) == 0 },
-        12 => Wish::Run { direction, end: RunEnd::RangeEnd, effort },
-        _ => Wish::Stop,
+        0 => MotionRequest::Rest,
+        1 => MotionRequest::Lead(Goal::ALL[dice.usize(..4)]),
+        2 | 3 => MotionRequest::Acknowledge,
+        4 | 5 => MotionRequest::Move { target: dice.i32(-3 * TURN..3 * TURN), effort },
+        6 | 7 => MotionRequest::Step { by: dice.i32(-TURN..TURN), effort },
+        8 => MotionRequest::Pause,
+        9 => MotionRequest::Resume,
+        10 | 11 => MotionRequest::Jog { direction, effort, outward: dice.u8(..4) == 0 },
+        12 => MotionRequest::Run { direction, end: RunEnd::RangeEnd, effort },
+        _ => MotionRequest::Stop,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, Permit, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, MotionRequest, Permit};
 use encoder_studio::devices::hiperdrive::protocol::{
     Actual, ControlBit, ControlWord, DriveNumber, ErrorCode, OutImage, ParameterNumber, Setpoint, State, Value,
 };
@@ -59,7 +59,7 @@ impl Bench {
     }
 
     /// A person wants something: the number of the act.
-    pub(super) fn act(&mut self, wish: Wish) -> u64 {
+    pub(super) fn act(&mut self, wish: MotionRequest) -> u64 {
         let number = self.intent.number + 1;
         self.intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: self.now };
         number

@@ -1,6 +1,6 @@
 //! Whatever ends a motion: the word that stands goes out with the same call, and up the ladder while the drive does not.
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase, Rung, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, MotionRequest, Phase, Rung};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber};
 use proptest::prelude::*;
 
@@ -14,21 +14,21 @@ const CAUSES: [(&str, Cause, Ended); 7] = [
     (
         "stop",
         |bench| {
-            bench.act(Wish::Stop);
+            bench.act(MotionRequest::Stop);
         },
         Ended::Stopped,
     ),
     (
         "rest",
         |bench| {
-            bench.act(Wish::Rest);
+            bench.act(MotionRequest::Rest);
         },
         Ended::Stopped,
     ),
     (
         "another drive",
         |bench| {
-            bench.act(Wish::Move { target: 0, effort: super::FULL });
+            bench.act(MotionRequest::Move { target: 0, effort: super::FULL });
             bench.intent.drive = DriveNumber::new(2).unwrap();
         },
         Ended::Replaced,
@@ -36,7 +36,7 @@ const CAUSES: [(&str, Cause, Ended); 7] = [
     (
         "led elsewhere",
         |bench| {
-            bench.act(Wish::Lead(Goal::Off));
+            bench.act(MotionRequest::Lead(Goal::Off));
         },
         Ended::Replaced,
     ),
@@ -86,7 +86,7 @@ fn a_frozen_hand_stops() {
         bench.run(2000);
         assert_eq!(bench.position(), stood, "the same act begins again");
         // Also one that was frozen before it could begin.
-        bench.act(Wish::Lead(Goal::Off));
+        bench.act(MotionRequest::Lead(Goal::Off));
         bench.until_over();
         bench.act(wish);
         bench.absent = true;
@@ -109,7 +109,7 @@ fn up_the_ladder_while_it_does_not_stand() {
         bench.run(1000);
         super::words(&mut bench);
         bench.heard = Some(bench.actual());
-        bench.act(Wish::Stop);
+        bench.act(MotionRequest::Stop);
         let mut rungs = Vec::new();
         for ms in (0..1000).step_by(10) {
             let sent = bench.cycle();
@@ -145,7 +145,7 @@ fn a_drive_that_is_not_heard_is_stopped() {
 #[test]
 fn what_moves_unasked_is_stopped() {
     let mut bench = Bench::new();
-    bench.act(Wish::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(Goal::Enabled));
     bench.until_over();
     super::words(&mut bench);
     let mut moving = bench.actual();
@@ -171,7 +171,7 @@ fn a_new_connection_moves_nothing() {
     assert_eq!((bench.position(), super::words(&mut bench).ends_with("0000")), (stood, true));
     assert_eq!(bench.man.sent().target, stood);
     // The master was lost: a fault, to be acknowledged.
-    bench.act(Wish::Acknowledge);
+    bench.act(MotionRequest::Acknowledge);
     assert_eq!(bench.until_over(), Ended::Done);
     bench.act(to(0));
     assert_eq!(bench.until_over(), Ended::Arrived);
@@ -187,11 +187,11 @@ proptest! {
         bench.late = late;
         bench.act(if runs { jog(Direction::Counterclockwise) } else { to(9 * TURN) });
         bench.run(before * 10);
-        bench.act(Wish::Stop);
+        bench.act(MotionRequest::Stop);
         bench.run(gap * 10);
         bench.act(to(9 * TURN));
         bench.run(before * 10);
-        bench.act(Wish::Stop);
+        bench.act(MotionRequest::Stop);
         bench.run(600);
         let stood = bench.position();
         bench.run(2000);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, MotionRequest};
 use encoder_studio::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, Setpoint, StatusBit};
 use encoder_studio::units::Moment;
 
@@ -15,7 +15,7 @@ pub(super) struct Model {
 /// An act that may move the drive.
 struct Live {
     number: u64,
-    wish: Wish,
+    wish: MotionRequest,
     said: Moment,
     /// Where a job leads, from the first word that commanded it.
     target: Option<i32>,
@@ -61,14 +61,17 @@ impl Model {
     }
 
     /// A person acts.
-    pub(super) fn act(&mut self, number: u64, wish: Wish, now: Moment) {
-        let is_job = |live: &Live| matches!(live.wish, Wish::Move { .. } | Wish::Step { .. });
+    pub(super) fn act(&mut self, number: u64, wish: MotionRequest, now: Moment) {
+        let is_job = |live: &Live| matches!(live.wish, MotionRequest::Move { .. } | MotionRequest::Step { .. });
         match wish {
             // They carry a job on, and begin nothing.
-            Wish::Pause | Wish::Resume => {
+            MotionRequest::Pause | MotionRequest::Resume => {
                 self.live = self.live.take().filter(is_job).map(|live| Live { number, said: now, ..live });
             }
-            Wish::Move { .. } | Wish::Step { .. } | Wish::Jog { .. } | Wish::Run { .. } => {
+            MotionRequest::Move { .. }
+            | MotionRequest::Step { .. }
+            | MotionRequest::Jog { .. }
+            | MotionRequest::Run { .. } => {
                 self.live = Some(Live { number, wish, said: now, target: None, was_inside: false });
             }
             _ => self.live = None,
@@ -120,19 +123,22 @@ impl Model {
             "{word:04X} at {out} outside"
         );
         match (commands, live.wish) {
-            (Commands::Run { clockwise, endless }, Wish::Jog { direction, .. } | Wish::Run { direction, .. }) => {
+            (
+                Commands::Run { clockwise, endless },
+                MotionRequest::Jog { direction, .. } | MotionRequest::Run { direction, .. },
+            ) => {
                 assert_eq!(clockwise, direction == Direction::Clockwise, "{word:04X} for {:?}", live.wish);
-                let may_run_on = matches!(live.wish, Wish::Run { end: RunEnd::Endless, .. });
+                let may_run_on = matches!(live.wish, MotionRequest::Run { end: RunEnd::Endless, .. });
                 assert!(!endless || may_run_on, "{word:04X} for {:?}", live.wish);
                 let outward = if clockwise { out > 0 } else { out < 0 };
-                let freed = matches!(live.wish, Wish::Jog { outward: true, .. });
+                let freed = matches!(live.wish, MotionRequest::Jog { outward: true, .. });
                 assert!(!outward || freed, "{word:04X} at {out} outside, for {:?}", live.wish);
                 if freed {
                     assert!(sent.speed.get() <= 10 && sent.torque.get() <= 25, "{sent:?}");
                 }
             }
-            (Commands::Job, Wish::Move { target, .. }) => assert_eq!(sent.target, target),
-            (Commands::Job, Wish::Step { .. }) => assert!(live.target.is_none_or(|own| own == sent.target)),
+            (Commands::Job, MotionRequest::Move { target, .. }) => assert_eq!(sent.target, target),
+            (Commands::Job, MotionRequest::Step { .. }) => assert!(live.target.is_none_or(|own| own == sent.target)),
             (_, wish) => panic!("{word:04X} for {wish:?}"),
         }
         if commands == Commands::Job {

@@ -2,7 +2,7 @@
 //!
 //! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps a millisecond, 382 in an interval of 10 ms.
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Permit, Phase, Refusal, Wish};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, MotionRequest, Permit, Phase, Refusal};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
 use encoder_studio::devices::hiperdrive::sim::{Defect, Load};
 
@@ -14,12 +14,12 @@ const DEGREE: i32 = 183;
 const INTERVAL_AT_FULL_SPEED: i32 = 383;
 const LIMITS: (i32, i32) = (-TURN, TURN);
 
-fn jog(direction: Direction, effort: Effort, outward: bool) -> Wish {
-    Wish::Jog { direction, effort, outward }
+fn jog(direction: Direction, effort: Effort, outward: bool) -> MotionRequest {
+    MotionRequest::Jog { direction, effort, outward }
 }
 
-fn run(direction: Direction, end: RunEnd) -> Wish {
-    Wish::Run { direction, end, effort: FULL }
+fn run(direction: Direction, end: RunEnd) -> MotionRequest {
+    MotionRequest::Run { direction, end, effort: FULL }
 }
 
 /// A drive with a defect between ±1 turn.
@@ -69,7 +69,8 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
 fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     for effort in [Effort::JOG, FULL] {
         for (direction, limit) in [(Direction::Clockwise, TURN), (Direction::Counterclockwise, -TURN)] {
-            for wish in [jog(direction, effort, false), Wish::Run { direction, end: RunEnd::RangeEnd, effort }] {
+            for wish in [jog(direction, effort, false), MotionRequest::Run { direction, end: RunEnd::RangeEnd, effort }]
+            {
                 let mut bench = bench(Some(Defect::RunsOn));
                 bench.act(wish);
                 let (intervals, position) = intervals_past(&mut bench, limit);
@@ -156,7 +157,8 @@ fn outside_by_bit_15_alone_nothing_moves_that_was_not_freed() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
     let jogs = ways.map(|way| jog(way, FULL, false));
     let runs = ways.map(|way| run(way, RunEnd::RangeEnd));
-    for wish in jogs.into_iter().chain(runs).chain([to(0), to(TURN / 2), Wish::Step { by: 100, effort: FULL }]) {
+    for wish in jogs.into_iter().chain(runs).chain([to(0), to(TURN / 2), MotionRequest::Step { by: 100, effort: FULL }])
+    {
         let mut bench = bench(Some(Defect::SaysOutside));
         bench.act(wish);
         let (low, high) = LIMITS;
@@ -199,7 +201,7 @@ fn the_way_out_can_be_freed_for_one_press() {
     bench.run(1500);
     assert!(bench.position() > stood + 1000 && matches!(bench.man.phase(), Phase::Moving(_)));
     assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
-    bench.act(Wish::Stop);
+    bench.act(MotionRequest::Stop);
     bench.run(500);
     bench.act(jog(Direction::Clockwise, FULL, false));
     assert!(matches!(bench.until_over(), Ended::Refused(Refusal::Outward { .. })));
@@ -234,7 +236,7 @@ fn an_overrun_while_braking_changes_nothing() {
     while bench.position() < TURN - 1000 {
         bench.cycle();
     }
-    let act = bench.act(Wish::Stop) - 1;
+    let act = bench.act(MotionRequest::Stop) - 1;
     assert!(bench.cycle().control.is_standing());
     bench.run(500);
     assert!(bench.position() > TURN, "{}", bench.position());
@@ -302,7 +304,7 @@ fn a_sound_drive_arrives_everywhere() {
             let direction = if dice.bool() { Direction::Clockwise } else { Direction::Counterclockwise };
             bench.act(jog(direction, FULL, false));
             bench.run(dice.u64(..8000));
-            bench.act(Wish::Stop);
+            bench.act(MotionRequest::Stop);
             bench.run(500);
             let how = bench.man.ended().unwrap().1;
             assert!(matches!(how, Ended::Stopped | Ended::RangeEnd), "{how:?}");

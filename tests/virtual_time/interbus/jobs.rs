@@ -1,7 +1,7 @@
 //! What is read: with which words, and how the encoder is afterwards.
 
 use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobError, open};
-use encoder_studio::devices::interbus::procedures::check::{Finding, Line, Step, Verdict};
+use encoder_studio::devices::interbus::procedures::check::{Finding, InterbusStepResult, Step, Verdict};
 use encoder_studio::devices::interbus::procedures::{Error, Says};
 use encoder_studio::devices::interbus::profile::{Direction, Item, ItemValue};
 use encoder_studio::devices::interbus::protocol::{Mode, ReadOut, StartupMode};
@@ -220,14 +220,14 @@ fn a_cam_is_read_as_an_item() {
     assert_eq!((stand.left(), stand.stores()), ((0, K3), stores));
 }
 
-fn checked(stand: &mut Stand) -> Vec<Line> {
+fn checked(stand: &mut Stand) -> Vec<InterbusStepResult> {
     match stand.run(InterbusJob::Check).unwrap() {
         InterbusOutput::Check(lines) => lines,
         other => panic!("{other:?}"),
     }
 }
 
-fn verdict(lines: &[Line], step: Step) -> Option<Verdict> {
+fn verdict(lines: &[InterbusStepResult], step: Step) -> Option<Verdict> {
     lines.iter().find(|line| line.step == step).map(|line| line.verdict)
 }
 

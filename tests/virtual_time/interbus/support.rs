@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{
-    Change, Commit, Committed, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, Remark,
+    Change, Commit, Committed, DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobError, Prepared,
 };
 use encoder_studio::devices::interbus::procedures::{Carried, Handshake, Station, carried};
 use encoder_studio::devices::interbus::protocol::{Cam, Program, ProgramNumber, StartupMode, Value, WordOrder};
@@ -88,7 +88,7 @@ impl Stand {
     pub(crate) fn follow(&mut self, job: InterbusJob) -> (Result<InterbusOutput, JobError>, Vec<Handshake>) {
         let mut steps = Vec::new();
         let ended = self.session.run(JobId::default(), job, &mut |event| {
-            if let Event::Remark(Remark::Handshake(step)) = event {
+            if let Event::Remark(DeviceMessage::Handshake(step)) = event {
                 steps.push(step);
             }
         });

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{
-    Change, ChangeKind, Commit, Doing, InterbusJob, InterbusOutput, JobError, WEAR_LIMIT, Wear,
+    Change, ChangeKind, Commit, InterbusJob, InterbusOutput, JobError, JobStep, WEAR_LIMIT, Wear,
 };
 use encoder_studio::devices::interbus::procedures::Error;
 use encoder_studio::devices::interbus::procedures::write::Left;
@@ -372,7 +372,7 @@ fn an_operation_tells_what_it_changes() {
     let (mut told, consent) = (Vec::new(), Consent::to(prepared.plan.id()));
     let commit = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }));
     let ended = stand.session.run(JobId::default(), commit, &mut |event| {
-        if let Event::Progress(_, Progress { done, total, what: Doing::Operation(item) }) = event {
+        if let Event::Progress(_, Progress { done, total, what: JobStep::Operation(item) }) = event {
             told.push((done, total, item));
         }
     });

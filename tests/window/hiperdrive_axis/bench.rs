@@ -6,7 +6,7 @@ use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, ReviewAction};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
 use encoder_studio::devices::hiperdrive::sim::Hindrance;
-use encoder_studio::devices::hiperdrive::state::axis::{Action as Run, Axis, Button, Entries, Place, Seen, Step};
+use encoder_studio::devices::hiperdrive::state::axis::{Action as Run, Axis, Button, Entries, Seen, Step, TestTarget};
 use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
 
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
@@ -284,7 +284,7 @@ pub(super) fn until_test(link: &str, drive: u8, rough: bool) -> Desk {
 
 /// Goes to a place until something is so; once more where nobody looked for 250 ms on a busy computer, which ends it.
 #[track_caller]
-pub(super) fn go(desk: &mut Desk, place: Place, condition: impl Fn(&Unit) -> bool) {
+pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -> bool) {
     let drive = unit(desk).drive();
     for _ in 0..ATTEMPTS {
         let before = last_end(&desk.studio, drive);
@@ -305,7 +305,7 @@ pub(super) fn go(desk: &mut Desk, place: Place, condition: impl Fn(&Unit) -> boo
 }
 
 pub(super) fn tested(mut desk: Desk) -> Desk {
-    for place in Place::ALL {
+    for place in TestTarget::ALL {
         go(&mut desk, place, |own| own.axis().unwrap().outcome(place).is_some());
         let outcome = axis(&desk).outcome(place).unwrap();
         assert!(outcome.is_good(), "{place:?}: {outcome:?}");

@@ -95,7 +95,7 @@ impl<S: Stretch> Bridge<S> {
 }
 
 impl<S: Stretch> Producer for Bridge<S> {
-    type Wish = Infallible;
+    type Request = Infallible;
     type Samples = S::Samples;
     type Error = BridgeError;
 

@@ -16,7 +16,7 @@ use crate::buses::bridge::protocol::{
     BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, REPEAT_AFTER, Receiver, Reply, Request,
 };
 use crate::expected::Quantity;
-use crate::link::line::{Line, LineError, LineState};
+use crate::link::line::{LineError, LineState, SerialLine};
 use crate::parameter::Whole;
 use crate::units::{Moment, SupplyVoltage};
 
@@ -202,7 +202,7 @@ impl AdapterState {
 
 /// The host's side, for one exchange.
 pub(crate) struct Adapter<'m, 'a> {
-    pub(crate) line: &'m mut Line<'a>,
+    pub(crate) line: &'m mut SerialLine<'a>,
     pub(crate) state: &'m mut LineState,
     pub(crate) adapter: &'m mut AdapterState,
 }

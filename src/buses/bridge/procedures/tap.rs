@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::flow::{Flow, Portion, Streamed};
 use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure, other};
 use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request};
-use crate::link::line::{Line, LineError, LineState};
+use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{Ctx, LinkError};
 use crate::units::{Moment, SupplyVoltage};
 
@@ -97,7 +97,7 @@ impl Tap {
         wanted: Wanted,
         supply: Option<SupplyVoltage>,
     ) -> Result<Streaming, TapError> {
-        let mut line = Line::new(ctx);
+        let mut line = SerialLine::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
         adapter.hello()?;
         let Some(hello) = adapter.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
@@ -138,7 +138,7 @@ impl Tap {
     /// When there will be no more.
     pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, TapError> {
         let Some(flow) = &mut self.flow else { return Ok(None) };
-        let mut line = Line::new(ctx);
+        let mut line = SerialLine::new(ctx);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
         Ok(flow.next(&mut adapter, until)?)
     }
@@ -148,7 +148,7 @@ impl Tap {
     /// # Errors
     /// The adapter or the wire.
     pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), TapError> {
-        let mut line = Line::new(ctx);
+        let mut line = SerialLine::new(ctx);
         line.shield(true);
         let mut adapter = Adapter { line: &mut line, state: &mut self.line, adapter: &mut self.adapter };
         let ended = self.flow.take().map_or(Ok(()), |flow| flow.end(&mut adapter));

@@ -4,7 +4,7 @@
 use fastrand::Rng;
 
 use super::attached::{BissDevice, SsiDevice};
-use super::config::{self, Config, Line, Shared};
+use super::config::{self, Config, EncoderWiring, Shared};
 use super::shaft::Shaft;
 use crate::buses::bridge::protocol::BissStatus;
 use crate::sim::Motor;
@@ -19,7 +19,7 @@ pub(super) struct Bus {
     shaft: Shaft,
     /// The encoders have power.
     pub(super) is_supplied: bool,
-    line: Line,
+    line: EncoderWiring,
     noise: f64,
     rng: Rng,
 }
@@ -67,7 +67,7 @@ impl Bus {
 
     /// The device whose registers can be asked at `now`.
     pub(super) fn answering(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
-        let is_good = self.line == Line::Good;
+        let is_good = self.line == EncoderWiring::Good;
         self.biss.as_mut().filter(|_| is_good)?.answers(now).then_some(())?;
         self.biss.as_mut()
     }
@@ -75,10 +75,12 @@ impl Bus {
     /// `bits` bits behind the control bit of a BiSS frame taken at a moment.
     pub(super) fn frame(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
         match (self.line, self.biss.as_mut().and_then(|device| device.frame(at))) {
-            (Line::Low, _) => (BissStatus::STUCK_LOW, 0),
-            (Line::High, _) => (BissStatus::STUCK_HIGH, ones(bits)),
-            (Line::Open, _) | (Line::Good, None) => (BissStatus::NO_ACKNOWLEDGE, 0),
-            (Line::Good, Some((frame, own))) => (BissStatus::OK, self.damaged(clocked(frame, own, bits), bits)),
+            (EncoderWiring::Low, _) => (BissStatus::STUCK_LOW, 0),
+            (EncoderWiring::High, _) => (BissStatus::STUCK_HIGH, ones(bits)),
+            (EncoderWiring::Open, _) | (EncoderWiring::Good, None) => (BissStatus::NO_ACKNOWLEDGE, 0),
+            (EncoderWiring::Good, Some((frame, own))) => {
+                (BissStatus::OK, self.damaged(clocked(frame, own, bits), bits))
+            }
         }
     }
 
@@ -87,8 +89,8 @@ impl Bus {
         // Without power neither encoder sends.
         let place = self.place(at);
         match (self.line, place, &mut self.ssi) {
-            (Line::Low, _, _) => 0,
-            (Line::Good, Some(place), Some(ssi)) => {
+            (EncoderWiring::Low, _, _) => 0,
+            (EncoderWiring::Good, Some(place), Some(ssi)) => {
                 let (word, own) = ssi.word(at, place);
                 self.damaged(clocked(word, own, bits), bits)
             }

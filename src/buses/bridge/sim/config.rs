@@ -11,8 +11,8 @@ parameters! {
     /// elsewhere.
     pub(super) struct Config: ConfigError {
         /// The wires to the encoder.
-        pub(super) line: Line = Line::Good,
-            "line" => Words(&[("good", Line::Good), ("open", Line::Open), ("low", Line::Low), ("high", Line::High)]);
+        pub(super) line: EncoderWiring = EncoderWiring::Good,
+            "line" => Words(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
         /// The share of frames with a bit inverted.
         pub(super) noise: f64 = 0.0, "noise" => Decimal(Quantity::DamagedFrames, 0.0..=1.0);
         /// The adapter switches the encoder's supply.
@@ -39,7 +39,7 @@ parameters! {
 
 /// The wires between adapter and encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Line {
+pub(super) enum EncoderWiring {
     Good,
     /// Nobody acknowledges.
     Open,
@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn every_key_is_read() {
         let config = read("line=low&noise=0.5&supply=switched&version=2").unwrap();
-        assert_eq!(config, Config { line: Line::Low, noise: 0.5, switched_supply: true, version: 2 });
+        assert_eq!(config, Config { line: EncoderWiring::Low, noise: 0.5, switched_supply: true, version: 2 });
         let faults = "drop:0.5".parse().unwrap();
         assert_eq!(Shared::read(&pairs("seed=3&fault=drop:0.5")), Ok(Shared { seed: 3, faults }));
         assert_eq!(Shaft::read(&pairs("rpm=-6")), Ok(Shaft { rpm: -6.0 }));

@@ -16,7 +16,7 @@ use crate::cli::decode::{Explained, frames, show};
 use crate::cli::output::{Output, count};
 
 /// What bytes say.
-pub(crate) struct Said {
+pub(crate) struct DecodedBytes {
     pub(crate) lines: Vec<String>,
     /// Further keys for a script.
     pub(crate) more: Map<String, Json>,
@@ -62,7 +62,7 @@ fn decode(output: &Output, words: &[String]) -> Result {
     let explain = |bytes: &Vec<u8>| {
         let said = explain(bytes, Device::Any).unwrap_or_else(|| Err(NEITHER.to_owned()));
         let (meaning, more) = match said {
-            Ok(Said { lines, more, .. }) => (Ok(lines), more),
+            Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
             Err(why) => (Err(why), Map::new()),
         };
         Explained { shown: hex(bytes), compact: hex_compact(bytes), meaning, more }
@@ -72,7 +72,7 @@ fn decode(output: &Output, words: &[String]) -> Result {
 }
 
 /// What a packet says; `None` for bytes that do not begin like one.
-pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, String>> {
+pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     if let Some(said) = cyclic(bytes) {
         return Some(Ok(said));
     }
@@ -80,7 +80,7 @@ pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Resul
         return Some(said);
     }
     let (kind, lines) = cip::message(bytes, device)?;
-    Some(Ok(Said { lines, more: packet(kind), data: None }))
+    Some(Ok(DecodedBytes { lines, more: packet(kind), data: None }))
 }
 
 fn packet(kind: &str) -> Map<String, Json> {
@@ -88,7 +88,7 @@ fn packet(kind: &str) -> Map<String, Json> {
 }
 
 /// A cyclic packet. Whether there is a header is seen by the length: process data are whole words of 32 bits.
-fn cyclic(bytes: &[u8]) -> Option<Said> {
+fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     let plain = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok()?;
     let with = IoPacket::parse(bytes, RealTimeFormat::Header).ok().filter(|packet| {
         let known = packet.header.is_some_and(|header| header.word() <= 1);
@@ -108,12 +108,12 @@ fn cyclic(bytes: &[u8]) -> Option<Said> {
         ("count".to_owned(), json!(number)),
         ("run".to_owned(), json!(header.map(|header| header.runs()))),
     ]);
-    Some(Said { lines, more, data: Some((data, to_target)) })
+    Some(DecodedBytes { lines, more, data: Some((data, to_target)) })
 }
 
 /// Frames behind each other; `None` where not even the first command is known. Process data of drives that are left alone
 /// begin like NOP, which nobody captures.
-fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, String>> {
+fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     let [low, high, ..] = bytes else { return None };
     let command = Command::new(u16::from_le_bytes([*low, *high]));
     let is_idle = command == Command::NOP && matches!(device, Device::Known(_));
@@ -140,7 +140,7 @@ fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<Said, Stri
         }
         rest = behind;
     }
-    Some(Ok(Said { lines, more: packet("frame"), data: None }))
+    Some(Ok(DecodedBytes { lines, more: packet("frame"), data: None }))
 }
 
 fn frame_lines(frame: &Frame, device: Device) -> std::result::Result<Vec<String>, String> {

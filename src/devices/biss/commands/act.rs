@@ -53,7 +53,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             change(common, output, act, |_| Ok(Change::SelectFilter(filter)))
         }
         (BissAction::Preset, words) => {
-            let wish = Wish::read(words)?;
+            let wish = PresetArguments::read(words)?;
             change(common, output, act, |runner| wish.change(runner))
         }
         (BissAction::Check | BissAction::LeadBack | BissAction::Calibrate, _) => Err(takes("no argument")),
@@ -192,13 +192,13 @@ fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
 }
 
 /// `[ST [MT]] [singleturn|multiturn]`.
-struct Wish<'a> {
+struct PresetArguments<'a> {
     singleturn: Option<&'a str>,
     multiturn: Option<&'a str>,
     parts: PresetParts,
 }
 
-impl<'a> Wish<'a> {
+impl<'a> PresetArguments<'a> {
     fn read(words: &[&'a str]) -> Result<Self> {
         let (numbers, parts) = match words {
             [numbers @ .., "singleturn"] => (numbers, PresetParts::Singleturn),
@@ -216,7 +216,7 @@ impl<'a> Wish<'a> {
         };
         // Whatever is no number is found before the link is opened.
         value(singleturn.unwrap_or("0"), multiturn.unwrap_or("0"))?;
-        Ok(Wish { singleturn, multiturn, parts })
+        Ok(PresetArguments { singleturn, multiturn, parts })
     }
 
     /// A multiturn that is not given is 0; where it is not preset, the stored one stays.

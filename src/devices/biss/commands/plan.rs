@@ -11,9 +11,9 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{self, Shown, Spent, Step, warn};
+use crate::cli::plan::{self, PlanReport, Step, WriteSummary, warn};
 use crate::cli::runner::unexpected;
-use crate::devices::biss::jobs::{Attendance, Biss, BissJob, BissOutput, Change, Commit, Prepared, WEAR_LIMIT};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::procedure::{Motion, Outcome, Unattended};
 use crate::devices::biss::procedures::write::Written;
 use crate::devices::biss::profile::{BissPlan, Op, PresetParts, RegisterRange};
@@ -41,9 +41,9 @@ pub(super) fn commit(
     prepared: Prepared,
     consent: &Consenting,
     patience: Duration,
-) -> Result<(Spent, Vec<Outcome>)> {
+) -> Result<(WriteSummary, Vec<Outcome>)> {
     if prepared.plan.is_empty() {
-        return Ok((Spent::default(), Vec::new()));
+        return Ok((WriteSummary::default(), Vec::new()));
     }
     check_wear::<Biss>(consent, &prepared)?;
     if let Some(wear) = explained::wear(&prepared) {
@@ -51,22 +51,22 @@ pub(super) fn commit(
     }
     let text = shown(&prepared).text;
     let agreed = agreed(output, consent, prepared, &[&text])?;
-    let commit = Commit { agreed, attendance: Attendance::Nobody(Unattended { patience }) };
+    let commit = Commit { agreed, attendance: OperatorPresence::Unattended(Unattended { patience }) };
     let committed = match runner.run(BissJob::Commit(Box::new(commit)))? {
         BissOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };
     warn(output, committed.logbook_warning.as_ref());
     let Written { written, verified, write_cycles, outcomes, .. } = committed.written;
-    Ok((Spent { written, verified, write_cycles, backup: committed.backup }, outcomes))
+    Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
 
 /// The plan for a person and for a script: each operation old → new, and what it costs.
-pub(super) fn shown(prepared: &Prepared) -> Shown {
+pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let lines = plan::lines(plan.ops.iter().flat_map(steps));
     let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
-    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+    PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
 /// The operations as JSON; registers that are saved together cost nothing by themselves.

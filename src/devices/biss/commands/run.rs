@@ -6,7 +6,7 @@ use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::cli::{Failure, Result};
-use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, ReadRegisters, Remark};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobStep, ReadRegisters};
 use crate::devices::biss::procedures::procedure::{Detail, News};
 use crate::devices::biss::procedures::{Identity, Way};
 use crate::devices::biss::profile::RegisterRange;
@@ -18,33 +18,33 @@ pub(super) type Runner = runner::Runner<Biss>;
 
 impl Runs for Biss {
     /// How the encoder is reached.
-    type Kept = Way;
+    type Context = Way;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
     fn begin(session: &mut Session<Self>, _given: &Given) -> Way {
         session.station().way
     }
 
-    fn say(remark: &Remark) {
+    fn say(remark: &DeviceMessage) {
         match remark {
             // They are counted, and told at the end.
-            Remark::CrcErrors(_) => {}
+            DeviceMessage::CrcErrors(_) => {}
             remark => words::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal()))),
         }
     }
 
-    fn step(doing: &Doing) -> String {
+    fn step(doing: &JobStep) -> String {
         match doing {
-            Doing::Operation { news, .. } => detail(news),
+            JobStep::Operation { news, .. } => detail(news),
             other => other.to_string(),
         }
     }
 
     /// Every step of an operation, and what a person is to do.
-    fn announce(doing: &Doing) -> Option<String> {
+    fn announce(doing: &JobStep) -> Option<String> {
         match doing {
-            Doing::Operation { item, news } => Some(format!("{item}: {}", words::step(news.step).terminal())),
-            Doing::Register(_) | Doing::Bank(_) => None,
+            JobStep::Operation { item, news } => Some(format!("{item}: {}", words::step(news.step).terminal())),
+            JobStep::Register(_) | JobStep::Bank(_) => None,
         }
     }
 }
@@ -76,8 +76,8 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
 
 /// Frames with a wrong checksum that the last job met, beside those of its reading.
 pub(super) fn crc_errors(runner: &Runner) -> u64 {
-    let count = |remark: &Remark| match remark {
-        Remark::CrcErrors(count) => u64::from(*count),
+    let count = |remark: &DeviceMessage| match remark {
+        DeviceMessage::CrcErrors(count) => u64::from(*count),
         _ => 0,
     };
     runner.remarks.iter().map(count).sum()

@@ -1,19 +1,19 @@
 //! Carries a plan out.
 
-use super::{Biss, ChangeKind, Commit, Committed, Doing, JobError, Prepared, WEAR_LIMIT, device_key};
+use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
 use crate::devices::biss::procedures::procedure::News;
 use crate::devices::biss::procedures::write::EncoderWrite;
 use crate::devices::biss::profile::{Base, BissPlan, BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, Unknown};
 use crate::store::DeviceKey;
 use crate::worker::commit::{Planned, backup_of, write_plan};
-use crate::worker::{Desk, Progress};
+use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
     encoder: &mut Biss,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     commit: Commit,
-    tell: &mut dyn FnMut(Progress<Doing>),
+    tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let Commit { agreed, mut attendance } = commit;
@@ -22,7 +22,7 @@ pub(super) fn commit(
     let told = &mut |news: News| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
         let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
-        tell(Progress { done, total, what: Doing::Operation { item, news: Box::new(news) } });
+        tell(Progress { done, total, what: JobStep::Operation { item, news: Box::new(news) } });
     };
     encoder.know(desk)?;
     let mut master = encoder.master(desk);

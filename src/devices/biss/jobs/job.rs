@@ -4,8 +4,8 @@ use std::fmt;
 
 use super::Identity;
 use crate::bits::hex_compact;
-use crate::devices::biss::procedures::check::Line;
-use crate::devices::biss::procedures::procedure::{Answer, Demand, News, Operator, Seat, Unattended};
+use crate::devices::biss::procedures::check::BissStepResult;
+use crate::devices::biss::procedures::procedure::{Answer, Demand, News, Operator, OperatorChannel, Unattended};
 use crate::devices::biss::procedures::write::{Interrupted, Written};
 use crate::devices::biss::procedures::{Error, PositionReading, Status, Survey};
 use crate::devices::biss::profile::{
@@ -14,7 +14,7 @@ use crate::devices::biss::profile::{
 };
 use crate::devices::biss::protocol::{Area, DeviceMode, Filter, KIND, PresetValue, RegisterAddress};
 use crate::store::{DeviceKey, StoreError};
-use crate::worker::commit::{Agreed, wear};
+use crate::worker::commit::{ApprovedPlan, wear};
 
 /// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
@@ -154,32 +154,32 @@ impl Prepared {
 #[derive(Clone, Debug)]
 pub struct Commit {
     /// The plan, with the consent to it.
-    pub agreed: Agreed<Prepared>,
+    pub agreed: ApprovedPlan<Prepared>,
     /// Who stands at the motor.
-    pub attendance: Attendance,
+    pub attendance: OperatorPresence,
 }
 
 /// Who stands at the motor while a plan is carried out.
 #[derive(Clone, Debug)]
-pub enum Attendance {
+pub enum OperatorPresence {
     /// Somebody whose answers are left here.
-    Seat(Seat),
+    Attended(OperatorChannel),
     /// Nobody.
-    Nobody(Unattended),
+    Unattended(Unattended),
 }
 
-impl Operator for Attendance {
+impl Operator for OperatorPresence {
     fn begins(&mut self) {
         match self {
-            Attendance::Seat(seat) => seat.begins(),
-            Attendance::Nobody(nobody) => nobody.begins(),
+            OperatorPresence::Attended(seat) => seat.begins(),
+            OperatorPresence::Unattended(nobody) => nobody.begins(),
         }
     }
 
     fn attend(&mut self, demand: &Demand) -> Answer {
         match self {
-            Attendance::Seat(seat) => seat.attend(demand),
-            Attendance::Nobody(nobody) => nobody.attend(demand),
+            OperatorPresence::Attended(seat) => seat.attend(demand),
+            OperatorPresence::Unattended(nobody) => nobody.attend(demand),
         }
     }
 }
@@ -200,7 +200,7 @@ pub struct ReadRegisters {
 
 /// What a BiSS encoder says on the way, or the program about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Remark {
+pub enum DeviceMessage {
     /// Frames with a wrong checksum that belong to no reading.
     CrcErrors(u32),
     /// Descriptions of the user's own that cannot be used.
@@ -209,7 +209,7 @@ pub enum Remark {
 
 /// The step that a BiSS job is at. Its text is the command line's.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Doing {
+pub enum JobStep {
     /// A register is read.
     Register(RegisterAddress),
     /// A bank is read.
@@ -223,12 +223,12 @@ pub enum Doing {
     },
 }
 
-impl fmt::Display for Doing {
+impl fmt::Display for JobStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Doing::Register(address) => write!(f, "{address}"),
-            Doing::Bank(bank) => write!(f, "bank:0x{bank:02X}"),
-            Doing::Operation { item, .. } => f.write_str(item),
+            JobStep::Register(address) => write!(f, "{address}"),
+            JobStep::Bank(bank) => write!(f, "bank:0x{bank:02X}"),
+            JobStep::Operation { item, .. } => f.write_str(item),
         }
     }
 }
@@ -240,7 +240,7 @@ pub enum BissOutput {
     Surveyed(Box<Survey>),
     Identity(Box<Identity>),
     Status(Box<Status>),
-    Check(Vec<Line>),
+    Check(Vec<BissStepResult>),
     Position(PositionReading),
     Registers(ReadRegisters),
     Area {

@@ -14,15 +14,15 @@ use std::time::Duration;
 pub use descriptions::descriptions;
 pub use frames::BissFrames;
 pub use job::{
-    Attendance, BissJob, BissOutput, Change, ChangeKind, Commit, Committed, Doing, JobError, Prepared, ReadRegisters,
-    Remark, WEAR_LIMIT, WEAR_WARNING, device_key,
+    BissJob, BissOutput, Change, ChangeKind, Commit, Committed, DeviceMessage, JobError, JobStep, OperatorPresence,
+    Prepared, ReadRegisters, WEAR_LIMIT, WEAR_WARNING, device_key,
 };
 pub use open::{check, open};
 
 use crate::devices::biss::procedures::check::Wear;
 use crate::devices::biss::procedures::{
-    self, Error, Identity, Master, Place, Sample, Station, Unsaved, identify, procedure, read_position, read_registers,
-    read_sample, read_status, read_watched,
+    self, Error, Identity, Master, ReadStage, Sample, Station, Unsaved, identify, procedure, read_position,
+    read_registers, read_sample, read_status, read_watched,
 };
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{Descriptions, DeviceMode, RegisterAddress};
@@ -30,7 +30,7 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::{Store, StoreError};
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
 
 /// A BiSS encoder at the end of its wire.
 pub struct Biss {
@@ -56,12 +56,12 @@ impl fmt::Debug for Biss {
 
 impl Biss {
     /// The host's side of the line.
-    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }
 
     /// Who is there, where that is not known in this session yet: it tells the frame and the registers.
-    fn know(&mut self, desk: &mut Desk) -> Result<(), Error> {
+    fn know(&mut self, desk: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
             identify(&mut self.master(desk), &types)?;
@@ -105,22 +105,22 @@ impl Device for Biss {
     type Job = BissJob;
     type Output = BissOutput;
     type Error = JobError;
-    type Remark = Remark;
+    type DeviceMessage = DeviceMessage;
     type Sample = Sample;
     type Watch = RegisterRange;
-    type Doing = Doing;
+    type JobStep = JobStep;
 
     fn run(
         &mut self,
-        desk: &mut Desk,
+        desk: &mut SessionContext,
         job: BissJob,
-        tell: &mut dyn FnMut(Tell<Remark, Doing>),
+        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
     ) -> Result<BissOutput, JobError> {
         let types = self.types.clone();
         let steps = &mut |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
         Ok(match job {
             BissJob::Survey => {
-                let progress = &mut |done, total, at| steps(done, total, Doing::Register(at));
+                let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
                 BissOutput::Surveyed(Box::new(procedures::survey(&mut self.master(desk), &types, progress)?))
             }
             BissJob::Identify => BissOutput::Identity(Box::new(identify(&mut self.master(desk), &types)?)),
@@ -135,7 +135,7 @@ impl Device for Biss {
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,
                 };
-                let progress = &mut |done, total, at| steps(done, total, Doing::Register(at));
+                let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
                 BissOutput::Check(procedures::check::check(&mut self.master(desk), &types, wear, progress)?)
             }
             BissJob::Position => {
@@ -149,7 +149,7 @@ impl Device for Biss {
                 self.know(desk)?;
                 let first = area.first;
                 let total = area.banks().count() as u64;
-                let told = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, Doing::Bank(bank));
+                let told = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
                 let banks = procedures::read_area_surely(&mut self.master(desk), &area, told)?;
                 BissOutput::Area { banks, unsaved: self.unsaved(desk)? }
             }
@@ -174,7 +174,7 @@ impl Device for Biss {
         })
     }
 
-    fn pace(&mut self, desk: &mut Desk, interval: Option<Duration>) {
+    fn pace(&mut self, desk: &mut SessionContext, interval: Option<Duration>) {
         let streamed = interval.filter(|interval| *interval <= STREAMED);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
@@ -185,7 +185,7 @@ impl Device for Biss {
         }
     }
 
-    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<Sample, JobError> {
         self.know(desk)?;
         if let Some(period_us) = self.streamed_us
             && let Some(run) = self.master(desk).frames(period_us)?
@@ -195,7 +195,7 @@ impl Device for Biss {
         Ok(read_sample(&mut self.master(desk))?)
     }
 
-    fn watch(&mut self, desk: &mut Desk, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
+    fn watch(&mut self, desk: &mut SessionContext, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
         // What is data, and not to be touched while the shaft turns.
         self.know(desk)?;
         let reading = read_watched(&mut self.master(desk), *what)?;
@@ -204,18 +204,18 @@ impl Device for Biss {
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
     }
 
-    fn take_remark(&mut self) -> Option<Remark> {
+    fn take_remark(&mut self) -> Option<DeviceMessage> {
         if !self.broken.is_empty() {
-            return Some(Remark::Descriptions(std::mem::take(&mut self.broken)));
+            return Some(DeviceMessage::Descriptions(std::mem::take(&mut self.broken)));
         }
-        Some(self.station.take_crc_errors()).filter(|count| *count > 0).map(Remark::CrcErrors)
+        Some(self.station.take_crc_errors()).filter(|count| *count > 0).map(DeviceMessage::CrcErrors)
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
         self.wire.check()
     }
 
-    fn leave(&mut self, desk: &mut Desk) {
+    fn leave(&mut self, desk: &mut SessionContext) {
         if let Err(error) = self.master(desk).leave_supply() {
             tracing::warn!("the encoder's supply could not be switched off: {error}");
         }
@@ -223,7 +223,7 @@ impl Device for Biss {
 }
 
 impl Biss {
-    fn read(&mut self, desk: &mut Desk, start: RegisterAddress, count: u8) -> Result<BissOutput, JobError> {
+    fn read(&mut self, desk: &mut SessionContext, start: RegisterAddress, count: u8) -> Result<BissOutput, JobError> {
         self.know(desk)?;
         let bytes = read_registers(&mut self.master(desk), start, count)?;
         // Direct registers hold nothing that is entered first and saved later.
@@ -232,16 +232,16 @@ impl Biss {
     }
 
     /// The device mode in which registers may show what was never saved.
-    fn unsaved(&mut self, desk: &mut Desk) -> Result<Option<DeviceMode>, Error> {
+    fn unsaved(&mut self, desk: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
         let mut master = self.master(desk);
         let description = master.description()?;
         procedures::write::unsaved_mode(&mut master, &description)
     }
 }
 
-fn doing(place: Place) -> Doing {
+fn doing(place: ReadStage) -> JobStep {
     match place {
-        Place::Register(address) => Doing::Register(address),
-        Place::Bank(bank) => Doing::Bank(bank),
+        ReadStage::Register(address) => JobStep::Register(address),
+        ReadStage::Bank(bank) => JobStep::Bank(bank),
     }
 }

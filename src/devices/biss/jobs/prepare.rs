@@ -2,22 +2,22 @@
 
 use std::collections::BTreeSet;
 
-use super::{Biss, Change, Doing, JobError, Prepared, device_key};
+use super::{Biss, Change, JobError, JobStep, Prepared, device_key};
 use crate::devices::biss::procedures::write::{read_bank, read_state};
 use crate::devices::biss::procedures::{Error, Identity, Master, ensure_standstill, identify, write};
 use crate::devices::biss::profile::{
-    Base, BissPlan, Place, RegisterRange, Restore, banks_needed, check_allowed, other_type, place, plan_edits,
+    Base, BissPlan, RegisterKind, RegisterRange, Restore, banks_needed, check_allowed, other_type, place, plan_edits,
     plan_filter, plan_mounting, plan_preset, plan_restore,
 };
 use crate::devices::biss::protocol::{Area, RegisterAddress};
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Desk, Progress};
+use crate::worker::{Progress, SessionContext};
 
 pub(super) fn prepare(
     encoder: &mut Biss,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     change: &Change,
-    tell: &mut dyn FnMut(Progress<Doing>),
+    tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
     let mut master = encoder.master(desk);
@@ -75,10 +75,10 @@ fn state(
     master: &mut Master<'_>,
     identity: &Identity,
     banks: &[u8],
-    tell: &mut dyn FnMut(Progress<Doing>),
+    tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<crate::devices::biss::profile::DeviceState, Error> {
     let total = banks.len() as u64;
-    let told = &mut |done, bank| tell(Progress { done, total, what: Doing::Bank(bank) });
+    let told = &mut |done, bank| tell(Progress { done, total, what: JobStep::Bank(bank) });
     read_state(master, identity, banks, told)
 }
 
@@ -93,8 +93,8 @@ fn edits_of(
     let mut singles: BTreeSet<RegisterAddress> = BTreeSet::new();
     for address in edits.iter().flat_map(|(range, _)| range.addresses()) {
         match place(description, address)? {
-            Place::Data(_) => banks.extend(address.bank()),
-            Place::Register => {
+            RegisterKind::Data(_) => banks.extend(address.bank()),
+            RegisterKind::Register => {
                 singles.insert(address);
             }
         }

@@ -11,7 +11,7 @@ use crate::devices::biss::protocol::{
 pub use crate::analysis::check::{Verdict, Wear};
 
 /// One line of the check.
-pub type Line = check::Line<Step, Finding>;
+pub type BissStepResult = check::StepResult<Step, Finding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,7 +133,7 @@ pub fn check(
     types: &Descriptions,
     wear: impl FnOnce(&Identity) -> Wear,
     progress: &mut dyn FnMut(u64, u64, RegisterAddress),
-) -> Result<Vec<Line>, Error> {
+) -> Result<Vec<BissStepResult>, Error> {
     let survey = survey(master, types, progress)?;
     let mut lines = vec![
         identity(&survey.identity),
@@ -150,17 +150,17 @@ pub fn check(
     Ok(lines)
 }
 
-fn identity(identity: &Identity) -> Line {
+fn identity(identity: &Identity) -> BissStepResult {
     let mut findings = vec![(Verdict::Good, Finding::Name(identity.description.name().to_owned()))];
     if !identity.serial_number.is_empty() {
         findings.push((Verdict::Good, Finding::SerialNumber(identity.serial_number.clone())));
     }
     findings.extend(identity.firmware.map(|firmware| (Verdict::Good, Finding::Firmware(firmware))));
     findings.extend(identity.mismatch.clone().map(|mismatch| (Verdict::Attention, Finding::Mismatch(mismatch))));
-    Line::of(Step::Identity, findings)
+    BissStepResult::of(Step::Identity, findings)
 }
 
-fn status(status: &Status) -> Line {
+fn status(status: &Status) -> BissStepResult {
     let set = |bits: &Option<Bits>| bits.iter().flat_map(|bits| bits.set.clone()).collect::<Vec<_>>();
     let mut findings: Vec<(Verdict, Finding)> =
         set(&status.errors).into_iter().map(|(bit, name)| (Verdict::Bad, Finding::Error(bit, name))).collect();
@@ -174,11 +174,13 @@ fn status(status: &Status) -> Line {
     if status.protection.is_some_and(|password| password != 0) {
         findings.push((Verdict::Attention, Finding::Open));
     }
-    Line::of(Step::Status, findings)
+    BissStepResult::of(Step::Status, findings)
 }
 
-fn position(reading: Option<PositionReading>) -> Line {
-    let Some(reading) = reading else { return Line::of(Step::Position, vec![(Verdict::Bad, Finding::NoPosition)]) };
+fn position(reading: Option<PositionReading>) -> BissStepResult {
+    let Some(reading) = reading else {
+        return BissStepResult::of(Step::Position, vec![(Verdict::Bad, Finding::NoPosition)]);
+    };
     let mut findings = vec![(Verdict::Good, Finding::Position(reading))];
     if reading.error == Some(true) {
         findings.push((Verdict::Bad, Finding::ErrorBit));
@@ -186,12 +188,12 @@ fn position(reading: Option<PositionReading>) -> Line {
     if reading.warning == Some(true) {
         findings.push((Verdict::Attention, Finding::WarningBit));
     }
-    Line::of(Step::Position, findings)
+    BissStepResult::of(Step::Position, findings)
 }
 
-fn data_sheet(identity: &Identity) -> Line {
+fn data_sheet(identity: &Identity) -> BissStepResult {
     let Some(sheet) = &identity.data_sheet else {
-        return Line::of(Step::DataSheet, vec![(Verdict::Attention, Finding::NoSheet)]);
+        return BissStepResult::of(Step::DataSheet, vec![(Verdict::Attention, Finding::NoSheet)]);
     };
     let wrong = [&sheet.common, &sheet.encoder].into_iter().filter_map(|bank| bank.eds.err());
     let mut findings: Vec<(Verdict, Finding)> = wrong.map(|error| (Verdict::Bad, Finding::Sheet(error))).collect();
@@ -209,7 +211,7 @@ fn data_sheet(identity: &Identity) -> Line {
             }
         }
     }
-    Line::of(Step::DataSheet, findings)
+    BissStepResult::of(Step::DataSheet, findings)
 }
 
 /// Where the encoder's bank of the data sheet has its limits.
@@ -222,7 +224,7 @@ mod offset {
 }
 
 /// What the data sheet allows, as far as it can be measured; `None` where nothing can be compared.
-fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<Line> {
+fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult> {
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };
     let mut findings = Vec::new();
@@ -244,7 +246,7 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<Line> {
         findings.push((judge(fits), Finding::Supply { millivolt, low, high }));
         findings.push((judge(u32::from(milliampere) <= most), Finding::Current { milliampere, high: most }));
     }
-    (!findings.is_empty()).then(|| Line::of(Step::Limits, findings))
+    (!findings.is_empty()).then(|| BissStepResult::of(Step::Limits, findings))
 }
 
 fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
@@ -252,7 +254,7 @@ fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
 }
 
 /// The saved test; `None` for an encoder that has none.
-fn wiegand(survey: &Survey) -> Option<Line> {
+fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {
         // As it leaves the factory: nothing is wrong with that, and nothing tells that the sensor is right.
@@ -260,11 +262,11 @@ fn wiegand(survey: &Survey) -> Option<Line> {
         _ if saved.passes() => (Verdict::Good, Finding::Wiegand(saved)),
         _ => (Verdict::Bad, Finding::Wiegand(saved)),
     };
-    Some(Line::of(Step::Wiegand, vec![finding]))
+    Some(BissStepResult::of(Step::Wiegand, vec![finding]))
 }
 
 /// Reads the position again and again. A reading that does not come at all is damage as well.
-fn readings(master: &mut Master<'_>) -> Result<Line, Error> {
+fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
     let told_by_line = master.station().way == Way::ConfigPin;
     let mut damaged = 0;
@@ -281,10 +283,10 @@ fn readings(master: &mut Master<'_>) -> Result<Line, Error> {
         damaged += master.station().line.damaged - before;
     }
     let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
-    Ok(Line::of(Step::Readings, vec![(verdict, Finding::Readings { asked: READINGS, damaged })]))
+    Ok(BissStepResult::of(Step::Readings, vec![(verdict, Finding::Readings { asked: READINGS, damaged })]))
 }
 
-fn worn(wear: Wear) -> Option<Line> {
+fn worn(wear: Wear) -> Option<BissStepResult> {
     let (verdict, seen) = wear.judged()?;
-    Some(Line::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
+    Some(BissStepResult::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
 }

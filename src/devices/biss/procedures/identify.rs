@@ -71,16 +71,16 @@ impl FrameSource {
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
     /// What every BiSS device says.
-    pub common: Sheet,
+    pub common: DataSheetBank,
     /// What an encoder says.
-    pub encoder: Sheet,
+    pub encoder: DataSheetBank,
     /// The frame that both tell, or why they do not.
     pub layout: Result<Layout, EdsError>,
 }
 
 /// A bank of the data sheet.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sheet {
+pub struct DataSheetBank {
     /// Its number.
     pub bank: u8,
     /// Its registers, as they came.
@@ -256,12 +256,12 @@ fn read_sheet(
     which: EdsBank,
     bank: u8,
     registers: &mut Registers,
-) -> Result<Option<Sheet>, Error> {
+) -> Result<Option<DataSheetBank>, Error> {
     let bytes = match registers.read(master, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE) {
         Ok(bytes) => bytes,
         Err(Error::NoSuchRegister { .. }) => return Ok(None),
         Err(error) => return Err(error),
     };
     let Ok(bytes) = <[u8; 64]>::try_from(bytes) else { return Ok(None) };
-    Ok(Some(Sheet { bank, bytes, eds: Eds::parse(which, bytes) }))
+    Ok(Some(DataSheetBank { bank, bytes, eds: Eds::parse(which, bytes) }))
 }

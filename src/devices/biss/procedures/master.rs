@@ -19,7 +19,7 @@ use super::{Error, Station, Way};
 use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
 use crate::devices::biss::protocol::{Description, RegisterAddress};
 use crate::link::Ctx;
-use crate::link::line::{Line, TRIES};
+use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
 /// So often a register is silent beside one that answers before it counts as missing: a bad line loses single answers.
@@ -27,12 +27,12 @@ const SILENCES: u32 = 3;
 
 /// The host's side of the line to a BiSS encoder, over either way.
 pub struct Master<'a> {
-    line: Line<'a>,
+    line: SerialLine<'a>,
     station: &'a mut Station,
 }
 
 /// An exchange that gave no answer.
-enum Trouble {
+enum ExchangeError {
     /// Nothing came back but, maybe, our own bytes.
     Silence {
         /// Our own bytes came back.
@@ -45,7 +45,7 @@ enum Trouble {
 }
 
 /// How one exchange ended. The outer error ends everything; the inner one may be tried again.
-type Attempt<T> = Result<Result<T, Trouble>, Error>;
+type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
 /// What an encoder did with a value.
 enum Taken {
@@ -61,7 +61,7 @@ impl<'a> Master<'a> {
         station.line.begin_job();
         // Who knows what happened to the encoder since the last one.
         station.bank = None;
-        Master { line: Line::new(ctx), station }
+        Master { line: SerialLine::new(ctx), station }
     }
 
     /// What is known about the line and the encoder.
@@ -282,21 +282,21 @@ impl<'a> Master<'a> {
     }
 
     /// What a try that failed becomes when there is no other.
-    fn failed(&self, asked: Asked, tries: u32, trouble: &Trouble) -> Error {
+    fn failed(&self, asked: Asked, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
-            Trouble::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
-            Trouble::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },
-            Trouble::NoFrame(cause) => self.no_frame(*cause, tries),
+            ExchangeError::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
+            ExchangeError::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },
+            ExchangeError::NoFrame(cause) => self.no_frame(*cause, tries),
         }
     }
 
     /// What is right about a broken line before the next try; `failed` when there is to be none.
-    fn may_try_again(&mut self, tries: u32, trouble: Trouble, failed: Error) -> Result<(), Error> {
-        self.station.noisy |= matches!(trouble, Trouble::Damage(_));
+    fn may_try_again(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
+        self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;
         match trouble {
-            Trouble::Silence { .. } => quality.silent += 1,
-            Trouble::Damage(_) | Trouble::NoFrame(_) => quality.damaged += 1,
+            ExchangeError::Silence { .. } => quality.silent += 1,
+            ExchangeError::Damage(_) | ExchangeError::NoFrame(_) => quality.damaged += 1,
         }
         let longest = match self.station.way {
             Way::ConfigPin => self.longest_pin_exchange(),
@@ -307,9 +307,9 @@ impl<'a> Master<'a> {
         }
         match trouble {
             // Frames come one after the other, good or bad, and late packets are told by their number.
-            Trouble::Damage(Damage::Frame(_)) => {}
+            ExchangeError::Damage(Damage::Frame(_)) => {}
             _ if self.station.way == Way::Adapter => self.pause()?,
-            Trouble::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
+            ExchangeError::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
             // A frame that the encoder still waits for the end of is over after that.
             _ => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
         }
@@ -324,7 +324,7 @@ impl<'a> Master<'a> {
         }
         for _ in 0..SILENCES {
             let answers = self.read_once(RegisterAddress::BANK_SELECT)?.is_ok();
-            if !answers || !matches!(self.read_once(address)?, Err(Trouble::Silence { .. })) {
+            if !answers || !matches!(self.read_once(address)?, Err(ExchangeError::Silence { .. })) {
                 return Ok(false);
             }
             match self.station.way {

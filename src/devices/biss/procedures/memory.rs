@@ -32,7 +32,7 @@ pub enum Unsaved {
 
 /// Where reading of memory is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum ReadStage {
     /// A register.
     Register(RegisterAddress),
     /// A bank.
@@ -128,7 +128,7 @@ pub fn save(
     master: &mut Master<'_>,
     types: &Descriptions,
     unsaved: Unsaved,
-    progress: &mut dyn FnMut(u64, u64, Place),
+    progress: &mut dyn FnMut(u64, u64, ReadStage),
 ) -> Result<BissProfile, Error> {
     certainly(master, |master| {
         let mut registers = Registers::default();
@@ -144,13 +144,13 @@ pub fn save(
         let in_areas = total;
         let survey = look_around(master, identity, registers, &mut |at, of, address| {
             (done, total) = (of, of + in_areas);
-            progress(at, total, Place::Register(address));
+            progress(at, total, ReadStage::Register(address));
         })?;
         let mut data = Vec::new();
         for area in areas {
             ensure_standstill(master)?;
             let banks = read_area(master, area, &mut |bank| {
-                progress(done, total, Place::Bank(bank));
+                progress(done, total, ReadStage::Bank(bank));
                 done += Bank::SIZE as u64;
             })?;
             data.push(DataImage::of(area, banks));

@@ -26,9 +26,11 @@ pub use crate::link::line::Echo;
 pub use error::{Asked, Damage, Error};
 pub use flags::read_position;
 pub use frames::{Frame, FrameRun, NoReading, frames};
-pub use identify::{DataSheet, FrameSource, Identity, Sheet, identify};
+pub use identify::{DataSheet, DataSheetBank, FrameSource, Identity, identify};
 pub use master::Master;
-pub use memory::{Place, Unsaved, ensure_standstill, profile_of, read_area, read_area_surely, read_registers, save};
+pub use memory::{
+    ReadStage, Unsaved, ensure_standstill, profile_of, read_area, read_area_surely, read_registers, save,
+};
 pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched};
 pub use registers::Registers;
 pub use station::{BusParameters, FrameParameters, LineParameters, PinParameters, Station, Supply, Way};

@@ -1,7 +1,7 @@
 //! How a plan is written into an encoder: what was read is read again, then each operation is carried out and read back,
 //! with a person at the motor where one is needed, and the encoder is led back to operation after each.
 
-use super::procedure::{Failure, Guide, News, Operator, Outcome, Standing, Step};
+use super::procedure::{Failure, Guide, LeftState, News, Operator, Outcome, Step};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
 use crate::devices::biss::protocol::{
@@ -44,7 +44,7 @@ pub struct Left {
     pub at: Step,
     /// `None` in operation, without the password. Else it could not be led back: what is known of it, unless it has lost power
     /// since, which leads back as well.
-    pub standing: Option<Standing>,
+    pub standing: Option<LeftState>,
 }
 
 impl Interrupted {

@@ -57,7 +57,7 @@ impl MountingRun {
 
 /// What kind of place a register is to somebody who writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place<'d> {
+pub enum RegisterKind<'d> {
     /// In an area that is opened and saved.
     Data(&'d Area),
     /// For itself.
@@ -68,7 +68,7 @@ pub enum Place<'d> {
 ///
 /// # Errors
 /// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for what only the procedures write.
-pub fn place(description: &Description, address: RegisterAddress) -> Result<Place<'_>, PlanError> {
+pub fn place(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
     if is_guarded(description, address) {
         return Err(PlanError::Guarded { address });
     }
@@ -76,7 +76,7 @@ pub fn place(description: &Description, address: RegisterAddress) -> Result<Plac
         return Err(PlanError::ReadOnly { address });
     }
     let area = description.area_at(address).filter(|area| area.open.is_some());
-    Ok(area.map_or(Place::Register, Place::Data))
+    Ok(area.map_or(RegisterKind::Register, RegisterKind::Data))
 }
 
 /// Device mode, password, and the registers of procedures, but for the plain data itself.
@@ -134,14 +134,14 @@ pub fn plan_edits(
     let mut touched = BTreeSet::new();
     for (address, new) in wanted {
         match place(description, address)? {
-            Place::Register => {
+            RegisterKind::Register => {
                 let old = registers.iter().find(|(own, _)| *own == address).and_then(|(_, old)| *old);
                 if old != Some(new) {
                     base.registers.extend(old.map(|old| (address, old)));
                     singles.push(Op::WriteRegister { address, old, new, cycles: cycles(description, address, new) });
                 }
             }
-            Place::Data(area) => {
+            RegisterKind::Data(area) => {
                 let bank = banks.iter().find(|bank| Some(bank.number) == address.bank());
                 let bank = bank.ok_or(PlanError::NoBank { bank: address.bank().unwrap_or_default() })?;
                 let old = bank.registers().find(|(own, _)| *own == address).map_or(new, |(_, old)| old);

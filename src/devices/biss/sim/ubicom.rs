@@ -12,7 +12,7 @@ use crate::buses::ubicom::protocol::{
 };
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::sim::Faults;
-use crate::sim::line::{Line, Queue, Wires};
+use crate::sim::line::{Queue, VirtualLine, Wires};
 use crate::units::Moment;
 
 /// The line with its encoder, seen from the host. Made of a [`Config`].
@@ -156,7 +156,7 @@ impl Port {
     }
 }
 
-impl Line for Port {
+impl VirtualLine for Port {
     type Event = Event;
 
     fn wires(&self) -> &Wires {

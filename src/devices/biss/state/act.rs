@@ -6,7 +6,7 @@ use super::action::Action;
 use super::encoder::Encoder;
 use super::words;
 use crate::app::services::Services;
-use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::app::session::{Phase, Saved, SessionEvents, WithMemory};
 use crate::app::{ActContext, PendingEdits, Severity, Text};
 use crate::devices::biss::jobs::{BissJob, Change};
 use crate::devices::biss::profile::{BissProfile, RegisterRange};

@@ -2,7 +2,7 @@
 //! a role and of the data sheet.
 
 use super::encoder::Encoder;
-use super::table::Shown;
+use super::table::RegisterEntry;
 use super::words;
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -13,7 +13,7 @@ use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
     /// What a register says; `None` where it was not read, and where it says no more than its number.
-    pub fn meaning(&self, shown: &Shown<'_>) -> Option<Text> {
+    pub fn meaning(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;
         if let Some(text) = register.role.and_then(|role| self.of_role(role, bytes)) {

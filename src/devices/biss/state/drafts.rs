@@ -2,7 +2,7 @@
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Saved, Session};
 use crate::devices::biss::jobs::Biss;
 use crate::devices::biss::profile::BissProfile;
 use crate::profile::Document;
@@ -10,7 +10,7 @@ use crate::profile::Document;
 /// Edited bytes: global address, byte.
 pub(crate) type Edits = Vec<(u16, u8)>;
 
-impl OnDesk for Encoder {
+impl HasSession for Encoder {
     type Device = Biss;
 
     fn session(&self) -> &Session<Biss> {

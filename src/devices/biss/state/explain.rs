@@ -20,7 +20,7 @@ pub use write::{change, failure, op, preset, wear, weight, written};
 use crate::app::Text;
 use crate::app::explain::{self as general, link, not_begun, syntax};
 use crate::buses::bridge::state::adapter;
-use crate::devices::biss::jobs::{Doing, JobError, Remark};
+use crate::devices::biss::jobs::{DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Asked, Error};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::protocol::{DescriptionError, DeviceMode, Mismatch, Name};
@@ -163,11 +163,11 @@ pub fn mismatch(mismatch: &Mismatch) -> Text {
 }
 
 /// What was said on the way, one text each.
-pub fn remark(remark: &Remark) -> Vec<Text> {
+pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
     match remark {
-        Remark::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],
-        Remark::CrcErrors(count) => vec![TEXTS.text("biss.crc_errors").with("count", count)],
-        Remark::Descriptions(errors) => errors.iter().map(description).collect(),
+        DeviceMessage::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],
+        DeviceMessage::CrcErrors(count) => vec![TEXTS.text("biss.crc_errors").with("count", count)],
+        DeviceMessage::Descriptions(errors) => errors.iter().map(description).collect(),
     }
 }
 
@@ -184,11 +184,11 @@ fn description(error: &StoreError) -> Text {
 }
 
 /// What a job does at the moment.
-pub fn doing(doing: &Doing) -> Text {
+pub fn doing(doing: &JobStep) -> Text {
     match doing {
-        Doing::Register(address) => TEXTS.text("biss.register").with("address", address),
-        Doing::Bank(bank) => TEXTS.text("biss.bank").with("bank", format!("0x{bank:02X}")),
-        Doing::Operation { news, .. } => step(news.step),
+        JobStep::Register(address) => TEXTS.text("biss.register").with("address", address),
+        JobStep::Bank(bank) => TEXTS.text("biss.bank").with("bank", format!("0x{bank:02X}")),
+        JobStep::Operation { news, .. } => step(news.step),
     }
 }
 

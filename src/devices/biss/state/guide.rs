@@ -2,7 +2,9 @@
 //! carried out here; the answers go to whoever carries the plan out.
 
 use crate::app::Text;
-use crate::devices::biss::procedures::procedure::{Answer, Demand, Detail, News, Outcome, Seat, Step, Task, steps_of};
+use crate::devices::biss::procedures::procedure::{
+    Answer, Demand, Detail, News, OperatorChannel, Outcome, Step, Task, steps_of,
+};
 use crate::devices::biss::profile::Op;
 
 /// A procedure on its way, or as it ended.
@@ -11,7 +13,7 @@ pub struct Guide {
     news: Option<News>,
     /// The step that it was at when it was cut off: what is told last is the way back from there.
     pub(super) cut: Option<Step>,
-    pub(super) seat: Seat,
+    pub(super) seat: OperatorChannel,
     /// What the person wants to leave out: the operation and what was asked in it.
     skips: Vec<(usize, Task)>,
     /// How it ended; `None`: it goes on.
@@ -70,7 +72,7 @@ pub struct GuideStep<'a> {
 
 impl Guide {
     pub(super) fn new(ops: Vec<Op>) -> Self {
-        Guide { ops, news: None, cut: None, seat: Seat::default(), skips: Vec::new(), end: None }
+        Guide { ops, news: None, cut: None, seat: OperatorChannel::default(), skips: Vec::new(), end: None }
     }
 
     /// It goes on.

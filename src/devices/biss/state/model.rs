@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use super::{Action, Encoder};
 use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::OnLine;
+use crate::app::session::SessionEvents;
 use crate::app::{ActContext, DeviceMemory, DeviceModel, Recording, Tab, Text};
 use crate::devices::biss::jobs::{Biss, BissJob};
 

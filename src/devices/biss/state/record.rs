@@ -8,8 +8,8 @@ use jiff::Zoned;
 
 use crate::analysis::history::Value;
 use crate::app::explain::plain;
-use crate::app::recorder::{GroupId, Line, Recorder, Scale};
-use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::app::recorder::{GroupId, Recorder, Scale, Series};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::app::{Recording, Text};
 use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample, WatchedReading};
 use crate::devices::biss::protocol::{Decoded, Decoding, Register};
@@ -19,7 +19,7 @@ use crate::devices::biss::state::explain as words;
 #[derive(Default)]
 struct Batch {
     widths: Option<Widths>,
-    sightings: Vec<Sighting>,
+    sightings: Vec<PositionSample>,
 }
 
 /// Bits of turns and of steps, and whether it is known which are which.
@@ -89,7 +89,7 @@ impl Record {
                 }
                 Sample::Missed { at, crc_errors } => {
                     self.add_crc_errors(crc_errors);
-                    batch.sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                    batch.sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 }
                 Sample::Frames(run) => self.see_frames(&run, &mut batch),
                 Sample::Watched(reading) => self.add_watched(&reading),
@@ -137,7 +137,7 @@ impl Record {
         batch.widths = Some(widths);
         for (at, frame) in run.timed() {
             let Ok(reading) = frame else {
-                batch.sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                batch.sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 continue;
             };
             let reading = PositionReading::in_frame(at, reading, &run.layout);
@@ -236,8 +236,8 @@ impl Recording for Record {
     }
 }
 
-fn sighting(reading: &PositionReading) -> Sighting {
-    Sighting {
+fn sighting(reading: &PositionReading) -> PositionSample {
+    PositionSample {
         at: reading.at,
         position: i64::try_from(reading.position()).ok(),
         is_bad: !reading.is_valid(),
@@ -266,12 +266,12 @@ impl Watchable for Register {
         !matches!(self.decoding, Decoding::Scaled { .. })
     }
 
-    fn line(&self, group: GroupId) -> Line {
+    fn line(&self, group: GroupId) -> Series {
         let name = if self.name.is_empty() { plain(self.address) } else { words::name(&self.name) };
         let unit = if self.unit.is_empty() { Text::new("unit.counts") } else { plain(&self.unit) };
         let decimals = if self.is_whole() { 0 } else { 1 };
         let heading = format!("{} {}", self.address, self.name).trim_end().to_owned();
-        Line::of(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals }])
+        Series::of(group, 0, name, heading, vec![Scale { unit, factor: 1.0, decimals }])
     }
 }
 

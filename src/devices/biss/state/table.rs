@@ -35,7 +35,7 @@ pub struct Row {
 
 /// A row with its value.
 #[derive(Clone, Debug)]
-pub struct Shown<'a> {
+pub struct RegisterEntry<'a> {
     /// The register.
     pub row: &'a Row,
     /// Its bytes in the order of their addresses, as the user wants them; `None`: not read.
@@ -100,13 +100,13 @@ impl Group {
     }
 
     /// A row with its value.
-    pub fn shown<'a>(&'a self, row: usize, memory: &Memory) -> Option<Shown<'a>> {
+    pub fn shown<'a>(&'a self, row: usize, memory: &Memory) -> Option<RegisterEntry<'a>> {
         let row = self.rows.get(row)?;
         let places = || {
             let first = row.register.address.global();
             (first..first + u16::from(row.register.width)).filter_map(RegisterAddress::from_global)
         };
-        Some(Shown {
+        Some(RegisterEntry {
             row,
             bytes: places().map(|at| memory.wanted(at)).collect(),
             has_changed: places().any(|at| memory.has_changed(at)),
@@ -115,7 +115,7 @@ impl Group {
     }
 }
 
-impl Shown<'_> {
+impl RegisterEntry<'_> {
     /// It has another value than an encoder as delivered, as far as the description tells that.
     pub fn is_not_as_delivered(&self) -> bool {
         let default = &self.row.register.default;

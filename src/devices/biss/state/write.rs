@@ -7,10 +7,10 @@ use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Cut, Known, Saved, WithMemory, without_edits};
+use crate::app::session::{ApprovedPlanOf, EarlyEnd, Known, Saved, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{
-    Attendance, Biss, BissJob, Change, Commit, Committed, JobError, Prepared, device_key,
+    Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared, device_key,
 };
 use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, Unattended};
 use crate::devices::biss::procedures::{Error, profile_of};
@@ -54,10 +54,10 @@ impl Encoder {
     }
 
     /// A procedure that is followed step by step has ended early; true where one runs.
-    pub(super) fn cut_guide(&mut self, how: &Cut<JobError>, texts: &[Text]) -> bool {
+    pub(super) fn cut_guide(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
         let error = match how {
-            Cut::Failed(error) | Cut::Cancelled(error) => Some(*error),
-            Cut::Lost => None,
+            EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
+            EarlyEnd::Lost => None,
         };
         if !self.guide.as_ref().is_some_and(Guide::is_running) {
             return false;
@@ -109,8 +109,8 @@ impl WithMemory for Encoder {
         BissJob::Prepare(change)
     }
 
-    fn commit(&mut self, agreed: Agreed<Biss>) -> BissJob {
-        commit(agreed, Attendance::Nobody(UNATTENDED))
+    fn commit(&mut self, agreed: ApprovedPlanOf<Biss>) -> BissJob {
+        commit(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
     /// A plan that needs somebody at the motor is followed step by step from here on.
@@ -119,7 +119,7 @@ impl WithMemory for Encoder {
         let ops = &agreed.prepared.plan.ops;
         let guide = ops.iter().any(is_guided).then(|| Guide::new(ops.clone()));
         let job = match &guide {
-            Some(guide) => commit(agreed, Attendance::Seat(guide.seat.clone())),
+            Some(guide) => commit(agreed, OperatorPresence::Attended(guide.seat.clone())),
             None => self.commit(agreed),
         };
         if self.begin_write(job, services) && guide.is_some() {
@@ -196,6 +196,6 @@ impl Saved for Encoder {
     }
 }
 
-fn commit(agreed: Agreed<Biss>, attendance: Attendance) -> BissJob {
+fn commit(agreed: ApprovedPlanOf<Biss>, attendance: OperatorPresence) -> BissJob {
     BissJob::Commit(Box::new(Commit { agreed, attendance }))
 }

@@ -7,7 +7,7 @@ use crate::app::connect::Connect as Dialog;
 use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissWay};
 use crate::devices::biss::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
@@ -23,7 +23,7 @@ impl TypedConnectForm for BissConnectForm {
 
     fn form_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         dialog: &Dialog,
         form: &mut BissForm,
         ((), more): (&mut (), &mut bool),
@@ -35,87 +35,89 @@ impl TypedConnectForm for BissConnectForm {
             (BissWay::Bus, "connect.biss_bus"),
             (BissWay::Replay, "connect.replay"),
         ];
-        segments(ui, skin, &mut form.way, ways);
+        segments(ui, theme, &mut form.way, ways);
         let words = match form.way {
             BissWay::Virtual | BissWay::Replay => None,
             BissWay::Pin => Some("connect.biss_pin_words"),
             BissWay::Bus => Some("connect.biss_bus_words"),
         };
         if let Some(words) = words {
-            paragraph(ui, skin.caption(say(skin, words)));
+            paragraph(ui, theme.caption(say(theme, words)));
         }
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
         match form.way {
-            BissWay::Virtual => simulated(ui, skin, form),
+            BissWay::Virtual => simulated(ui, theme, form),
             BissWay::Pin | BissWay::Bus => {
-                segments(ui, skin, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
+                segments(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
-                    network(ui, skin, &mut form.host, &mut form.tcp_port);
+                    network(ui, theme, &mut form.host, &mut form.tcp_port);
                 } else {
-                    serial(ui, skin, dialog, &mut form.port, actions);
+                    serial(ui, theme, dialog, &mut form.port, actions);
                 }
             }
             BissWay::Replay => {
-                recording(ui, skin, &mut form.file, actions);
-                reached(ui, skin, form);
+                recording(ui, theme, &mut form.file, actions);
+                reached(ui, theme, form);
             }
         }
         if form.is_on_the_bus() {
-            entry(ui, skin, &say(skin, "connect.biss_clock"), |ui| {
-                text_entry(ui, &mut form.clock, 96.0, &say(skin, "connect.biss_clock"), "1000000");
-                ui.label(skin.label("Hz"));
+            entry(ui, theme, &say(theme, "connect.biss_clock"), |ui| {
+                text_entry(ui, &mut form.clock, 96.0, &say(theme, "connect.biss_clock"), "1000000");
+                ui.label(theme.label("Hz"));
             });
         }
-        if form.way != BissWay::Replay && unfolded(ui, skin, more) {
+        if form.way != BissWay::Replay && unfolded(ui, theme, more) {
             if !form.is_on_the_bus() {
-                entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
-                    text_entry(ui, &mut form.baud, 96.0, &skin.say("settings_card.baud"), "115200");
-                    parity(ui, skin, &mut form.parity);
+                entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
+                    text_entry(ui, &mut form.baud, 96.0, &theme.say("settings_card.baud"), "115200");
+                    parity(ui, theme, &mut form.parity);
                 });
-                let word = say(skin, "connect.biss_order");
-                entry(ui, skin, &word, |ui| {
+                let word = say(theme, "connect.biss_order");
+                entry(ui, theme, &word, |ui| {
                     let orders = [
                         (None, "connect.biss_order_auto"),
                         (Some(ByteOrder::LowFirst), "connect.biss_order_low"),
                         (Some(ByteOrder::HighFirst), "connect.biss_order_high"),
                     ];
-                    choice(ui, &word, &mut form.order, orders.map(|(order, id)| (order, say(skin, id))));
+                    choice(ui, &word, &mut form.order, orders.map(|(order, id)| (order, say(theme, id))));
                 });
-                echo(ui, skin, &mut form.echo);
+                echo(ui, theme, &mut form.echo);
             }
-            entry(ui, skin, &say(skin, "connect.biss_frame"), |ui| {
+            entry(ui, theme, &say(theme, "connect.biss_frame"), |ui| {
                 for (own, word, usual) in [
                     (&mut form.turns, "connect.biss_turns", "16"),
                     (&mut form.steps, "connect.biss_steps", "17"),
                     (&mut form.crc, "connect.biss_crc", "0x43"),
                 ] {
-                    let word = say(skin, word);
+                    let word = say(theme, word);
                     text_entry(ui, own, 48.0, &word, usual);
-                    ui.label(skin.label(word));
+                    ui.label(theme.label(word));
                 }
             });
-            paragraph(ui, skin.caption(say(skin, "connect.biss_frame_words")));
+            paragraph(ui, theme.caption(say(theme, "connect.biss_frame_words")));
             if form.is_on_the_bus() {
-                leave_supply(ui, skin, &mut form.leave_supply);
+                leave_supply(ui, theme, &mut form.leave_supply);
             }
-            margin(ui, skin, &mut form.margin);
+            margin(ui, theme, &mut form.margin);
         }
     }
 }
 
 /// Whether it is, or was, the configuration pin or the bus.
-fn reached(ui: &mut Ui, skin: &Skin, form: &mut BissForm) {
-    let word = say(skin, "connect.biss_reached");
-    entry(ui, skin, &word, |ui| {
+fn reached(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
+    let word = say(theme, "connect.biss_reached");
+    entry(ui, theme, &word, |ui| {
         let ways = [(true, "connect.biss_bus"), (false, "connect.biss_pin")];
-        choice(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, say(skin, id))));
+        choice(ui, &word, &mut form.behind_adapter, ways.map(|(way, id)| (way, say(theme, id))));
     });
 }
 
-fn simulated(ui: &mut Ui, skin: &Skin, form: &mut BissForm) {
-    reached(ui, skin, form);
-    entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
-    entry(ui, skin, &skin.say("connect.fault"), |ui| {
-        text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
+fn simulated(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
+    reached(ui, theme, form);
+    entry(ui, theme, &theme.say("connect.rpm"), |ui| {
+        text_entry(ui, &mut form.rpm, 96.0, &theme.say("connect.rpm"), "0")
+    });
+    entry(ui, theme, &theme.say("connect.fault"), |ui| {
+        text_entry(ui, &mut form.fault, 200.0, &theme.say("connect.fault"), "drop:0.01");
     });
 }

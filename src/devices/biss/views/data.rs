@@ -9,43 +9,43 @@ use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, places};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{empty, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, typed_view};
-use crate::ui::{Skin, foot, icons};
+use crate::ui::{Theme, edit_bar, icons};
 
 /// What the page remembers.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct DataUiState {
     area: usize,
     hex: HexView,
 }
 
 pub(super) fn page_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     (studio, device): (&Studio, &AnyDevice),
     encoder: &Encoder,
-    view: &mut View,
+    view: &mut DataUiState,
     actions: &mut Vec<Action>,
 ) {
     let areas = encoder.description.as_ref().map(|own| own.areas()).unwrap_or_default();
     let Some(area) = areas.get(view.area).or_else(|| areas.first()) else {
         let words = if encoder.description.is_some() { "data.none" } else { "registers.nothing" };
-        empty(ui, skin, &say(skin, words), None);
+        empty(ui, theme, &say(theme, words), None);
         return;
     };
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        foot::foot_ui(ui, skin, (studio, device), foot::Edited::Bytes, actions);
+        edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Bytes, actions);
     });
     let shown = encoder.shown(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
-            let word = skin.words(&words::name(&own.name));
+            let word = theme.words(&words::name(&own.name));
             let response = ui.add(egui::Button::selectable(own == area, &word));
             if name(response, true, &word).clicked() && at != view.area {
-                *view = View { area: at, ..View::default() };
+                *view = DataUiState { area: at, ..DataUiState::default() };
             }
         }
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "data.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "data.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
         }
         let shown = shown.as_ref().unwrap_or(area);
@@ -54,19 +54,19 @@ pub(super) fn page_ui(
             .with("first", format!("0x{:02X}", shown.first))
             .with("last", format!("0x{:02X}", shown.last))
             .with("bytes", shown.size());
-        ui.label(skin.caption(skin.words(&text)));
+        ui.label(theme.caption(theme.words(&text)));
     });
-    ui.add_space(skin.space.inside);
-    super::unsaved_ui(ui, skin, encoder, actions);
-    super::refusal_ui(ui, skin, encoder, actions);
+    ui.add_space(theme.space.inside);
+    super::unsaved_ui(ui, theme, encoder, actions);
+    super::refusal_ui(ui, theme, encoder, actions);
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
-        Some(((read, wanted), own)) => bytes(ui, skin, encoder, &own, (&read, &wanted), view, actions),
+        Some(((read, wanted), own)) => bytes(ui, theme, encoder, &own, (&read, &wanted), view, actions),
         None if encoder.profile().is_some() => {
-            empty(ui, skin, &say(skin, "data.not_in_profile"), None);
+            empty(ui, theme, &say(theme, "data.not_in_profile"), None);
         }
         None => {
-            let read = (icons::ARROW_CLOCKWISE, say(skin, "data.read"), encoder.session.is_ready());
-            if empty(ui, skin, &say(skin, "data.not_read"), Some((read.0, &read.1, read.2))) {
+            let read = (icons::ARROW_CLOCKWISE, say(theme, "data.read"), encoder.session.is_ready());
+            if empty(ui, theme, &say(theme, "data.not_read"), Some((read.0, &read.1, read.2))) {
                 actions.push(Action::device(encoder.session.id, Biss::ReadArea(area.first)));
             }
         }
@@ -75,41 +75,41 @@ pub(super) fn page_ui(
 
 fn bytes(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     area: &Area,
     (read, wanted): (&[u8], &[u8]),
-    view: &mut View,
+    view: &mut DataUiState,
     actions: &mut Vec<Action>,
 ) {
     let read_only = encoder.why_not_editable(area);
     if let Some(why) = &read_only {
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::LOCK_SIMPLE).color(skin.palette.warn));
-            paragraph(ui, skin.words(why));
+            ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));
+            paragraph(ui, theme.words(why));
         });
     }
     let beside = ui.available_width() >= 820.0;
     let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
     let model = HexModel { device: read, wanted, marks: &[], read_only: read_only.as_ref(), lines };
     let mut edits = Vec::new();
-    let label = skin.words(&words::name(&area.name));
+    let label = theme.words(&words::name(&area.name));
     if beside {
         ui.horizontal_top(|ui| {
-            ui.vertical(|ui| edits = hex_editor(ui, skin, &label, &model, &mut view.hex));
-            ui.add_space(skin.space.between);
+            ui.vertical(|ui| edits = hex_editor(ui, theme, &label, &model, &mut view.hex));
+            ui.add_space(theme.space.between);
             ui.vertical(|ui| {
-                place_ui(ui, skin, area, view);
-                typed_view(ui, skin, view.hex.to_read(wanted));
+                place_ui(ui, theme, area, view);
+                typed_view(ui, theme, view.hex.to_read(wanted));
             });
         });
     } else {
         ScrollArea::vertical().id_salt("area").auto_shrink(false).show(ui, |ui| {
             // Room for the ring around what has the keyboard.
-            ui.add_space(skin.space.inside);
-            edits = hex_editor(ui, skin, &label, &model, &mut view.hex);
-            place_ui(ui, skin, area, view);
-            typed_view(ui, skin, view.hex.to_read(wanted));
+            ui.add_space(theme.space.inside);
+            edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
+            place_ui(ui, theme, area, view);
+            typed_view(ui, theme, view.hex.to_read(wanted));
         });
     }
     // The buttons at the foot undo as well as the keys do.
@@ -132,9 +132,9 @@ fn bytes(
 }
 
 /// Where the cursor stands, as a register.
-fn place_ui(ui: &mut Ui, skin: &Skin, area: &Area, view: &View) {
+fn place_ui(ui: &mut Ui, theme: &Theme, area: &Area, view: &DataUiState) {
     if let Some(at) = places(area).nth(view.hex.cursor()) {
         let text = TEXTS.text("data.at").with("address", at);
-        ui.label(skin.caption(skin.words(&text)));
+        ui.label(theme.caption(theme.words(&text)));
     }
 }

@@ -11,83 +11,83 @@ use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, words};
 use crate::devices::biss::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let is_profile = encoder.profile().is_some();
     two_columns(
         ui,
-        skin,
+        theme,
         &mut *actions,
         |ui, actions| {
-            identity(ui, skin, encoder, actions);
+            identity(ui, theme, encoder, actions);
             if !is_profile {
-                ui.add_space(skin.space.groups);
-                check(ui, skin, encoder, actions);
+                ui.add_space(theme.space.groups);
+                check(ui, theme, encoder, actions);
             }
         },
         |ui, actions| {
             if is_profile {
-                wiring::card_ui(ui, skin);
+                wiring::card_ui(ui, theme);
                 return;
             }
-            status(ui, skin, encoder, actions);
+            status(ui, theme, encoder, actions);
             if let Some(motor) = &encoder.motor {
-                ui.add_space(skin.space.groups);
-                motor::card_ui(ui, skin, encoder, motor, actions);
+                ui.add_space(theme.space.groups);
+                motor::card_ui(ui, theme, encoder, motor, actions);
             }
         },
     );
-    ui.add_space(skin.space.groups);
+    ui.add_space(theme.space.groups);
     if encoder.identity().is_some() {
-        frame::card_ui(ui, skin, encoder, actions);
-        ui.add_space(skin.space.groups);
+        frame::card_ui(ui, theme, encoder, actions);
+        ui.add_space(theme.space.groups);
     }
     if !is_profile {
-        wiring::card_ui(ui, skin);
-        ui.add_space(skin.space.groups);
+        wiring::card_ui(ui, theme);
+        ui.add_space(theme.space.groups);
     }
-    sheet::cards_ui(ui, skin, encoder);
+    sheet::cards_ui(ui, theme, encoder);
 }
 
-fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_readable();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("encoder_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, skin, "encoder_card.title", read, |ui| {
+    card_with(ui, theme, "encoder_card.title", read, |ui| {
         if let Some(identity) = encoder.identity() {
-            ui.label(skin.value(identity.description.name()));
-            ui.add_space(skin.space.inside);
-            facts(ui, skin, identity);
+            ui.label(theme.value(identity.description.name()));
+            ui.add_space(theme.space.inside);
+            facts(ui, theme, identity);
         } else if let Some(identity) = encoder.profile_identity() {
-            ui.label(skin.value(&identity.description));
-            ui.add_space(skin.space.inside);
-            recorded(ui, skin, encoder, identity);
+            ui.label(theme.value(&identity.description));
+            ui.add_space(theme.space.inside);
+            recorded(ui, theme, encoder, identity);
         } else {
-            empty(ui, skin, &skin.say("encoder_card.nothing"), None);
+            empty(ui, theme, &theme.say("encoder_card.nothing"), None);
         }
     });
 }
 
-fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
-    let or_none = |text: String| if text.is_empty() { skin.say("encoder_card.not_told") } else { text };
+fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
+    let or_none = |text: String| if text.is_empty() { theme.say("encoder_card.not_told") } else { text };
     let serial = format!("{}  {}", identity.serial_number, crate::bits::hex(&identity.serial_bytes));
-    row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(serial.trim().to_owned())));
+    row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(serial.trim().to_owned())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
-    row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware)));
-    row(ui, skin, &say(skin, "biss_card.profile"), skin.mono(identity.kind.profile.to_string()));
-    row(ui, skin, &say(skin, "biss_card.device_id"), skin.mono(crate::bits::hex(&identity.kind.device_id)));
-    manufacturer(ui, skin, identity.kind.manufacturer);
+    row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(or_none(firmware)));
+    row(ui, theme, &say(theme, "biss_card.profile"), theme.mono(identity.kind.profile.to_string()));
+    row(ui, theme, &say(theme, "biss_card.device_id"), theme.mono(crate::bits::hex(&identity.kind.device_id)));
+    manufacturer(ui, theme, identity.kind.manufacturer);
     let layout = &identity.layout;
     let widths = TEXTS
         .text("biss_card.widths")
         .with("multiturn", layout.multiturn_bits())
         .with("singleturn", layout.singleturn_bits())
         .with("bits", layout.bits());
-    row(ui, skin, &say(skin, "biss_card.frame"), skin.words(&widths));
+    row(ui, theme, &say(theme, "biss_card.frame"), theme.words(&widths));
     let source = match identity.source {
         FrameSource::DataSheet => "biss_card.from_sheet",
         FrameSource::Description => "biss_card.from_description",
@@ -95,110 +95,110 @@ fn facts(ui: &mut Ui, skin: &Skin, identity: &Identity) {
         FrameSource::Checksum => "biss_card.from_checksum",
         FrameSource::Assumed => "biss_card.assumed",
     };
-    row(ui, skin, "", skin.caption(say(skin, source)));
+    row(ui, theme, "", theme.caption(say(theme, source)));
     if !identity.source.is_told() {
-        paragraph(ui, skin.caption(say(skin, "biss_card.give_frame")));
+        paragraph(ui, theme.caption(say(theme, "biss_card.give_frame")));
     }
     if let Some(adapter) = &identity.adapter {
         let words = format!("{} {} · {}", adapter.name, adapter.firmware, adapter.serial);
-        row(ui, skin, &say(skin, "biss_card.adapter"), words);
+        row(ui, theme, &say(theme, "biss_card.adapter"), words);
     }
     if let Some(mismatch) = &identity.mismatch {
         let text = explained::mismatch(mismatch);
-        paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
+        paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
     }
 }
 
 /// What a profile says of the encoder that it was read from.
-fn recorded(ui: &mut Ui, skin: &Skin, encoder: &Encoder, identity: &ProfileIdentity) {
-    let or_none = |text: String| if text.is_empty() { say(skin, "biss_card.not_in_profile") } else { text };
-    row(ui, skin, &skin.say("encoder_card.serial"), skin.mono(or_none(identity.serial_number.clone())));
+fn recorded(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
+    let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
+    row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(identity.serial_number.clone())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
-    row(ui, skin, &skin.say("encoder_card.firmware"), skin.mono(or_none(firmware)));
-    row(ui, skin, &say(skin, "biss_card.profile"), skin.mono(identity.profile_id.to_string()));
-    row(ui, skin, &say(skin, "biss_card.device_id"), skin.mono(crate::bits::hex(&identity.device_id)));
-    manufacturer(ui, skin, identity.manufacturer);
+    row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(or_none(firmware)));
+    row(ui, theme, &say(theme, "biss_card.profile"), theme.mono(identity.profile_id.to_string()));
+    row(ui, theme, &say(theme, "biss_card.device_id"), theme.mono(crate::bits::hex(&identity.device_id)));
+    manufacturer(ui, theme, identity.manufacturer);
     if let Some(singleturn) = identity.singleturn_bits {
         let widths = TEXTS
             .text("biss_card.position_widths")
             .with("multiturn", identity.multiturn_bits.unwrap_or_default())
             .with("singleturn", singleturn);
-        row(ui, skin, &say(skin, "biss_card.frame"), skin.words(&widths));
+        row(ui, theme, &say(theme, "biss_card.frame"), theme.words(&widths));
     }
     let Some(profile) = encoder.profile() else { return };
     if let Some(filter) = profile.filter {
-        row(ui, skin, &say(skin, "biss_status.filter"), skin.words(&words::filter(filter)));
+        row(ui, theme, &say(theme, "biss_status.filter"), theme.words(&words::filter(filter)));
     }
 }
 
-fn manufacturer(ui: &mut Ui, skin: &Skin, code: [u8; 2]) {
+fn manufacturer(ui: &mut Ui, theme: &Theme, code: [u8; 2]) {
     let words = format!("{}  {}", crate::bits::hex(&code), code.escape_ascii());
-    row(ui, skin, &say(skin, "biss_card.manufacturer"), skin.mono(words));
+    row(ui, theme, &say(theme, "biss_card.manufacturer"), theme.mono(words));
 }
 
-fn status(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn status(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("status_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("status_card.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::ReadStatus));
         }
     };
-    card_with(ui, skin, "status_card.title", read, |ui| {
+    card_with(ui, theme, "status_card.title", read, |ui| {
         let Some(status) = &encoder.status else {
-            ui.label(skin.label(say(skin, "biss_status.nothing")));
+            ui.label(theme.label(say(theme, "biss_status.nothing")));
             return;
         };
-        let palette = skin.palette;
+        let palette = theme.palette;
         let none = [&status.errors, &status.warnings].into_iter().flatten().all(|bits| bits.set.is_empty());
         if none && (status.errors.is_some() || status.warnings.is_some()) {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).color(palette.good));
-                ui.label(say(skin, "biss_status.good"));
+                ui.label(say(theme, "biss_status.good"));
             });
         }
-        bits(ui, skin, status.errors.as_ref(), icons::X_CIRCLE, palette.bad);
-        bits(ui, skin, status.warnings.as_ref(), icons::WARNING, palette.warn);
+        bits(ui, theme, status.errors.as_ref(), icons::X_CIRCLE, palette.bad);
+        bits(ui, theme, status.warnings.as_ref(), icons::WARNING, palette.warn);
         if let Some(celsius) = status.celsius {
-            let words = format!("{} °C", skin.number(celsius, 0));
-            row(ui, skin, &say(skin, "biss_status.temperature"), skin.mono(words));
+            let words = format!("{} °C", theme.number(celsius, 0));
+            row(ui, theme, &say(theme, "biss_status.temperature"), theme.mono(words));
         }
         if let Some(mode) = status.mode {
-            row(ui, skin, &say(skin, "biss_status.mode"), skin.words(&explained::mode(mode)));
+            row(ui, theme, &say(theme, "biss_status.mode"), theme.words(&explained::mode(mode)));
         }
         if let Some(filter) = status.filter {
-            row(ui, skin, &say(skin, "biss_status.filter"), skin.words(&words::filter(filter)));
+            row(ui, theme, &say(theme, "biss_status.filter"), theme.words(&words::filter(filter)));
         }
         let preset = encoder.survey.as_ref().and_then(|survey| Some((survey.preset?, &survey.identity.layout)));
         if let Some((value, layout)) = preset {
-            let words = skin.words(&explained::preset(value, layout.singleturn_bits()));
-            row(ui, skin, &say(skin, "biss_status.preset"), skin.mono(words));
+            let words = theme.words(&explained::preset(value, layout.singleturn_bits()));
+            row(ui, theme, &say(theme, "biss_status.preset"), theme.mono(words));
         }
         if status.protection.is_some_and(|protection| protection != 0) {
-            paragraph(ui, RichText::new(say(skin, "biss_status.open")).color(palette.warn));
+            paragraph(ui, RichText::new(say(theme, "biss_status.open")).color(palette.warn));
         }
     });
 }
 
-fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::Check));
         }
     };
-    card_with(ui, skin, "check_card.title", run, |ui| {
-        lines_ui(ui, skin, encoder.check.as_deref(), TEXTS.text("check_card.biss_nothing"));
+    card_with(ui, theme, "check_card.title", run, |ui| {
+        lines_ui(ui, theme, encoder.check.as_deref(), TEXTS.text("check_card.biss_nothing"));
     });
 }
 
-fn bits(ui: &mut Ui, skin: &Skin, bits: Option<&Bits>, icon: &str, colour: crate::app::Rgb) {
+fn bits(ui: &mut Ui, theme: &Theme, bits: Option<&Bits>, icon: &str, colour: crate::app::Rgb) {
     for (bit, name) in bits.iter().flat_map(|bits| &bits.set) {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
-            ui.label(skin.mono(format!("b{bit}")));
+            ui.label(theme.mono(format!("b{bit}")));
             let name = name
                 .as_ref()
-                .map_or_else(|| say(skin, "biss_status.unknown_bit"), |own| skin.words(&explained::name(own)));
+                .map_or_else(|| say(theme, "biss_status.unknown_bit"), |own| theme.words(&explained::name(own)));
             paragraph(ui, name);
         });
     }

@@ -10,34 +10,34 @@ use crate::devices::biss::state::{Encoder, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{card_with, enabled_button, paragraph, row};
 use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(identity) = encoder.identity() else { return };
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "frame_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "frame_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::ReadPosition));
         }
     };
-    card_with(ui, skin, TEXTS.text("frame_card.title"), read, |ui| {
+    card_with(ui, theme, TEXTS.text("frame_card.title"), read, |ui| {
         let reading = encoder.record.last();
-        let (fields, bits) = strip(skin, &identity.layout, reading);
-        let label = say(skin, "frame_card.title");
-        frame_strip(ui, skin, &FrameStrip { label: &label, fields: &fields, bits: &bits });
+        let (fields, bits) = strip(theme, &identity.layout, reading);
+        let label = say(theme, "frame_card.title");
+        frame_strip(ui, theme, &FrameStrip { label: &label, fields: &fields, bits: &bits });
         if let Some(reading) = reading {
-            row(ui, skin, &skin.say("live.raw"), skin.mono(skin.word(reading.raw())));
+            row(ui, theme, &theme.say("live.raw"), theme.mono(theme.word(reading.raw())));
             if let Some(frame) = reading.frame {
-                row(ui, skin, &say(skin, "frame_card.frame"), skin.mono(skin.word(frame)));
+                row(ui, theme, &say(theme, "frame_card.frame"), theme.mono(theme.word(frame)));
             }
         }
         if reading.is_some_and(|reading| reading.frame.is_none()) {
-            paragraph(ui, skin.caption(say(skin, "frame_card.pin")));
+            paragraph(ui, theme.caption(say(theme, "frame_card.pin")));
         }
         let errors = encoder.record.crc_errors();
         if errors > 0 {
             let text = TEXTS.text("frame_card.crc_errors").with("count", errors);
-            paragraph(ui, egui::RichText::new(skin.words(&text)).color(skin.palette.warn));
+            paragraph(ui, egui::RichText::new(theme.words(&text)).color(theme.palette.warn));
         }
     });
 }
@@ -52,7 +52,7 @@ fn as_sent(reading: &PositionReading) -> Reading {
 }
 
 /// The fields of a frame with their bits. Over the configuration pin only the position comes.
-fn strip(skin: &Skin, layout: &Layout, reading: Option<&PositionReading>) -> (Vec<StripField>, Vec<Option<bool>>) {
+fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (Vec<StripField>, Vec<Option<bool>>) {
     let mut fields = Vec::new();
     let mut bits = Vec::new();
     let mut add = |field: StripField, value: Option<u64>| {
@@ -75,12 +75,12 @@ fn strip(skin: &Skin, layout: &Layout, reading: Option<&PositionReading>) -> (Ve
         add(StripField { value, ..field("MT + ST", bits, 0) }, position);
     }
     if is_split_known && layout.multiturn_bits() > 0 {
-        let value = format!("{} {}", skin.say("live.turns"), number(turns));
+        let value = format!("{} {}", theme.say("live.turns"), number(turns));
         add(StripField { value, ..field("MT", layout.multiturn_bits(), 0) }, turns);
     }
     if is_split_known && layout.singleturn_bits() > 0 {
         let steps = reading.map(|own| u64::from(own.steps));
-        let value = reading.map(|own| format!("{} °", skin.number(own.degrees(), 3))).unwrap_or_default();
+        let value = reading.map(|own| format!("{} °", theme.number(own.degrees(), 3))).unwrap_or_default();
         add(StripField { value, ..field("ST", layout.singleturn_bits(), 1) }, steps);
     }
     if reading.is_some_and(|own| own.frame.is_none()) {

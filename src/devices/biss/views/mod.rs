@@ -18,7 +18,7 @@ use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS};
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Skin, backups, icons, page, workspace};
+use crate::ui::{Theme, backups, icons, page, workspace};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,38 +55,38 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(crate) struct View {
-    registers: registers::View,
-    data: data::View,
-    procedures: procedures::View,
+pub(crate) struct BissUiState {
+    registers: registers::RegistersUiState,
+    data: data::DataUiState,
+    procedures: procedures::ProceduresUiState,
 }
 
 /// Why data were not read, where somebody wanted it.
-fn refusal_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = &encoder.refusal else { return };
     ui.horizontal_top(|ui| {
-        ui.label(egui::RichText::new(icons::WARNING).color(skin.palette.warn));
-        paragraph(ui, skin.words(why));
+        ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));
+        paragraph(ui, theme.words(why));
     });
-    motor::turning_ui(ui, skin, encoder, actions);
+    motor::turning_ui(ui, theme, encoder, actions);
 }
 
 /// Registers that may show what was never saved, with the way back to operation.
-fn unsaved_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = encoder.unsaved() else { return };
     ui.horizontal_top(|ui| {
-        ui.label(egui::RichText::new(icons::WARNING).color(skin.palette.warn));
-        paragraph(ui, skin.words(&why));
+        ui.label(egui::RichText::new(icons::WARNING).color(theme.palette.warn));
+        paragraph(ui, theme.words(&why));
     });
     if encoder.profile().is_none() {
-        lead_back_ui(ui, skin, encoder, actions);
+        lead_back_ui(ui, theme, encoder, actions);
     }
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
 }
 
 /// The button that leads back to operation.
-fn lead_back_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    let word = skin.say("lead_back_card.button");
+fn lead_back_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let word = theme.say("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
         actions.push(Action::device(encoder.session.id, Biss::LeadBack));
     }
@@ -98,7 +98,7 @@ pub(crate) struct BissView;
 impl TypedDeviceView for BissView {
     type Device = Encoder;
     type Page = Page;
-    type Memory = View;
+    type Memory = BissUiState;
     type ConnectForm = connect_form::BissConnectForm;
 
     const HAS_UNDO_KEYS: bool = false;
@@ -113,31 +113,31 @@ impl TypedDeviceView for BissView {
 
     fn page_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         (studio, device): (&Studio, &AnyDevice),
         encoder: &Encoder,
-        (page, view): (Page, &mut View),
+        (page, view): (Page, &mut BissUiState),
         actions: &mut Vec<Action>,
     ) {
         if page.is_fixed() {
             // Tables fill what there is.
             let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
             frame.show(ui, |ui| match page {
-                Page::Data => data::page_ui(ui, skin, (studio, device), encoder, &mut view.data, actions),
-                _ => registers::page_ui(ui, skin, encoder, &mut view.registers, actions),
+                Page::Data => data::page_ui(ui, theme, (studio, device), encoder, &mut view.data, actions),
+                _ => registers::page_ui(ui, theme, encoder, &mut view.registers, actions),
             });
             return;
         }
-        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| match page {
-            Page::Backups => backups::page_ui(ui, skin, device, actions),
-            Page::Procedures => procedures::page_ui(ui, skin, studio, encoder, &mut view.procedures, actions),
-            _ => encoder::page_ui(ui, skin, encoder, actions),
+        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+            Page::Backups => backups::page_ui(ui, theme, device, actions),
+            Page::Procedures => procedures::page_ui(ui, theme, studio, encoder, &mut view.procedures, actions),
+            _ => encoder::page_ui(ui, theme, encoder, actions),
         });
     }
 
     fn running_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         device: &AnyDevice,
         encoder: &Encoder,
         page: Page,
@@ -145,20 +145,20 @@ impl TypedDeviceView for BissView {
     ) {
         let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
         // How far it is stands below, step by step: here, what ending it does.
-        let instead = is_led.then(|| say(skin, "guide.cancel_note"));
-        workspace::running_ui(ui, skin, device, instead, actions);
+        let instead = is_led.then(|| say(theme, "guide.cancel_note"));
+        workspace::running_ui(ui, theme, device, instead, actions);
     }
 
-    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
-        live::value_ui(ui, skin, encoder, ink);
+    fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, theme, encoder, ink);
     }
 
-    fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, _view: &mut View, actions: &mut Vec<Action>) {
-        live::watch_menu(ui, skin, encoder, actions);
+    fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, _view: &mut BissUiState, actions: &mut Vec<Action>) {
+        live::watch_menu(ui, theme, encoder, actions);
     }
 }
 
 /// A text of this folder's catalogue, or a common one, in the window's language.
-pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
-    skin.words(&TEXTS.text(id))
+pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+    theme.words(&TEXTS.text(id))
 }

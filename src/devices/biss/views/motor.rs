@@ -7,18 +7,18 @@ use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS};
 use crate::devices::biss::views::say;
 use crate::sim::Motor;
 use crate::ui::controls::{card, enabled_button, paragraph};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Speeds that the procedures ask for, and rest.
 const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
 /// The motor and its speed.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
-    card(ui, skin, "motor_card.title", |ui| {
-        paragraph(ui, skin.caption(skin.say("motor_card.words")));
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
+    card(ui, theme, "motor_card.title", |ui| {
+        paragraph(ui, theme.caption(theme.say("motor_card.words")));
         ui.horizontal_wrapped(|ui| {
             for rpm in SPEEDS {
-                let word = if rpm == 0.0 { skin.say("motor_card.rest") } else { format!("{rpm:+.0}") };
+                let word = if rpm == 0.0 { theme.say("motor_card.rest") } else { format!("{rpm:+.0}") };
                 if ui.add(egui::Button::selectable(motor.rpm() == rpm, word)).clicked() {
                     actions.push(Action::device(encoder.session.id, Biss::Turn(rpm)));
                 }
@@ -28,7 +28,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, motor: &Motor
 }
 
 /// The virtual motor turns still, and a way to stop it; a motor of the world only its person can stop.
-pub(super) fn turning_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn turning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(motor) = &encoder.motor else { return };
     if motor.rpm() == 0.0 {
         return;
@@ -36,9 +36,9 @@ pub(super) fn turning_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &
     ui.horizontal_wrapped(|ui| {
         let id = if motor.rpm() > 0.0 { "motor_card.turns_cw" } else { "motor_card.turns_ccw" };
         let text = TEXTS.text(id).with_number("rpm", motor.rpm().abs(), 0);
-        ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-        ui.label(skin.words(&text));
-        if enabled_button(ui, true, icons::STOP, &say(skin, "motor_card.stop")).clicked() {
+        ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+        ui.label(theme.words(&text));
+        if enabled_button(ui, true, icons::STOP, &say(theme, "motor_card.stop")).clicked() {
             actions.push(Action::device(encoder.session.id, Biss::Turn(0.0)));
         }
     });

@@ -15,11 +15,11 @@ use crate::devices::biss::views::say;
 use crate::ui::controls::{
     allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem, row, two_columns,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What the page remembers.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct ProceduresUiState {
     motor: Option<MotorSource>,
     calibrate: bool,
     wiegand: bool,
@@ -31,25 +31,25 @@ pub(super) struct View {
 
 pub(super) fn page_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     studio: &Studio,
     encoder: &Encoder,
-    view: &mut View,
+    view: &mut ProceduresUiState,
     actions: &mut Vec<Action>,
 ) {
     if let Some(guide) = &encoder.guide {
-        run::guide_ui(ui, skin, encoder, guide, actions);
+        run::guide_ui(ui, theme, encoder, guide, actions);
         return;
     }
     let Some(description) = encoder.description.as_ref().filter(|_| encoder.session.phase != Phase::Offline) else {
-        empty(ui, skin, &say(skin, "procedures.nothing"), None);
+        empty(ui, theme, &say(theme, "procedures.nothing"), None);
         return;
     };
     if description.procedures().is_empty() {
-        empty(ui, skin, &say(skin, "procedures.none"), None);
+        empty(ui, theme, &say(theme, "procedures.none"), None);
         return;
     }
-    left_behind(ui, skin, encoder, actions);
+    left_behind(ui, theme, encoder, actions);
     let form = view.preset.get_or_insert_with(|| stored(encoder));
     let mut mounting = Mounting {
         motor: &mut view.motor,
@@ -62,19 +62,19 @@ pub(super) fn page_ui(
     };
     two_columns(
         ui,
-        skin,
+        theme,
         (actions, &mut mounting),
         |ui, (actions, mounting)| {
-            mounting_ui(ui, skin, studio, encoder, mounting, actions);
+            mounting_ui(ui, theme, studio, encoder, mounting, actions);
         },
         |ui, (actions, mounting)| {
-            preset_ui(ui, skin, encoder, mounting.form, actions);
-            ui.add_space(skin.space.groups);
+            preset_ui(ui, theme, encoder, mounting.form, actions);
+            ui.add_space(theme.space.groups);
             if let Some(motor) = &encoder.motor {
-                motor::card_ui(ui, skin, encoder, motor, actions);
-                ui.add_space(skin.space.groups);
+                motor::card_ui(ui, theme, encoder, motor, actions);
+                ui.add_space(theme.space.groups);
             }
-            filter_ui(ui, skin, encoder, actions);
+            filter_ui(ui, theme, encoder, actions);
         },
     );
 }
@@ -98,59 +98,59 @@ fn stored(encoder: &Encoder) -> PresetForm {
 }
 
 /// Somebody left the encoder in a device mode, or the password set.
-fn left_behind(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn left_behind(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(status) = &encoder.status else { return };
     let elsewhere = status.mode.is_some_and(|mode| mode != DeviceMode::OPERATION);
     if !elsewhere && status.protection.is_none_or(|protection| protection == 0) {
         return;
     }
-    card(ui, skin, TEXTS.text("lead_back_card.title"), |ui| {
+    card(ui, theme, TEXTS.text("lead_back_card.title"), |ui| {
         let mode = explained::mode(status.mode.unwrap_or_default());
         let text = TEXTS.text("lead_back_card.words").with_text("mode", mode);
-        paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
-        super::lead_back_ui(ui, skin, encoder, actions);
+        paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
+        super::lead_back_ui(ui, theme, encoder, actions);
     });
-    ui.add_space(skin.space.groups);
+    ui.add_space(theme.space.groups);
 }
 
 fn mounting_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     studio: &Studio,
     encoder: &Encoder,
     own: &mut Mounting<'_>,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, skin, TEXTS.text("mounting_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "mounting_card.words")));
-        ui.add_space(skin.space.inside);
-        ui.label(say(skin, "mounting_card.motor"));
+    card(ui, theme, TEXTS.text("mounting_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "mounting_card.words")));
+        ui.add_space(theme.space.inside);
+        ui.label(say(theme, "mounting_card.motor"));
         let sources = [
-            (Some(MotorSource::Other), say(skin, "mounting_card.other")),
-            (Some(MotorSource::ThisEncoder), say(skin, "mounting_card.this_encoder")),
+            (Some(MotorSource::Other), say(theme, "mounting_card.other")),
+            (Some(MotorSource::ThisEncoder), say(theme, "mounting_card.this_encoder")),
         ];
-        options(ui, &say(skin, "mounting_card.motor"), own.motor, sources);
+        options(ui, &say(theme, "mounting_card.motor"), own.motor, sources);
         let refused = *own.motor == Some(MotorSource::ThisEncoder);
         if refused {
-            paragraph(ui, RichText::new(say(skin, "mounting_card.refused")).color(skin.palette.bad));
+            paragraph(ui, RichText::new(say(theme, "mounting_card.refused")).color(theme.palette.bad));
         }
-        ui.add_space(skin.space.between);
-        ui.label(say(skin, "mounting_card.what"));
-        choice(ui, skin, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
-        choice(ui, skin, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
+        ui.add_space(theme.space.between);
+        ui.label(say(theme, "mounting_card.what"));
+        choice(ui, theme, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
+        choice(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
-                ui.add_space(skin.space.groups);
-                ui.checkbox(own.save_result, say(skin, "mounting_card.save"));
+                ui.add_space(theme.space.groups);
+                ui.checkbox(own.save_result, say(theme, "mounting_card.save"));
             });
         });
-        ui.checkbox(own.with_preset, say(skin, "mounting_card.preset"));
-        data_ui(ui, skin, studio, own.data);
-        ui.add_space(skin.space.between);
+        ui.checkbox(own.with_preset, say(theme, "mounting_card.preset"));
+        data_ui(ui, theme, studio, own.data);
+        ui.add_space(theme.space.between);
         let wish = wish(encoder, own);
         let ready = if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let allowed = ready.and(wish.as_ref().map(|_| ()).map_err(Clone::clone));
-        if allowed_button(ui, skin, &allowed, icons::LIST_CHECKS, &say(skin, "mounting_card.review")).clicked()
+        if allowed_button(ui, theme, &allowed, icons::LIST_CHECKS, &say(theme, "mounting_card.review")).clicked()
             && let Ok(run) = wish
         {
             let motor = own.motor.unwrap_or(MotorSource::Other);
@@ -161,11 +161,11 @@ fn mounting_ui(
 }
 
 /// Something that may be done, and what it takes.
-fn choice(ui: &mut Ui, skin: &Skin, on: &mut bool, id: &'static str, words: &Text) {
-    ui.checkbox(on, say(skin, id));
+fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
+    ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {
-        ui.add_space(skin.space.groups);
-        paragraph(ui, skin.caption(skin.words(words)));
+        ui.add_space(theme.space.groups);
+        paragraph(ui, theme.caption(theme.words(words)));
     });
 }
 
@@ -192,7 +192,7 @@ fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
 }
 
 /// Whose data is written: that of a profile which is open.
-fn data_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, data: &mut Option<SessionId>) {
+fn data_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mut Option<SessionId>) {
     let profiles: Vec<&AnyDevice> = studio
         .devices()
         .iter()
@@ -203,51 +203,51 @@ fn data_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, data: &mut Option<SessionI
         *data = None;
     }
     if profiles.is_empty() {
-        ui.add_enabled(false, egui::Checkbox::new(&mut false, say(skin, "mounting_card.data")))
-            .on_disabled_hover_text(say(skin, "mounting_card.no_profile"));
+        ui.add_enabled(false, egui::Checkbox::new(&mut false, say(theme, "mounting_card.data")))
+            .on_disabled_hover_text(say(theme, "mounting_card.no_profile"));
         return;
     }
     for profile in profiles {
         let mut on = *data == Some(profile.id());
         let text = TEXTS.text("mounting_card.data_of").with("name", profile.name());
-        if ui.checkbox(&mut on, skin.words(&text)).changed() {
+        if ui.checkbox(&mut on, theme.words(&text)).changed() {
             *data = on.then(|| profile.id());
         }
     }
 }
 
-fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("preset_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "preset_card.words")));
+fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetForm, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("preset_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "preset_card.words")));
         let Some(identity) = encoder.identity() else { return };
         let layout = &identity.layout;
         // What is wrong with an entry stands under it.
-        labelled_entry(ui, skin, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
-        problem(ui, skin, form.singleturn(layout).err().as_ref());
-        labelled_entry(ui, skin, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
-        problem(ui, skin, form.multiturn(layout).err().as_ref());
+        labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
+        problem(ui, theme, form.singleturn(layout).err().as_ref());
+        labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
+        problem(ui, theme, form.multiturn(layout).err().as_ref());
         let value = form.value(layout);
         let ready = encoder.session.is_ready();
         let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));
         ui.horizontal_wrapped(|ui| {
-            let word = say(skin, "preset_card.store");
+            let word = say(theme, "preset_card.store");
             if enabled_button(ui, ready && value.is_ok(), icons::FLOPPY_DISK, &word).clicked() {
                 actions.push(Action::device(encoder.session.id, plan(value.ok(), None)));
             }
         });
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         if let Some(stored) = encoder.survey.as_ref().and_then(|survey| survey.preset) {
-            let words = skin.words(&explained::preset(stored, layout.singleturn_bits()));
-            row(ui, skin, &say(skin, "preset_card.stored"), skin.mono(words));
+            let words = theme.words(&explained::preset(stored, layout.singleturn_bits()));
+            row(ui, theme, &say(theme, "preset_card.stored"), theme.mono(words));
         }
-        paragraph(ui, skin.label(say(skin, "preset_card.fire_words")));
+        paragraph(ui, theme.label(say(theme, "preset_card.fire_words")));
         ui.horizontal_wrapped(|ui| {
             for (parts, id) in [
                 (PresetParts::Both, "preset_card.both"),
                 (PresetParts::Singleturn, "preset_card.singleturn"),
                 (PresetParts::Multiturn, "preset_card.multiturn"),
             ] {
-                if enabled_button(ui, ready, icons::TARGET, &say(skin, id)).clicked() {
+                if enabled_button(ui, ready, icons::TARGET, &say(theme, id)).clicked() {
                     actions.push(Action::device(encoder.session.id, plan(None, Some(parts))));
                 }
             }
@@ -255,27 +255,27 @@ fn preset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut PresetForm,
     });
 }
 
-fn filter_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn filter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let has = encoder.description.as_ref().is_some_and(|own| own.procedure(ProcedureKind::FilterSelection).is_some());
     if !has {
         return;
     }
-    card(ui, skin, TEXTS.text("filter_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "filter_card.words")));
+    card(ui, theme, TEXTS.text("filter_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "filter_card.words")));
         let own = encoder.status.as_ref().and_then(|status| status.filter);
         for (filter, hint) in [(Filter::Balanced, "filter_card.balanced"), (Filter::Dynamic, "filter_card.dynamic")] {
             ui.horizontal_wrapped(|ui| {
-                let word = skin.words(&words::filter(filter));
+                let word = theme.words(&words::filter(filter));
                 let is_own = own == Some(filter);
                 let ready = encoder.session.is_ready() && !is_own;
                 if is_own {
-                    ui.label(RichText::new(icons::CHECK_CIRCLE).color(skin.palette.good));
+                    ui.label(RichText::new(icons::CHECK_CIRCLE).color(theme.palette.good));
                     ui.label(&word);
                 } else if enabled_button(ui, ready, icons::SLIDERS, &word).clicked() {
                     let change = Box::new(Change::SelectFilter(filter));
                     actions.push(Action::device(encoder.session.id, Biss::Plan(change)));
                 }
-                ui.label(skin.caption(say(skin, hint)));
+                ui.label(theme.caption(say(theme, hint)));
             });
         }
     });

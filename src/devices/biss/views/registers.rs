@@ -5,18 +5,18 @@ use egui::{RichText, ScrollArea, Ui};
 use crate::app::{Action, DeviceCommand, PendingEdits, Text};
 use crate::devices::biss::protocol::{Access, Decoding, Name};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{Action as Biss, Encoder, Group, Shown, TEXTS};
+use crate::devices::biss::state::{Action as Biss, Encoder, Group, RegisterEntry, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
 use crate::ui::widgets::{
-    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterRow, RegisterTable, RegisterView,
-    register_table,
+    RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable,
+    RegisterView, register_table,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What the page remembers.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct RegistersUiState {
     table: RegisterView,
     folded: bool,
 }
@@ -26,69 +26,75 @@ pub(super) struct View {
 const BANKS: f32 = 176.0;
 const BESIDE: f32 = 860.0;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut RegistersUiState,
+    actions: &mut Vec<Action>,
+) {
     if encoder.description.is_none() {
-        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
-        if empty(ui, skin, &say(skin, "registers.nothing"), Some((read.0, &read.1, read.2))) {
+        let read = (icons::ARROW_CLOCKWISE, theme.say("memory.read"), encoder.session.is_readable());
+        if empty(ui, theme, &say(theme, "registers.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
     }
-    let groups: Vec<RegisterGroup> = encoder.table.groups().iter().map(|own| group(skin, encoder, own)).collect();
+    let groups: Vec<RegisterGroup> = encoder.table.groups().iter().map(|own| group(theme, encoder, own)).collect();
     if !std::mem::replace(&mut view.folded, true) {
         // One bank at a time is what a person looks for; the direct registers are what everybody does.
         (1..groups.len()).for_each(|at| view.table.fold(at, true));
     }
     let beside = ui.available_width() >= BESIDE;
-    head(ui, skin, encoder, (&groups, beside), view, actions);
-    super::unsaved_ui(ui, skin, encoder, actions);
-    super::refusal_ui(ui, skin, encoder, actions);
-    ui.add_space(skin.space.inside);
+    head(ui, theme, encoder, (&groups, beside), view, actions);
+    super::unsaved_ui(ui, theme, encoder, actions);
+    super::refusal_ui(ui, theme, encoder, actions);
+    ui.add_space(theme.space.inside);
     let height = ui.available_height();
     if !beside {
-        table(ui, skin, encoder, &groups, height, view, actions);
+        table(ui, theme, encoder, &groups, height, view, actions);
         return;
     }
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(egui::vec2(BANKS, height), egui::Layout::top_down(egui::Align::Min), |ui| {
             ui.set_min_width(BANKS);
-            banks(ui, skin, encoder, &groups, view);
+            banks(ui, theme, encoder, &groups, view);
         });
-        ui.vertical(|ui| table(ui, skin, encoder, &groups, height, view, actions));
+        ui.vertical(|ui| table(ui, theme, encoder, &groups, height, view, actions));
     });
 }
 
 /// What can be done with the bank and the register that are selected, and what is said to that.
 fn head(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     (groups, beside): (&[RegisterGroup], bool),
-    view: &mut View,
+    view: &mut RegistersUiState,
     actions: &mut Vec<Action>,
 ) {
     let mut at = view.table.group().unwrap_or_default();
     ui.horizontal(|ui| {
         if !beside {
-            let label = say(skin, "registers.bank");
+            let label = say(theme, "registers.bank");
             if choice(ui, &label, &mut at, groups.iter().map(|own| own.title.clone()).enumerate()) {
-                view.table.select(Place { group: at, row: 0 });
+                view.table.select(RegisterLocation { group: at, row: 0 });
             }
         }
         if let Some(own) = encoder.table.groups().get(at) {
-            let word = skin.words(&read_words(own.bank));
+            let word = theme.words(&read_words(own.bank));
             if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &word).clicked() {
                 actions.push(Action::device(encoder.session.id, Biss::ReadBank(own.bank)));
             }
         }
-        watching(ui, skin, encoder, view, actions);
-        if let Some(problem) = view.table.problem(skin) {
+        watching(ui, theme, encoder, view, actions);
+        if let Some(problem) = view.table.problem(theme) {
             let words = format!("{} {problem}", icons::WARNING_CIRCLE);
-            ui.add(egui::Label::new(RichText::new(words).color(skin.palette.bad)).truncate());
+            ui.add(egui::Label::new(RichText::new(words).color(theme.palette.bad)).truncate());
         } else if encoder.memory.is_dirty() {
-            ui.add(egui::Label::new(skin.caption(say(skin, "registers.edited"))).truncate());
+            ui.add(egui::Label::new(theme.caption(say(theme, "registers.edited"))).truncate());
         } else if !encoder.record.watched().is_empty() && encoder.session.is_polling() {
-            ui.add(egui::Label::new(skin.caption(say(skin, "registers.watching"))).truncate());
+            ui.add(egui::Label::new(theme.caption(say(theme, "registers.watching"))).truncate());
         }
     });
 }
@@ -101,7 +107,7 @@ fn read_words(bank: Option<u8>) -> Text {
 }
 
 /// Watching the register that is selected, and what is watched.
-fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &mut Vec<Action>) {
+fn watching(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiState, actions: &mut Vec<Action>) {
     let selected = view.table.selected();
     let group = selected.and_then(|place| encoder.table.groups().get(place.group));
     let row = selected.zip(group).and_then(|(place, group)| group.rows().get(place.row));
@@ -109,19 +115,19 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
     if let Some(row) = row {
         let on = watched.iter().any(|own| own.address == row.register.address);
         let word = TEXTS.text(if on { "registers.unwatch" } else { "registers.watch" });
-        let word = skin.words(&word.with("address", row.register.address));
+        let word = theme.words(&word.with("address", row.register.address));
         let button = enabled_button(ui, row.register.access.reads() && !row.is_data, icons::EYE, &word);
-        if button.on_hover_text(skin.words(&words::name(&row.register.name))).clicked() {
+        if button.on_hover_text(theme.words(&words::name(&row.register.name))).clicked() {
             let register = Box::new(row.register.clone());
             actions.push(Action::device(encoder.session.id, Biss::Watch(register, !on)));
         }
     }
     if !watched.is_empty() {
-        let word = skin.words(&TEXTS.text("registers.watched").with("count", watched.len()));
+        let word = theme.words(&TEXTS.text("registers.watched").with("count", watched.len()));
         icon_menu(ui, icons::LIST_CHECKS, &word, |ui| {
-            ui.label(skin.heading(&word));
+            ui.label(theme.heading(&word));
             for own in watched {
-                let name = format!("{}  {}", own.address, skin.words(&words::name(&own.name)));
+                let name = format!("{}  {}", own.address, theme.words(&words::name(&own.name)));
                 if ui.button(format!("{}  {name}", icons::X)).clicked() {
                     actions.push(Action::device(encoder.session.id, Biss::Watch(Box::new(own), false)));
                 }
@@ -130,18 +136,18 @@ fn watching(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &View, actions: &
     }
 }
 
-fn banks(ui: &mut Ui, skin: &Skin, encoder: &Encoder, groups: &[RegisterGroup], view: &mut View) {
+fn banks(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[RegisterGroup], view: &mut RegistersUiState) {
     let selected = view.table.group();
     ScrollArea::vertical().id_salt("banks").auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (at, own) in encoder.table.groups().iter().enumerate() {
             let title = groups.get(at).map(|group| group.title.clone()).unwrap_or_default();
-            let ink = if own.is_read(&encoder.memory) { skin.palette.text } else { skin.palette.muted };
+            let ink = if own.is_read(&encoder.memory) { theme.palette.text } else { theme.palette.muted };
             let text = RichText::new(&title).color(ink);
             let button = egui::Button::selectable(selected == Some(at), (text, egui::Atom::grow()));
             let response = ui.add(button.truncate().min_size(egui::vec2(BANKS - 16.0, 24.0)));
             if response.on_hover_text(&title).clicked() {
-                view.table.select(Place { group: at, row: 0 });
+                view.table.select(RegisterLocation { group: at, row: 0 });
             }
         }
     });
@@ -149,29 +155,29 @@ fn banks(ui: &mut Ui, skin: &Skin, encoder: &Encoder, groups: &[RegisterGroup], 
 
 fn table(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     groups: &[RegisterGroup],
     height: f32,
-    view: &mut View,
+    view: &mut RegistersUiState,
     actions: &mut Vec<Action>,
 ) {
-    let none = say(skin, "registers.elsewhere");
-    let row = |place: Place| {
+    let none = say(theme, "registers.elsewhere");
+    let row = |place: RegisterLocation| {
         let shown = encoder.table.groups().get(place.group).and_then(|own| own.shown(place.row, &encoder.memory));
-        shown.map(|own| row_of(skin, encoder, &own, &none)).unwrap_or_default()
+        shown.map(|own| row_of(theme, encoder, &own, &none)).unwrap_or_default()
     };
-    let label = skin.say("page.registers");
+    let label = theme.say("page.registers");
     let widest = encoder.description.iter().flat_map(|own| own.registers()).map(|own| usize::from(own.width)).max();
     let kind = RegisterKind::Bytes { widest: widest.unwrap_or(1) };
     let table = RegisterTable { label: &label, groups, row: &row, kind };
     let mut typed = Vec::new();
-    let output = register_table(ui, skin, &table, height, &mut view.table, &mut |place, text| {
+    let output = register_table(ui, theme, &table, height, &mut view.table, &mut |place, text| {
         let byte = parse(text)?;
         typed.push((place, byte));
         Ok(())
     });
-    let start = |place: Place| {
+    let start = |place: RegisterLocation| {
         let row = encoder.table.groups().get(place.group)?.rows().get(place.row)?;
         Some(row.register.address)
     };
@@ -191,20 +197,20 @@ fn table(
     }
 }
 
-fn group(skin: &Skin, encoder: &Encoder, own: &Group) -> RegisterGroup {
+fn group(theme: &Theme, encoder: &Encoder, own: &Group) -> RegisterGroup {
     let title = match (own.bank, &own.name) {
-        (None, _) => say(skin, "registers.direct"),
+        (None, _) => say(theme, "registers.direct"),
         (Some(bank), None) => format!("0x{bank:02X}"),
-        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", skin.words(&words::name(name))),
+        (Some(bank), Some(name)) => format!("0x{bank:02X}  {}", theme.words(&words::name(name))),
     };
-    let note = if own.is_read(&encoder.memory) { String::new() } else { say(skin, "registers.not_read") };
+    let note = if own.is_read(&encoder.memory) { String::new() } else { say(theme, "registers.not_read") };
     RegisterGroup { title, note, rows: own.rows().len() }
 }
 
-fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) -> RegisterRow {
+fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere: &str) -> RegisterRow {
     let register = &shown.row.register;
     let name =
-        if register.name.is_empty() { say(skin, "registers.byte") } else { skin.words(&words::name(&register.name)) };
+        if register.name.is_empty() { say(theme, "registers.byte") } else { theme.words(&words::name(&register.name)) };
     // A code is no quantity.
     let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
     RegisterRow {
@@ -212,7 +218,7 @@ fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) ->
         name,
         value: shown.bytes.as_deref().map(crate::bits::hex).unwrap_or_default(),
         decimal: shown.number().filter(|_| is_quantity).map(|own| own.to_string()).unwrap_or_default(),
-        meaning: encoder.meaning(shown).map(|own| skin.words(&own)).unwrap_or_default(),
+        meaning: encoder.meaning(shown).map(|own| theme.words(&own)).unwrap_or_default(),
         access: match register.access {
             Access::R => "R",
             Access::W => "W",
@@ -223,25 +229,25 @@ fn row_of(skin: &Skin, encoder: &Encoder, shown: &Shown<'_>, elsewhere: &str) ->
         differs: shown.is_not_as_delivered(),
         changed: shown.has_changed,
         edited: shown.is_edited,
-        cost: (!register.saves.is_empty()).then(|| say(skin, "registers.cost")),
+        cost: (!register.saves.is_empty()).then(|| say(theme, "registers.cost")),
         read_only: (!shown.row.is_data).then(|| elsewhere.to_owned()),
-        fields: fields(skin, shown),
+        fields: fields(theme, shown),
         ..RegisterRow::default()
     }
 }
 
 /// The bits of a register that has names for them.
-fn fields(skin: &Skin, shown: &Shown<'_>) -> Vec<RegisterBits> {
+fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     let Decoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
     let number = shown.number();
     let bit = |(bit, name): &(u8, Name)| {
         let is_set = number.map(|number| number >> bit & 1 == 1);
         RegisterBits {
             bits: format!("b{bit}"),
-            name: skin.words(&words::name(name)),
+            name: theme.words(&words::name(name)),
             value: is_set.map(|set| u8::from(set).to_string()).unwrap_or_default(),
             meaning: is_set
-                .map(|set| say(skin, if set { "registers.set" } else { "registers.clear" }))
+                .map(|set| say(theme, if set { "registers.set" } else { "registers.clear" }))
                 .unwrap_or_default(),
             lit: is_set == Some(true),
         }

@@ -12,9 +12,9 @@ use crate::devices::biss::state::{Action as Biss, Encoder, End, Guide, Reached, 
 use crate::devices::biss::views::say;
 use crate::ui::controls::{button, card, paragraph, severity};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
-pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
+pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     // What came of it is looked at when it is there.
     let is_over = guide.end.is_some();
@@ -24,29 +24,29 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
     }
     ui.data_mut(|data| data.insert_temp(seen, is_over));
     if let Some(end) = &guide.end {
-        end_ui(ui, skin, encoder, guide.ops(), end, actions);
-        ui.add_space(skin.space.groups);
+        end_ui(ui, theme, encoder, guide.ops(), end, actions);
+        ui.add_space(theme.space.groups);
     }
     if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
-        motor::card_ui(ui, skin, encoder, motor, actions);
-        ui.add_space(skin.space.groups);
+        motor::card_ui(ui, theme, encoder, motor, actions);
+        ui.add_space(theme.space.groups);
     }
-    card(ui, skin, TEXTS.text("guide.title"), |ui| {
+    card(ui, theme, TEXTS.text("guide.title"), |ui| {
         let list: Vec<Step> =
-            guide.steps().iter().map(|own| step(skin, guide, own.op, own.is_first, own.step, own.reached)).collect();
+            guide.steps().iter().map(|own| step(theme, guide, own.op, own.is_first, own.step, own.reached)).collect();
         let demand = guide.demand();
-        let why = demand.and_then(|own| own.blockers.first()).map(|own| skin.words(&says::blocker(*own)));
+        let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.words(&says::blocker(*own)));
         let word = say(
-            skin,
+            theme,
             match demand.map(|own| own.task) {
                 Some(Task::Stand | Task::StandAtPlace) => "guide.go_on",
                 _ => "guide.start",
             },
         );
         let start = demand.map(|_| (word.as_str(), why.as_deref().map_or(Ok(()), Err)));
-        let skip = say(skin, "guide.skip");
+        let skip = say(theme, "guide.skip");
         let model = Steps { steps: &list, start, skip: demand.map(|_| skip.as_str()) };
-        let event = steps(ui, skin, &model);
+        let event = steps(ui, theme, &model);
         match (event, demand) {
             (Some(StepsEvent::Start), Some(own)) => {
                 actions.push(Action::device(id, Biss::Answer(own.task, Answer::Go)));
@@ -61,15 +61,15 @@ pub(super) fn guide_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, guide: &Guid
 
 #[allow(clippy::too_many_arguments, reason = "a step is told what it is of")]
 fn step(
-    skin: &Skin,
+    theme: &Theme,
     guide: &Guide,
     op: &Op,
     is_first: bool,
     own: crate::devices::biss::procedures::procedure::Step,
     reached: Reached,
 ) -> Step {
-    let what = skin.words(&says::step(own));
-    let title = if is_first { format!("{} · {what}", skin.words(&says::procedure(op))) } else { what };
+    let what = theme.words(&says::step(own));
+    let title = if is_first { format!("{} · {what}", theme.words(&says::procedure(op))) } else { what };
     let (state, word) = match reached {
         Reached::Done => (StepState::Done, "guide.done"),
         Reached::Waits => (StepState::Waiting, "guide.waits"),
@@ -79,14 +79,14 @@ fn step(
         Reached::Cancelled => (StepState::Skipped, "guide.cancelled"),
         Reached::Ahead => (StepState::ToCome, "guide.ahead"),
     };
-    let mut step = Step { title, state, word: say(skin, word), ..Step::default() };
+    let mut step = Step { title, state, word: say(theme, word), ..Step::default() };
     match (reached, guide.detail()) {
         (Reached::Waits, Some(Detail::Demand(demand))) => {
             // What is best of the speed the gauges say, which do not come and go.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
-            let notes: Vec<String> = lasting.map(|own| skin.words(&says::advice(*own))).collect();
+            let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice(*own))).collect();
             step.note = notes.join("\n");
-            step.gauges = gauges(skin, demand);
+            step.gauges = gauges(theme, demand);
         }
         (Reached::Runs, Some(Detail::Count { done, total })) => {
             step.progress = Some(*done as f32 / (*total).max(1) as f32);
@@ -94,7 +94,7 @@ fn step(
         }
         (Reached::Runs, Some(Detail::Lasts { elapsed, expected })) => {
             step.progress = expected.map(|expected| (elapsed.as_secs_f32() / expected.as_secs_f32().max(0.1)).min(1.0));
-            step.note = format!("{} s", skin.number(elapsed.as_secs_f64(), 0));
+            step.note = format!("{} s", theme.number(elapsed.as_secs_f64(), 0));
         }
         _ => {}
     }
@@ -102,20 +102,20 @@ fn step(
 }
 
 /// What is measured while a person is to turn the motor. The marks say what the start does: both go by the same limits.
-fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
+fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     let Task::Turn(run) = demand.task else { return Vec::new() };
-    let mut gauges = vec![speed(skin, run, demand)];
+    let mut gauges = vec![speed(theme, run, demand)];
     if let Some(fluctuation) = run.fluctuation() {
-        let unit = skin.say("unit.revolutions_per_minute");
+        let unit = theme.say("unit.revolutions_per_minute");
         let spread = demand.motion.map(|own| own.spread);
         let accepted = run.accepted_fluctuation(demand.motion.map_or(run.recommended().middle(), |own| own.rpm));
         gauges.push(Gauge {
-            name: say(skin, "guide.fluctuation"),
+            name: say(theme, "guide.fluctuation"),
             value: spread,
-            shown: spread.map(|spread| format!("±{} {unit}", skin.number(spread, 1))).unwrap_or_default(),
+            shown: spread.map(|spread| format!("±{} {unit}", theme.number(spread, 1))).unwrap_or_default(),
             allowed: 0.0..=accepted,
             best: Some(0.0..=fluctuation),
-            limits: format!("±{} {unit}", skin.number(fluctuation, 0)),
+            limits: format!("±{} {unit}", theme.number(fluctuation, 0)),
             scale: 0.0..=accepted * 2.0,
         });
     }
@@ -123,9 +123,9 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
         let celsius = demand.celsius.map(f64::from);
         let (coldest, warmest) = (*Demand::CELSIUS.start(), *Demand::CELSIUS.end());
         gauges.push(Gauge {
-            name: say(skin, "biss_status.temperature"),
+            name: say(theme, "biss_status.temperature"),
             value: celsius,
-            shown: celsius.map(|celsius| format!("{} °C", skin.number(celsius, 0))).unwrap_or_default(),
+            shown: celsius.map(|celsius| format!("{} °C", theme.number(celsius, 0))).unwrap_or_default(),
             allowed: f64::from(coldest)..=f64::from(warmest),
             best: None,
             limits: format!("{coldest}…{warmest} °C"),
@@ -136,7 +136,7 @@ fn gauges(skin: &Skin, demand: &Demand) -> Vec<Gauge> {
 }
 
 /// The speed in the direction that is asked for.
-fn speed(skin: &Skin, run: Run, demand: &Demand) -> Gauge {
+fn speed(theme: &Theme, run: Run, demand: &Demand) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
     let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended());
     // Standing is 0, whichever way it is looked at.
@@ -147,55 +147,55 @@ fn speed(skin: &Skin, run: Run, demand: &Demand) -> Gauge {
         .with_number("least", allowed.least, 0)
         .with_number("greatest", allowed.greatest, 0)
         .with_number("best", best.middle(), 0);
-    let unit = skin.say("unit.revolutions_per_minute");
+    let unit = theme.say("unit.revolutions_per_minute");
     Gauge {
-        name: say(skin, if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
+        name: say(theme, if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
         value: rpm,
-        shown: rpm.map(|rpm| format!("{} {unit}", skin.number(rpm, 1))).unwrap_or_default(),
+        shown: rpm.map(|rpm| format!("{} {unit}", theme.number(rpm, 1))).unwrap_or_default(),
         allowed: accepted.least..=accepted.greatest,
         best: is_best.then_some(best.least..=best.greatest),
-        limits: skin.words(&limits),
+        limits: theme.words(&limits),
         scale: -allowed.greatest * 0.25..=allowed.greatest * 1.25,
     }
 }
 
-fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, actions: &mut Vec<Action>) {
+fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let title = match end {
         End::Done(_) => "guide.report",
         End::Failed { .. } => "guide.ended_early",
     };
-    card(ui, skin, TEXTS.text(title), |ui| {
+    card(ui, theme, TEXTS.text(title), |ui| {
         let outcomes = match end {
             End::Done(outcomes) => outcomes,
             End::Failed { before, .. } => before,
         };
         if let End::Failed { texts, .. } = end {
-            texts.iter().for_each(|text| line(ui, skin, says::weight(text), &skin.words(text)));
+            texts.iter().for_each(|text| line(ui, theme, says::weight(text), &theme.words(text)));
         }
         let lines: Vec<(Severity, String)> = ops
             .iter()
             .zip(outcomes)
             .flat_map(|(op, own)| says::report(op, own))
-            .map(|(severity, text)| (severity, skin.words(&text)))
+            .map(|(severity, text)| (severity, theme.words(&text)))
             .collect();
-        lines.iter().for_each(|(severity, words)| line(ui, skin, *severity, words));
+        lines.iter().for_each(|(severity, words)| line(ui, theme, *severity, words));
         if encoder.motor.is_some() {
-            motor::turning_ui(ui, skin, encoder, actions);
+            motor::turning_ui(ui, theme, encoder, actions);
         } else if ops.iter().any(Op::turns) {
-            line(ui, skin, Severity::Note, &say(skin, "guide.stop_motor"));
+            line(ui, theme, Severity::Note, &say(theme, "guide.stop_motor"));
         }
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
             if let End::Failed { may_lead_back: true, .. } = end {
-                super::lead_back_ui(ui, skin, encoder, actions);
+                super::lead_back_ui(ui, theme, encoder, actions);
             }
-            if !lines.is_empty() && button(ui, icons::COPY, &say(skin, "guide.copy_report")).clicked() {
-                let head = format!("{}\n{}\n", encoder.session.name(), say(skin, "guide.report"));
+            if !lines.is_empty() && button(ui, icons::COPY, &say(theme, "guide.copy_report")).clicked() {
+                let head = format!("{}\n{}\n", encoder.session.name(), say(theme, "guide.report"));
                 let lines: Vec<&str> = lines.iter().map(|(_, words)| words.as_str()).collect();
                 ui.ctx().copy_text(format!("{head}{}\n", lines.join("\n")));
             }
-            if button(ui, icons::CHECK, &say(skin, "guide.close")).clicked() {
+            if button(ui, icons::CHECK, &say(theme, "guide.close")).clicked() {
                 actions.push(Action::device(id, Biss::CloseGuide));
             }
         });
@@ -203,8 +203,8 @@ fn end_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ops: &[Op], end: &End, ac
 }
 
 /// A line of the end: how much it matters, and what it is.
-fn line(ui: &mut Ui, skin: &Skin, own: Severity, words: &str) {
-    let (icon, ink) = severity(skin, own);
+fn line(ui: &mut Ui, theme: &Theme, own: Severity, words: &str) {
+    let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));
         paragraph(ui, words);

@@ -4,9 +4,9 @@ use egui::Ui;
 
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, two_columns};
-use crate::ui::wires::wires_ui;
+use crate::ui::wiring::wires_ui;
 
 /// Width of the column of pins.
 const PIN: f32 = 84.0;
@@ -28,23 +28,23 @@ const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.
 /// Width of the card from which the pins stand in two columns.
 const BESIDE: f32 = 640.0;
 
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, "wiring.title", |ui| {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, "wiring.title", |ui| {
         if ui.available_width() < BESIDE {
-            wires_ui(ui, skin, &TEXTS, PIN, &PINS);
+            wires_ui(ui, theme, &TEXTS, PIN, &PINS);
         } else {
             let (left, right) = PINS.split_at(PINS.len() / 2);
             two_columns(
                 ui,
-                skin,
+                theme,
                 (),
-                |ui, ()| wires_ui(ui, skin, &TEXTS, PIN, left),
-                |ui, ()| wires_ui(ui, skin, &TEXTS, PIN, right),
+                |ui, ()| wires_ui(ui, theme, &TEXTS, PIN, left),
+                |ui, ()| wires_ui(ui, theme, &TEXTS, PIN, right),
             );
         }
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         for note in NOTES {
-            paragraph(ui, skin.caption(say(skin, note)));
+            paragraph(ui, theme.caption(say(theme, note)));
         }
     });
 }
@@ -53,7 +53,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
 mod tests {
     use super::{NOTES, PINS};
     use crate::devices::biss::state::TEXTS;
-    use crate::ui::wires::{check_notes, check_wires};
+    use crate::ui::wiring::{check_notes, check_wires};
 
     /// Issue 22.23: kit encoder manual, table 1 (pins), 2 (supply), 14 (preset), 2.1 (connector), 2.3 (point to point,
     /// RS-422); UBICOM at 115200 baud.

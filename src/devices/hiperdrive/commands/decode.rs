@@ -6,7 +6,7 @@ use super::args::WordOptions;
 use super::image;
 use super::meaning::{self, Known, Reading, parameter_words};
 use crate::bits::{hex, hex_compact};
-use crate::buses::ethernet_ip::commands::{self as ethernet_ip, Device, Said};
+use crate::buses::ethernet_ip::commands::{self as ethernet_ip, DecodedBytes, Device};
 use crate::cli::args::Decode;
 use crate::cli::decode::{Explained, frames, show};
 use crate::cli::output::Output;
@@ -55,7 +55,7 @@ fn explain(captured: &Captured, known: &Known) -> Explained {
         Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), of_bytes(bytes, known)),
     };
     let (meaning, mut more) = match said {
-        Ok(Said { lines, more, .. }) => (Ok(lines), more),
+        Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
         Err(why) => (Err(why), Map::new()),
     };
     more.insert("device".to_owned(), json!(KIND));
@@ -63,14 +63,14 @@ fn explain(captured: &Captured, known: &Known) -> Explained {
 }
 
 /// Readings as lines, and for a script.
-fn lines(readings: &[Reading]) -> Said {
+fn lines(readings: &[Reading]) -> DecodedBytes {
     let list = readings.iter().map(Reading::json).collect();
     let more = Map::from_iter([("readings".to_owned(), list)]);
-    Said { lines: readings.iter().flat_map(Reading::lines).collect(), more, data: None }
+    DecodedBytes { lines: readings.iter().flat_map(Reading::lines).collect(), more, data: None }
 }
 
 /// A packet, or process data by their length. What is said to have gone one way, and may be process data, is that.
-fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<Said, String> {
+fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::of_length(bytes.len()).next().is_some();
     let packet =
         ethernet_ip::explain(bytes, Device::Known(parameter_words)).filter(|_| !fits || known.direction.is_none());

@@ -76,8 +76,9 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
         HiperdriveOutput::Status(status) => *status,
         other => return Err(unexpected(&other)),
     };
-    let said: Vec<Said> = status.drives.iter().flat_map(said).collect();
-    let list = |weight: Weight| said.iter().filter(|own| own.weight == weight).map(Said::json).collect::<Vec<Json>>();
+    let said: Vec<DriveFact> = status.drives.iter().flat_map(said).collect();
+    let list =
+        |weight: Weight| said.iter().filter(|own| own.weight == weight).map(DriveFact::json).collect::<Vec<Json>>();
     let (errors, warnings, earlier) = (list(Weight::Error), list(Weight::Warning), list(Weight::Earlier));
     let drives: Vec<Json> = status
         .drives
@@ -117,14 +118,14 @@ enum Weight {
 }
 
 /// Something that a drive says of itself.
-struct Said {
+struct DriveFact {
     drive: u8,
     code: u16,
     text: String,
     weight: Weight,
 }
 
-impl Said {
+impl DriveFact {
     fn json(&self) -> Json {
         json!({"code": self.code, "text": self.text, "drive": self.drive})
     }
@@ -133,28 +134,28 @@ impl Said {
 /// What a drive reports. As many of its newest errors as it counts since the acknowledgement are errors, and at least one in a
 /// fault; the rest are of before, as the buffer has them also after power-up (reference 4), and say nothing of now. A drive that
 /// stands outside its limits is a warning, and so is one whose communication says something.
-fn said(drive: &DriveStatus) -> Vec<Said> {
+fn said(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);
     let since = usize::from(drive.faults).max(usize::from(is_fault));
     let error = |(at, code): (usize, &ErrorCode)| {
         let weight = if at < since { Weight::Error } else { Weight::Earlier };
-        Said { drive: number, code: code.code(), text: error_text(*code), weight }
+        DriveFact { drive: number, code: code.code(), text: error_text(*code), weight }
     };
-    let mut said: Vec<Said> = drive.buffer.iter().enumerate().map(error).collect();
+    let mut said: Vec<DriveFact> = drive.buffer.iter().enumerate().map(error).collect();
     if is_fault && drive.buffer.is_empty() {
         let text = "the drive is in a fault and names no error".to_owned();
-        said.push(Said { drive: number, code: 0, text, weight: Weight::Error });
+        said.push(DriveFact { drive: number, code: 0, text, weight: Weight::Error });
     }
     if drive.status.has(StatusBit::PositionLimit) {
         let text = "the drive stands outside its limits (158, 160)".to_owned();
-        said.push(Said { drive: number, code: drive.status.word(), text, weight: Weight::Warning });
+        said.push(DriveFact { drive: number, code: drive.status.word(), text, weight: Weight::Warning });
     }
     // 118: 0 is well, FFFFh no drive.
     let [_, _, communication] = drive.words;
     if !matches!(communication, 0 | 0xFFFF) {
         let text = format!("RS-485 to the drive has errors (parameter 118: 0x{communication:04X})");
-        said.push(Said { drive: number, code: communication, text, weight: Weight::Warning });
+        said.push(DriveFact { drive: number, code: communication, text, weight: Weight::Warning });
     }
     said
 }
@@ -182,10 +183,10 @@ fn volts(status: &Status) -> f64 {
     status.supply_tenths as f64 / 10.0
 }
 
-fn status_text(status: &Status, said: &[Said]) -> String {
+fn status_text(status: &Status, said: &[DriveFact]) -> String {
     let mut lines = Lines::default();
     let of = |weight: Weight| said.iter().filter(move |own| own.weight == weight);
-    let words = |own: &Said| format!("drive {}: 0x{:04X} {}", own.drive, own.code, own.text);
+    let words = |own: &DriveFact| format!("drive {}: 0x{:04X} {}", own.drive, own.code, own.text);
     for (label, weight) in [("error", Weight::Error), ("warning", Weight::Warning)] {
         for own in of(weight) {
             lines.add(label, words(own));

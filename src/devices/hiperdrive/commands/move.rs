@@ -18,7 +18,7 @@ use crate::cli::output::Output;
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperdrive::jobs::{DriveView, HiperdriveJob, HiperdriveOutput};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, Permit, Phase, Refusal, Wish};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, MotionRequest, Permit, Phase, Refusal};
 use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, Rules};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
 use crate::devices::hiperdrive::state::Measure;
@@ -58,7 +58,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     let (permit, scale) = permit(&mut runner, &identity, drive)?;
     // What cannot be is refused before anything was opened.
     let target = within(&permit, target)?;
-    permit.check(Wish::Move { target, effort }, Some(target)).map_err(refused)?;
+    permit.check(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
     if let Some((low, high)) = permit.limits {
         output.remark(&range(drive, target, (low, high), scale));
     }
@@ -66,7 +66,8 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
         HiperdriveOutput::Taken => {}
         other => return Err(unexpected(&other)),
     }
-    let came = carry_out(&runner, drive, Wish::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
+    let came =
+        carry_out(&runner, drive, MotionRequest::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
     let stood = lead_off(&runner, drive);
     // Given back also where it was lost: what there is to be told has been said then.
     let given = runner.run(HiperdriveJob::Give);
@@ -144,7 +145,7 @@ fn refused(refusal: Refusal) -> Failure {
 }
 
 /// Wants it until it has ended, is interrupted, or the time is up.
-fn carry_out(runner: &Runner, drive: DriveNumber, wish: Wish, patience: Duration) -> Came {
+fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> Came {
     let motion = &runner.kept;
     let until = Instant::now() + patience;
     let act = motion.intend(drive, wish);
@@ -187,7 +188,7 @@ fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
         sleep(REFRESH);
     }
     let stood = find();
-    let act = motion.intend(drive, Wish::Lead(Goal::Off));
+    let act = motion.intend(drive, MotionRequest::Lead(Goal::Off));
     while over(runner, drive, act).is_none() && Instant::now() < until {
         motion.refresh();
         sleep(REFRESH);

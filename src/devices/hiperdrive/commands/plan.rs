@@ -7,7 +7,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::{Lines, Output};
-use crate::cli::plan::{self, Shown, Spent};
+use crate::cli::plan::{self, PlanReport, WriteSummary};
 use crate::cli::runner::unexpected;
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
 use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, warnings};
@@ -40,9 +40,14 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
 }
 
 /// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
-pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+pub(super) fn commit(
+    runner: &mut Runner,
+    output: &Output,
+    prepared: Prepared,
+    consent: &Consenting,
+) -> Result<WriteSummary> {
     if prepared.plan.is_empty() {
-        return Ok(Spent::default());
+        return Ok(WriteSummary::default());
     }
     check_wear::<Hiperdrive>(consent, &prepared)?;
     if let Some(saves) = prepared.wear() {
@@ -57,11 +62,11 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
         HiperdriveOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };
-    Ok(Spent::of(output, committed))
+    Ok(WriteSummary::of(output, committed))
 }
 
 /// The plan for a person and for a script: each parameter old → new, and what it costs.
-pub(super) fn shown(prepared: &Prepared) -> Shown {
+pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();
     for op in &plan.ops {
@@ -71,7 +76,7 @@ pub(super) fn shown(prepared: &Prepared) -> Shown {
         }
     }
     let text = plan::text(plan, lines, prepared.cycles_seen, None);
-    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+    PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
 /// What operations have made of what, a line each.

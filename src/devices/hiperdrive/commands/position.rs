@@ -32,7 +32,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
                 HiperdriveOutput::Position(reading) => reading,
                 other => return Err(unexpected(&other)),
             };
-            let place = scale.map(|scale| Place::of(reading.actual.position, scale));
+            let place = scale.map(|scale| TurnPosition::of(reading.actual.position, scale));
             if position.csv {
                 output.print(&row(&reading, place))?;
             } else {
@@ -54,7 +54,7 @@ fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u
 
 /// Where a position lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
+struct TurnPosition {
     /// Whole turns; −1 step lies in turn −1.
     turns: i64,
     /// Within the turn; not always whole, since a turn is not always whole steps.
@@ -63,7 +63,7 @@ struct Place {
     degrees: f64,
 }
 
-impl Place {
+impl TurnPosition {
     /// A turn is 256 · numerator / denominator steps (reference 5).
     fn of(position: i32, scale: PositionScale) -> Self {
         let (numerator, denominator) = (i64::from(scale.numerator()), i64::from(scale.denominator()));
@@ -72,7 +72,7 @@ impl Place {
         let rest = parts.rem_euclid(turn);
         // At most 256 · 65535.
         let (exact, turn_parts, step_parts) = (rest as f64, turn as f64, denominator as f64);
-        Place { turns: parts.div_euclid(turn), steps: exact / step_parts, degrees: 360.0 * exact / turn_parts }
+        TurnPosition { turns: parts.div_euclid(turn), steps: exact / step_parts, degrees: 360.0 * exact / turn_parts }
     }
 
     /// As JSON: whole where they are.
@@ -88,7 +88,7 @@ fn is_valid(reading: &Reading) -> bool {
     status.is_present() && status.has(StatusBit::ReferenceSet)
 }
 
-fn show(output: &Output, reading: &Reading, place: Option<Place>) -> Result<()> {
+fn show(output: &Output, reading: &Reading, place: Option<TurnPosition>) -> Result<()> {
     let t = reading.at.since_start().as_secs_f64();
     let actual = reading.actual;
     let state = actual.status.state();
@@ -96,7 +96,7 @@ fn show(output: &Output, reading: &Reading, place: Option<Place>) -> Result<()> 
         "t_s": t,
         "raw": actual.position,
         "turns": place.map(|place| place.turns),
-        "steps": place.map(Place::steps_json),
+        "steps": place.map(TurnPosition::steps_json),
         "degrees": place.map(|place| place.degrees),
         "valid": is_valid(reading),
         "drive": reading.drive.get(),
@@ -112,7 +112,7 @@ fn show(output: &Output, reading: &Reading, place: Option<Place>) -> Result<()> 
     output.show(&json, &format!("{t:10.3} s  {:>11}  {words}  ({state})\n", actual.position))
 }
 
-fn row(reading: &Reading, place: Option<Place>) -> String {
+fn row(reading: &Reading, place: Option<TurnPosition>) -> String {
     let column = |number: Option<String>| number.unwrap_or_default();
     format!(
         "{:.6},{},{},{},{},{}\n",
@@ -134,8 +134,8 @@ mod tests {
     #[test]
     fn a_position_has_turns_and_a_place_in_its_turn() {
         let place = |position, numerator, denominator| {
-            let Place { turns, steps, degrees } =
-                Place::of(position, PositionScale::new(numerator, denominator).unwrap());
+            let TurnPosition { turns, steps, degrees } =
+                TurnPosition::of(position, PositionScale::new(numerator, denominator).unwrap());
             (turns, (steps * 1000.0).round() / 1000.0, (degrees * 1000.0).round() / 1000.0)
         };
         assert_eq!(place(0, 256, 1), (0, 0.0, 0.0));
@@ -144,6 +144,6 @@ mod tests {
         assert_eq!(place(1000, 400, 256), (2, 200.0, 180.0));
         assert_eq!(place(-1, 10, 3), (-1, 852.333, 359.578));
         assert_eq!(place(i32::MIN, 65_535, 1), (-129, 16_744_192.0, 359.297));
-        assert_eq!(Place::of(-1, PositionScale::FACTORY).steps_json(), json!(65_535));
+        assert_eq!(TurnPosition::of(-1, PositionScale::FACTORY).steps_json(), json!(65_535));
     }
 }

@@ -9,9 +9,9 @@ use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
-use crate::cli::patience::Pace;
 use crate::cli::runner::{self, Runs, unexpected};
-use crate::devices::hiperdrive::jobs::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, Motion, Remark};
+use crate::cli::slow_reply_notice::Pace;
+use crate::devices::hiperdrive::jobs::{DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobStep, Motion};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -28,25 +28,25 @@ const LOOKS: Duration = Duration::from_millis(1);
 pub(super) type Runner = runner::Runner<Hiperdrive>;
 
 impl Runs for Hiperdrive {
-    type Kept = Motion;
+    type Context = Motion;
     const COMMANDS: &'static dyn DeviceCommands = &HiperdriveCommands;
 
     fn begin(session: &mut Session<Self>, _given: &Given) -> Motion {
         session.motion()
     }
 
-    fn say(remark: &Remark) {
+    fn say(remark: &DeviceMessage) {
         match remark {
-            Remark::ControlLost => say(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal())),
-            Remark::RulesUnread(error) => {
+            DeviceMessage::ControlLost => say(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal())),
+            DeviceMessage::RulesUnread(error) => {
                 let why = words::device(error).terminal();
                 say(&format!("{} {why}\n", TEXTS.text("hd_end.rules").terminal()));
             }
-            Remark::RulesRead => {}
+            DeviceMessage::RulesRead => {}
         }
     }
 
-    fn step(doing: &Doing) -> String {
+    fn step(doing: &JobStep) -> String {
         doing.to_string()
     }
 

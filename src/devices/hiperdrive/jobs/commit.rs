@@ -1,23 +1,23 @@
 //! Carries a plan out.
 
-use super::{ChangeKind, Commit, Committed, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
+use super::{ChangeKind, Commit, Committed, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::DeviceWrite;
 use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, HiperdriveProfile, Op};
 use crate::profile::Body;
 use crate::store::DeviceKey;
 use crate::worker::commit::{Planned, backup_of, write_plan};
-use crate::worker::{Desk, Tell};
+use crate::worker::{SessionContext, Tell};
 
 pub(super) fn commit(
     device: &mut Hiperdrive,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     commit: &Commit,
-    tell: Told<'_>,
+    tell: ProgressSink<'_>,
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let mut write = DeviceWrite { master: device.master(desk), identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        tell(Tell::Progress(at.map(|op| Doing::Operation(op.item()))));
+        tell(Tell::Progress(at.map(|op| JobStep::Operation(op.item()))));
     })
 }
 

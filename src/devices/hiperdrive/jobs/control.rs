@@ -4,15 +4,15 @@
 use std::sync::Arc;
 
 use super::commit::commit as carry_through;
-use super::looks::Looks;
-use super::{Commit, Committed, Cyclic, Hiperdrive, JobError, Motion, Remark, Told};
+use super::rules_refresh::Looks;
+use super::{Commit, Committed, Cyclic, DeviceMessage, Hiperdrive, JobError, Motion, ProgressSink};
 use crate::buses::ethernet_ip::protocol::ForwardClose;
 use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
 use crate::devices::hiperdrive::procedures::{DriveLimits, Error, GROUPS, Identity, Rules, Survey, identify};
 use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber, Value};
 use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::units::Moment;
-use crate::worker::Desk;
+use crate::worker::SessionContext;
 
 /// Who has the cyclic connection, and what drives may do over it.
 pub(super) struct Control {
@@ -93,7 +93,7 @@ impl Hiperdrive {
     /// Opens the cyclic connection. Nothing moves by that.
     pub(super) fn take(
         &mut self,
-        desk: &mut Desk,
+        desk: &mut SessionContext,
         told: &mut dyn FnMut(u64, u64, ParameterNumber),
     ) -> Result<(), Error> {
         if self.control.open.is_some() {
@@ -131,7 +131,7 @@ impl Hiperdrive {
     }
 
     /// Stops all drives and closes the cyclic connection.
-    pub(super) fn give(&mut self, desk: &mut Desk) -> Result<(), Error> {
+    pub(super) fn give(&mut self, desk: &mut SessionContext) -> Result<(), Error> {
         let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();
         let closed = self.master(desk).forward_close(&close);
@@ -140,7 +140,7 @@ impl Hiperdrive {
     }
 
     /// The session ends: drives that are in control are stopped and let go, and a device that had a master is told.
-    pub(super) fn end(&mut self, desk: &mut Desk) {
+    pub(super) fn end(&mut self, desk: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
         if let Err(why) = self.give(desk) {
             tracing::warn!("{why}");
@@ -158,7 +158,7 @@ impl Hiperdrive {
 
     /// A cyclic connection that was lost is closed at the other end as well, and told once. It is lost also where explicit
     /// messages are: whoever cannot write parameters any more does not move anything either.
-    pub(super) fn let_go_of_lost(&mut self, desk: &mut Desk) {
+    pub(super) fn let_go_of_lost(&mut self, desk: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
             self.control.lose_session();
         }
@@ -168,7 +168,7 @@ impl Hiperdrive {
         if self.control.open.as_ref().is_none_or(|open| open.cyclic.lost().is_none()) {
             return;
         }
-        self.remark = Some(Remark::ControlLost);
+        self.remark = Some(DeviceMessage::ControlLost);
         // It may have ended there already, or nobody answers: it ends there by itself then.
         if let Err(why) = self.give(desk) {
             tracing::warn!("{why}");
@@ -176,7 +176,12 @@ impl Hiperdrive {
     }
 
     /// Carries a plan out, and looks again at what drives may do: until that is known, nothing.
-    pub(super) fn commit(&mut self, desk: &mut Desk, commit: &Commit, tell: Told<'_>) -> Result<Committed, JobError> {
+    pub(super) fn commit(
+        &mut self,
+        desk: &mut SessionContext,
+        commit: &Commit,
+        tell: ProgressSink<'_>,
+    ) -> Result<Committed, JobError> {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
             // As they are before the plan: a scale that it changes is told from this one.

@@ -21,13 +21,13 @@ use crate::link::{Clock, Datagrams, wake_before_others};
 /// A cyclic connection on its thread. Dropped, it stops the drives and ends by itself; [`close`](Self::close) waits for that.
 pub struct Cyclic {
     motion: Motion,
-    wishes: Arc<Wishes>,
+    wishes: Arc<CyclicCommands>,
     ended: Receiver<Never>,
 }
 
 /// What the thread is told.
 #[derive(Default)]
-struct Wishes {
+struct CyclicCommands {
     end: AtomicBool,
     lost: Mutex<Option<CyclicLost>>,
 }
@@ -41,7 +41,7 @@ pub struct Pump {
     port: Box<dyn Datagrams>,
     clock: Arc<dyn Clock>,
     motion: Motion,
-    wishes: Arc<Wishes>,
+    wishes: Arc<CyclicCommands>,
     packet: Vec<u8>,
 }
 

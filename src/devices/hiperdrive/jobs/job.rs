@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::devices::hiperdrive::procedures::check::{Line, Step};
+use crate::devices::hiperdrive::procedures::check::{HiperdriveStepResult, Step};
 use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
 use crate::devices::hiperdrive::procedures::{Error, Identity, Network, Reading, Status, Survey};
 use crate::devices::hiperdrive::profile::{
@@ -142,14 +142,14 @@ impl Prepared {
 }
 
 /// A plan that a person consented to.
-pub type Commit = crate::worker::commit::Agreed<Prepared>;
+pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 /// What a commit did.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// What is said on the way.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Remark {
+pub enum DeviceMessage {
     /// The cyclic connection was lost, and drives stop; what the session's `Motion` says of it tells why.
     ControlLost,
     /// What rules a drive in hand cannot be read, and is asked for again and again.
@@ -160,7 +160,7 @@ pub enum Remark {
 
 /// The step that a job is at. Its text is the command line's.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Doing {
+pub enum JobStep {
     /// A parameter is read.
     Parameter(ParameterNumber),
     /// A step of the check.
@@ -169,15 +169,15 @@ pub enum Doing {
     Operation(String),
 }
 
-impl fmt::Display for Doing {
+impl fmt::Display for JobStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Doing::Parameter(number) => match number.row() {
+            JobStep::Parameter(number) => match number.row() {
                 Some(row) => write!(f, "{} ({})", Item(*number), row.name),
                 None => Item(*number).fmt(f),
             },
-            Doing::Step(step) => step.fmt(f),
-            Doing::Operation(item) => f.write_str(item),
+            JobStep::Step(step) => step.fmt(f),
+            JobStep::Operation(item) => f.write_str(item),
         }
     }
 }
@@ -190,7 +190,7 @@ pub enum HiperdriveOutput {
     Surveyed(Box<Survey>),
     Identity(Box<Identity>),
     Status(Box<Status>),
-    Check(Vec<Line>),
+    Check(Vec<HiperdriveStepResult>),
     Position(Reading),
     Value(ParameterNumber, Value),
     Network(Box<Network>),

@@ -5,10 +5,10 @@ mod commit;
 mod control;
 mod cyclic;
 mod job;
-mod looks;
 mod motion;
 mod open;
 mod prepare;
+mod rules_refresh;
 mod session_watch;
 
 use std::convert::Infallible;
@@ -19,10 +19,10 @@ use std::time::Duration;
 use control::Control;
 pub use cyclic::{Cyclic, Pump};
 pub use job::{
-    Change, ChangeKind, Commit, Committed, Doing, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Remark,
+    Change, ChangeKind, Commit, Committed, DeviceMessage, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Prepared,
     WEAR_WARNING, device_key,
 };
-pub use motion::{DriveView, Glance, Motion, View};
+pub use motion::{DriveView, Glance, Motion, MotionSnapshot};
 pub use open::{check, open};
 use session_watch::WatchedWire;
 
@@ -34,7 +34,7 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
 use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
 use crate::store::Store;
-use crate::worker::{Desk, Device, IDLE, Progress, Session, Tell, Watched};
+use crate::worker::{Device, IDLE, Progress, Session, SessionContext, Tell, Watched};
 
 /// An adapter or a hub with its drives.
 pub struct Hiperdrive {
@@ -45,7 +45,7 @@ pub struct Hiperdrive {
     watched: DriveNumber,
     /// The virtual one.
     target: Option<Target>,
-    remark: Option<Remark>,
+    remark: Option<DeviceMessage>,
 }
 
 impl fmt::Debug for Hiperdrive {
@@ -58,11 +58,11 @@ impl fmt::Debug for Hiperdrive {
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
 /// What a job tells on its way.
-type Told<'t> = &'t mut dyn FnMut(Tell<Remark, Doing>);
+type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
     /// The host's side of explicit messages.
-    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }
 }
@@ -110,16 +110,21 @@ impl Device for Hiperdrive {
     type Job = HiperdriveJob;
     type Output = HiperdriveOutput;
     type Error = JobError;
-    type Remark = Remark;
+    type DeviceMessage = DeviceMessage;
     type Sample = Reading;
     type Watch = Infallible;
-    type Doing = Doing;
+    type JobStep = JobStep;
 
-    fn run(&mut self, desk: &mut Desk, job: HiperdriveJob, tell: Told<'_>) -> Result<HiperdriveOutput, JobError> {
+    fn run(
+        &mut self,
+        desk: &mut SessionContext,
+        job: HiperdriveJob,
+        tell: ProgressSink<'_>,
+    ) -> Result<HiperdriveOutput, JobError> {
         use HiperdriveOutput as Out;
         self.let_go_of_lost(desk);
         let mut step = |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
-        let mut parameter = |done, total, number| step(done, total, Doing::Parameter(number));
+        let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
             HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)),
             HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(desk, &commit, tell)?)),
@@ -133,7 +138,7 @@ impl Device for Hiperdrive {
             }
             HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk), &mut parameter)?)),
             HiperdriveJob::Check => {
-                let told = &mut |done, total, what| step(done, total, Doing::Step(what));
+                let told = &mut |done, total, what| step(done, total, JobStep::Step(what));
                 Out::Check(check_device(&mut self.master(desk), told)?)
             }
             HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(desk), drive)?),
@@ -156,7 +161,7 @@ impl Device for Hiperdrive {
         })
     }
 
-    fn sample(&mut self, desk: &mut Desk) -> Result<Reading, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<Reading, JobError> {
         self.let_go_of_lost(desk);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
@@ -165,11 +170,11 @@ impl Device for Hiperdrive {
         Ok(position(&mut self.master(desk), drive)?)
     }
 
-    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Reading>, JobError> {
+    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<Reading>, JobError> {
         match *what {}
     }
 
-    fn take_remark(&mut self) -> Option<Remark> {
+    fn take_remark(&mut self) -> Option<DeviceMessage> {
         self.remark.take()
     }
 
@@ -181,14 +186,14 @@ impl Device for Hiperdrive {
         if self.control.held().is_some() { IDLE_IN_CONTROL } else { IDLE }
     }
 
-    fn idle(&mut self, desk: &mut Desk) -> Option<Remark> {
+    fn idle(&mut self, desk: &mut SessionContext) -> Option<DeviceMessage> {
         self.let_go_of_lost(desk);
         self.look_at_rules(desk);
         self.remark.take()
     }
 
     /// Drives that are in control are stopped and let go.
-    fn leave(&mut self, desk: &mut Desk) {
+    fn leave(&mut self, desk: &mut SessionContext) {
         self.end(desk);
     }
 

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::session_watch::SessionWatch;
 use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives, LinkFigures};
-use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, Lock, Permit, Phase, Wish};
+use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, Lock, MotionRequest, Permit, Phase};
 use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
 use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, Setpoint};
 use crate::link::Clock;
@@ -31,7 +31,7 @@ struct Cell {
     /// Whether explicit messages are answered.
     session: SessionWatch,
     punctual: bool,
-    view: View,
+    view: MotionSnapshot,
     /// The program ends: nothing moves any more.
     leaving: bool,
     /// The target holds a cyclic connection that was opened here.
@@ -44,14 +44,14 @@ pub struct Glance {
     /// The moment.
     pub at: Moment,
     /// What they do.
-    pub view: View,
+    pub view: MotionSnapshot,
     /// What they may do.
     pub limits: BTreeMap<DriveNumber, DriveLimits>,
 }
 
 /// What the drives do, and how well their connection works.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct View {
+pub struct MotionSnapshot {
     /// The cyclic connection is there.
     pub open: bool,
     /// The drives that have a place in it, as they were last; in the order of their numbers.
@@ -93,7 +93,7 @@ impl Motion {
             experts: BTreeSet::new(),
             session: SessionWatch::default(),
             punctual: false,
-            view: View::default(),
+            view: MotionSnapshot::default(),
             leaving: false,
             connected: false,
         };
@@ -102,7 +102,7 @@ impl Motion {
 
     /// A person wants something of a drive: an act of its own, whose number comes back. It replaces the one before; what
     /// moved by that stops. It has to be kept [fresh](Self::refresh). Without a cyclic connection nothing comes of it.
-    pub fn intend(&self, drive: DriveNumber, wish: Wish) -> u64 {
+    pub fn intend(&self, drive: DriveNumber, wish: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
@@ -123,7 +123,7 @@ impl Motion {
     /// All drives stop.
     pub fn stop(&self) {
         let drive = self.lock().intent.drive;
-        self.intend(drive, Wish::Stop);
+        self.intend(drive, MotionRequest::Stop);
     }
 
     /// The act of this number is the latest.
@@ -132,7 +132,7 @@ impl Motion {
     }
 
     /// What the drives do.
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> MotionSnapshot {
         self.lock().view.clone()
     }
 
@@ -208,7 +208,7 @@ impl Motion {
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
         cell.intent = Intent::rest(cell.intent.drive, number, now);
-        cell.view = View { open: true, ..View::default() };
+        cell.view = MotionSnapshot { open: true, ..MotionSnapshot::default() };
         number
     }
 
@@ -243,7 +243,7 @@ impl Motion {
         };
         let mut views: Vec<DriveView> = drives.men().map(of).collect();
         views.sort_by_key(|view| view.number);
-        let view = View {
+        let view = MotionSnapshot {
             open: !drives.is_ending(),
             drives: views,
             link: drives.figures().clone(),
@@ -251,7 +251,7 @@ impl Motion {
             lost: drives.lost().cloned(),
         };
         let mut cell = self.lock();
-        cell.view = View { punctual: cell.punctual, ..view };
+        cell.view = MotionSnapshot { punctual: cell.punctual, ..view };
     }
 
     /// Whether the system wakes the connection's thread before all ordinary ones.
@@ -337,7 +337,7 @@ mod tests {
         let motion = Motion::new(clock.clone());
         let is_stale = || motion.with_wanted(|intent, _| intent.is_stale(clock.now()));
         let later = |time: Duration| clock.sleep_until(clock.now() + time);
-        motion.intend(DriveNumber::FIRST, Wish::Move { target: 1, effort: Effort::MOVE });
+        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: Effort::MOVE });
         for _ in 0..3 {
             later(Intent::FRESH);
             motion.refresh();
@@ -346,7 +346,7 @@ mod tests {
         later(Intent::FRESH + Duration::from_millis(1));
         motion.refresh();
         assert!(is_stale(), "too late");
-        motion.intend(DriveNumber::FIRST, Wish::Move { target: 1, effort: Effort::MOVE });
+        motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: Effort::MOVE });
         assert!(!is_stale(), "another act");
     }
 }

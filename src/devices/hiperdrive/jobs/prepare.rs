@@ -1,6 +1,6 @@
 //! From a change that a user wants to a plan. Reads; writes nothing.
 
-use super::{Change, Doing, Hiperdrive, JobError, Prepared, Told, device_key};
+use super::{Change, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::{Remedy, remedy};
 use crate::devices::hiperdrive::procedures::{Error, Identity, Master, read_state, settings};
 use crate::devices::hiperdrive::profile::{
@@ -9,18 +9,18 @@ use crate::devices::hiperdrive::profile::{
 };
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Desk, Progress, Tell};
+use crate::worker::{Progress, SessionContext, Tell};
 
 pub(super) fn prepare(
     device: &mut Hiperdrive,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     change: &Change,
-    tell: Told<'_>,
+    tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let mut master = device.master(desk);
     let told = &mut |done, total, number| {
-        tell(Tell::Progress(Progress { done, total, what: Doing::Parameter(number) }));
+        tell(Tell::Progress(Progress { done, total, what: JobStep::Parameter(number) }));
     };
     let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
     let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {

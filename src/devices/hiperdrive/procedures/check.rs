@@ -17,7 +17,7 @@ use crate::devices::hiperdrive::protocol::{
 pub use crate::analysis::check::Verdict;
 
 /// One line of the check.
-pub type Line = check::Line<Step, Finding>;
+pub type HiperdriveStepResult = check::StepResult<Step, Finding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -199,22 +199,31 @@ const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; the way.
-pub fn check(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, Step)) -> Result<Vec<Line>, Error> {
+pub fn check(
+    master: &mut Master<'_>,
+    told: &mut dyn FnMut(u64, u64, Step),
+) -> Result<Vec<HiperdriveStepResult>, Error> {
     let mut lines = Vec::new();
     told(0, 1, Step::Messages);
     let identity = identify(master, &mut |_, _, _| {})?;
     lines.push(messages(master)?);
     lines.push(device(&identity));
-    lines.push(Line::of(Step::Supply, vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, Finding::Supply)]));
+    lines.push(HiperdriveStepResult::of(
+        Step::Supply,
+        vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, Finding::Supply)],
+    ));
     let celsius = master.read_number(own(11)?)?;
-    lines.push(Line::of(Step::Temperature, vec![in_range(celsius, &TEMPERATURES, Finding::Temperature)]));
-    lines.push(Line::of(Step::Address, address(&network(master)?)));
+    lines.push(HiperdriveStepResult::of(
+        Step::Temperature,
+        vec![in_range(celsius, &TEMPERATURES, Finding::Temperature)],
+    ));
+    lines.push(HiperdriveStepResult::of(Step::Address, address(&network(master)?)));
     let saved = match master.read_number(ParameterNumber::SAVE)? {
         0 => (Verdict::Good, Finding::Saved),
         other => (Verdict::Attention, Finding::NotSaved(other)),
     };
-    lines.push(Line::of(Step::Memory, vec![saved]));
-    lines.push(Line::of(Step::Drives, drives(&identity)));
+    lines.push(HiperdriveStepResult::of(Step::Memory, vec![saved]));
+    lines.push(HiperdriveStepResult::of(Step::Drives, drives(&identity)));
     let total = identity.drives.len() as u64 + 1;
     for (at, drive) in identity.drives.iter().enumerate() {
         told(at as u64 + 1, total, Step::Errors(drive.number));
@@ -227,7 +236,7 @@ fn in_range(value: i64, range: &std::ops::RangeInclusive<i64>, of: fn(i64) -> Fi
     (if range.contains(&value) { Verdict::Good } else { Verdict::Attention }, of(value))
 }
 
-fn messages(master: &mut Master<'_>) -> Result<Line, Error> {
+fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
     let mut slowest = Duration::ZERO;
     for _ in 0..LOOKS {
         let begun = master.now();
@@ -237,16 +246,16 @@ fn messages(master: &mut Master<'_>) -> Result<Line, Error> {
     let late = master.station().late();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
     let replies = Finding::Replies { asked: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
-    Ok(Line::of(Step::Messages, vec![(verdict, replies)]))
+    Ok(HiperdriveStepResult::of(Step::Messages, vec![(verdict, replies)]))
 }
 
-fn device(identity: &Identity) -> Line {
+fn device(identity: &Identity) -> HiperdriveStepResult {
     let findings = [
         Finding::Category(identity.category.clone()),
         Finding::SerialNumber(identity.serial_number.clone()),
         Finding::Version(identity.version.clone()),
     ];
-    Line::of(Step::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
+    HiperdriveStepResult::of(Step::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
 }
 
 fn address(network: &Network) -> Vec<(Verdict, Finding)> {
@@ -271,7 +280,11 @@ fn drives(identity: &Identity) -> Vec<(Verdict, Finding)> {
     identity.drives.iter().map(found).collect()
 }
 
-fn check_drive(master: &mut Master<'_>, identity: &Identity, drive: &DriveIdentity) -> Result<Vec<Line>, Error> {
+fn check_drive(
+    master: &mut Master<'_>,
+    identity: &Identity,
+    drive: &DriveIdentity,
+) -> Result<Vec<HiperdriveStepResult>, Error> {
     let number = drive.number;
     let status = drive_status(master, number)?;
     let mut request = match drive.requested {
@@ -290,12 +303,12 @@ fn check_drive(master: &mut Master<'_>, identity: &Identity, drive: &DriveIdenti
     };
     let temperature = in_range(status.temperature, &TEMPERATURES, Finding::Temperature);
     Ok(vec![
-        Line::of(Step::Request(number), request),
-        Line::of(Step::Line(number), vec![rs485]),
-        Line::of(Step::Timeout(number), vec![timeout]),
-        Line::of(Step::Errors(number), errors(&status)),
-        Line::of(Step::DriveTemperature(number), vec![temperature]),
-        Line::of(Step::Range(number), range(master, drive)?),
+        HiperdriveStepResult::of(Step::Request(number), request),
+        HiperdriveStepResult::of(Step::Line(number), vec![rs485]),
+        HiperdriveStepResult::of(Step::Timeout(number), vec![timeout]),
+        HiperdriveStepResult::of(Step::Errors(number), errors(&status)),
+        HiperdriveStepResult::of(Step::DriveTemperature(number), vec![temperature]),
+        HiperdriveStepResult::of(Step::Range(number), range(master, drive)?),
     ])
 }
 

@@ -24,7 +24,7 @@ mod watch;
 
 use std::time::Duration;
 
-pub use act::{Effort, Ended, Goal, Intent, Lock, Motive, Permit, Phase, Refusal, Rung, Wish};
+pub use act::{Effort, Ended, Goal, Intent, Lock, MotionRequest, Motive, Permit, Phase, Refusal, Rung};
 pub use watch::{Outside, Side};
 
 use lead::Lead;
@@ -64,7 +64,7 @@ pub struct DeadMan {
 struct Act {
     number: u64,
     /// As it was said last: a pause of a job is an act too.
-    said: Wish,
+    said: MotionRequest,
     /// What moves, for what does.
     motion: Option<Motion>,
     /// How it has gone, once it has begun.
@@ -74,7 +74,7 @@ struct Act {
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     /// As it was asked for.
-    wish: Wish,
+    wish: MotionRequest,
     motive: Motive,
 }
 
@@ -218,7 +218,7 @@ impl DeadMan {
 
     /// What could not begin while it was fresh never does, nor what came before a stop or an act for another drive.
     fn forget_what_is_void(&mut self, now: Moment, intent: &Intent) {
-        let rests = matches!(intent.wish, Wish::Rest | Wish::Stop);
+        let rests = matches!(intent.wish, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
         if intent.number <= self.spent || !(intent.drive != self.drive || rests || stale) {
             return;
@@ -242,7 +242,7 @@ impl DeadMan {
         self.forget_what_is_void(now, intent);
         // A step counts from where the drive is.
         let is_heard = self.first.is_some_and(|first| now.since(first) >= HEARD);
-        let has_place = is_heard || !matches!(intent.wish, Wish::Step { .. });
+        let has_place = is_heard || !matches!(intent.wish, MotionRequest::Step { .. });
         let waits = self.act.is_some() || !has_place || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));
         if intent.drive != self.drive || intent.number <= self.spent || waits {
             return;
@@ -255,21 +255,21 @@ impl DeadMan {
         }
     }
 
-    fn begin(&mut self, now: Moment, actual: Actual, wish: Wish, permit: &Permit) -> Result<(), Refusal> {
+    fn begin(&mut self, now: Moment, actual: Actual, wish: MotionRequest, permit: &Permit) -> Result<(), Refusal> {
         let status = actual.status;
         if !status.is_present() {
             return Err(Refusal::Absent);
         }
         let motive = match wish {
-            Wish::Rest | Wish::Stop => return Ok(()),
-            Wish::Lead(goal) => return self.lead(now, actual, goal),
-            Wish::Acknowledge => return self.acknowledge(now, actual),
-            Wish::Pause => return Err(Refusal::NothingToPause),
-            Wish::Resume => return Err(Refusal::NothingToResume),
-            Wish::Move { target, .. } => Motive::Job { target },
-            Wish::Step { by, .. } => Motive::Job { target: actual.position.saturating_add(by) },
-            Wish::Jog { direction, .. } => Motive::Run { direction, end: RunEnd::RangeEnd },
-            Wish::Run { direction, end, .. } => Motive::Run { direction, end },
+            MotionRequest::Rest | MotionRequest::Stop => return Ok(()),
+            MotionRequest::Lead(goal) => return self.lead(now, actual, goal),
+            MotionRequest::Acknowledge => return self.acknowledge(now, actual),
+            MotionRequest::Pause => return Err(Refusal::NothingToPause),
+            MotionRequest::Resume => return Err(Refusal::NothingToResume),
+            MotionRequest::Move { target, .. } => Motive::Job { target },
+            MotionRequest::Step { by, .. } => Motive::Job { target: actual.position.saturating_add(by) },
+            MotionRequest::Jog { direction, .. } => Motive::Run { direction, end: RunEnd::RangeEnd },
+            MotionRequest::Run { direction, end, .. } => Motive::Run { direction, end },
         };
         permit.check(wish, motive.target())?;
         if permit.doubted {

@@ -93,13 +93,13 @@ pub struct DriveStatus {
 }
 
 /// Who is told what is read next, and how many of how many have been read.
-pub(super) type Told<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
+pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
 
 /// What is read, one after the other.
 struct Steps<'t> {
     done: u64,
     total: u64,
-    told: Told<'t>,
+    told: IdentifyProgress<'t>,
 }
 
 impl Steps<'_> {
@@ -149,7 +149,7 @@ impl Identity {
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; what the device refuses; the way.
-pub fn identify(master: &mut Master<'_>, told: Told<'_>) -> Result<Identity, Error> {
+pub fn identify(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Identity, Error> {
     // Parameters of a drive, and of the device.
     const DRIVE: u64 = 6;
     const DEVICE: u64 = 5;
@@ -203,7 +203,7 @@ fn category(master: &mut Master<'_>) -> Result<String, Error> {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn survey(master: &mut Master<'_>, told: Told<'_>) -> Result<Survey, Error> {
+pub fn survey(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Survey, Error> {
     let identity = identify(master, told)?;
     let numbers: Vec<ParameterNumber> = readable(&identity).collect();
     let total = numbers.len() as u64;
@@ -241,7 +241,7 @@ const OF_STATUS: u64 = 15;
 ///
 /// # Errors
 /// As [`identify`].
-pub fn read_status(master: &mut Master<'_>, told: Told<'_>) -> Result<Status, Error> {
+pub fn read_status(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = topology(master)?;
     // Of each drive whether it is there, and the rest.
     let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, told };

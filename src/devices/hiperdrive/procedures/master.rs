@@ -22,7 +22,7 @@ use crate::devices::hiperdrive::protocol::{
     Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError,
 };
 use crate::link::Ctx;
-use crate::link::line::{Line, TRIES};
+use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
 /// Behind bytes that are no frame: silence for so long, and what comes next is one again.
@@ -34,20 +34,20 @@ const SPARE: Duration = Duration::from_millis(500);
 
 /// The host's side of the explicit messages of a device, for one job.
 pub struct Master<'a> {
-    line: Line<'a>,
+    line: SerialLine<'a>,
     station: &'a mut Station,
 }
 
 /// An exchange that gave nothing.
-enum Trouble {
+enum ExchangeError {
     Silence,
     Damage(Damage),
     Status(EncapsulationStatus),
 }
 
-impl<D: Into<Damage>> From<D> for Trouble {
+impl<D: Into<Damage>> From<D> for ExchangeError {
     fn from(damage: D) -> Self {
-        Trouble::Damage(damage.into())
+        ExchangeError::Damage(damage.into())
     }
 }
 
@@ -68,7 +68,7 @@ impl<'a> Master<'a> {
     /// A master over a station's wire, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
-        Master { line: Line::new(ctx), station }
+        Master { line: SerialLine::new(ctx), station }
     }
 
     /// Now.
@@ -279,7 +279,7 @@ impl<'a> Master<'a> {
         &mut self,
         asked: Asked,
         repeats: Repeats,
-        mut once: impl FnMut(&mut Self) -> Result<Result<T, Trouble>, Error>,
+        mut once: impl FnMut(&mut Self) -> Result<Result<T, ExchangeError>, Error>,
     ) -> Result<T, Error> {
         let (mut tries, late) = (0, self.station.late);
         let (usual, within) = (self.station.link.timeout, repeats.within(self.station.link.timeout));
@@ -294,28 +294,28 @@ impl<'a> Master<'a> {
                 Err(trouble) => trouble,
             };
             match &trouble {
-                Trouble::Silence => self.station.line.quality.silent += 1,
-                Trouble::Damage(_) => self.station.line.quality.damaged += 1,
-                Trouble::Status(_) => {}
+                ExchangeError::Silence => self.station.line.quality.silent += 1,
+                ExchangeError::Damage(_) => self.station.line.quality.damaged += 1,
+                ExchangeError::Status(_) => {}
             }
             let longest = within + self.station.line.margin;
             // What is refused for its session was answered at once.
-            let took = if let Trouble::Status(_) = trouble { usual + self.station.line.margin } else { longest };
+            let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
             let may = self.line.may_ask_again(&mut self.station.line, tries, took);
             match trouble {
                 // It was not done: the device has forgotten the session.
-                Trouble::Status(EncapsulationStatus::NO_SESSION) if may && asked != Asked::Session => {
+                ExchangeError::Status(EncapsulationStatus::NO_SESSION) if may && asked != Asked::Session => {
                     self.station.session = None;
                 }
-                Trouble::Status(status) => return Err(Error::Encapsulation { asked, status }),
+                ExchangeError::Status(status) => return Err(Error::Encapsulation { asked, status }),
                 _ if may && repeats == Repeats::Always => {}
-                Trouble::Silence => {
+                ExchangeError::Silence => {
                     let took = self.station.replies.longest();
                     let is_late = self.station.late > late && took >= longest;
                     let late = is_late.then_some(Late { took, waited: within });
                     return Err(Error::NoReply { asked, tries, late });
                 }
-                Trouble::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
+                ExchangeError::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
             }
         }
     }
@@ -327,7 +327,7 @@ impl<'a> Master<'a> {
     }
 
     /// Sends a frame under a number of its own, and waits for the one that answers it.
-    fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, Trouble>, Error> {
+    fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, ExchangeError>, Error> {
         self.line.start()?;
         let sent_at = self.line.now();
         let takes_long = matches!(repeats, Repeats::Never { takes: Some(_) });
@@ -350,7 +350,7 @@ impl<'a> Master<'a> {
                         } else if answer.status == EncapsulationStatus::OK || has_session(&answer) {
                             return Ok(Ok(answer));
                         } else {
-                            return Ok(Err(Trouble::Status(answer.status)));
+                            return Ok(Err(ExchangeError::Status(answer.status)));
                         }
                     }
                     Ok(None) => break,
@@ -367,7 +367,7 @@ impl<'a> Master<'a> {
                 let bytes = self.station.receiver.pending();
                 self.show_rest();
                 self.station.receiver = Receiver::default();
-                return Ok(Err(if bytes == 0 { Trouble::Silence } else { Damage::Cut { bytes }.into() }));
+                return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { Damage::Cut { bytes }.into() }));
             }
             // What sets something is heard out.
             if repeats == Repeats::Always {
@@ -388,7 +388,7 @@ fn has_session(answer: &Frame) -> bool {
 }
 
 /// What a frame with a reply says.
-fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), Trouble> {
+fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeError> {
     let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
     let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
     let services = (request.service.code(), reply.service.code());

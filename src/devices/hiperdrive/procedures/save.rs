@@ -1,6 +1,6 @@
 //! What is read to be kept, and to be planned upon.
 
-use super::identify::{Told, identify, of};
+use super::identify::{IdentifyProgress, identify, of};
 use super::{DriveIdentity, Error, Identity, Master};
 use crate::devices::hiperdrive::profile::{
     DeviceState, HiperdriveProfile, Image, Positions, ProfileDrive, ProfileIdentity,
@@ -46,7 +46,7 @@ impl Identity {
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; the way.
-pub fn save(master: &mut Master<'_>, told: Told<'_>) -> Result<HiperdriveProfile, Error> {
+pub fn save(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
     let identity = identify(master, told)?;
     let image = read_image(master, identity.kept().collect(), told)?;
     Ok(HiperdriveProfile::of(identity.profile(), image))
@@ -59,7 +59,7 @@ pub fn save(master: &mut Master<'_>, told: Told<'_>) -> Result<HiperdriveProfile
 pub fn read_state(
     master: &mut Master<'_>,
     beside: impl IntoIterator<Item = ParameterNumber>,
-    told: Told<'_>,
+    told: IdentifyProgress<'_>,
 ) -> Result<(Identity, DeviceState), Error> {
     let identity = identify(master, told)?;
     let mut numbers: Vec<ParameterNumber> = identity.kept().chain(beside).collect();
@@ -81,7 +81,11 @@ pub fn read_state(
     Ok((identity, state))
 }
 
-fn read_image(master: &mut Master<'_>, numbers: Vec<ParameterNumber>, told: Told<'_>) -> Result<Image, Error> {
+fn read_image(
+    master: &mut Master<'_>,
+    numbers: Vec<ParameterNumber>,
+    told: IdentifyProgress<'_>,
+) -> Result<Image, Error> {
     let total = numbers.len() as u64;
     let mut image = Image::default();
     for (done, number) in numbers.into_iter().enumerate() {

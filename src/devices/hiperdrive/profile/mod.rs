@@ -22,6 +22,6 @@ pub use image::Image;
 pub use item::{Item, ItemError};
 pub use network::{NetworkSettings, plan_network};
 pub use plan::{Base, HiperdrivePlan, Op, Service, written};
-pub use record::{HiperdriveProfile, Kept, MountingMark, ProfileDrive, ProfileIdentity};
+pub use record::{HiperdriveProfile, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
 pub use restore::{DeviceState, Restore, RestoreOptions, check_device, other_types, plan_restore};
 pub use warning::{Warning, warnings};

@@ -17,7 +17,7 @@ pub struct HiperdriveProfile {
     /// What belongs to the mounting and is never restored.
     pub mounting: Vec<MountingMark>,
     /// Entries that this program does not know.
-    pub unknown: Kept,
+    pub unknown: UnknownEntries,
 }
 
 /// Who an adapter or a hub is; of a profile that was made by hand nothing at all.
@@ -63,12 +63,13 @@ pub type MountingMark = crate::profile::MountingMark<Item>;
 
 /// Entries that this program does not know, among the parameters of the device (`None`) and of its drives.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Kept(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
+pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
 
 impl HiperdriveProfile {
     /// Of a device that was read, with what belongs to the mounting marked.
     pub fn of(identity: ProfileIdentity, image: Image) -> Self {
-        let mut profile = HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: Kept::default() };
+        let mut profile =
+            HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
         profile.mark_mounting();
         profile
     }

@@ -3,7 +3,7 @@
 //! A drive's parameters stand by the numbers of drive 1 beside it. Who has no hub may write them beside those of the device,
 //! which are below 100; there a number of another drive is its own.
 
-use super::{EntryError, HiperdriveProfile, Image, Item, Kept, MountingMark, ProfileDrive, ProfileIdentity};
+use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
 use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
 use crate::expected::Expected;
 use crate::profile::ron_text::{Entries, Writer, value_text};
@@ -22,7 +22,7 @@ impl Profile for HiperdriveProfile {
             None => ProfileIdentity::default(),
         };
         let mounting = MountingMark::read_all(entries, Expected::TextSuchAs("198 drive 2"), read_marked)?;
-        let (mut image, mut unknown) = (Image::default(), Kept::default());
+        let (mut image, mut unknown) = (Image::default(), UnknownEntries::default());
         read_parameters(entries, None, &mut image, &mut unknown)?;
         for mut entries in entries.structures("drives")? {
             let path = entries.path_of("number");
@@ -192,7 +192,7 @@ fn read_parameters(
     entries: &mut Entries,
     drive: Option<DriveNumber>,
     image: &mut Image,
-    unknown: &mut Kept,
+    unknown: &mut UnknownEntries,
 ) -> Result<(), ProfileError> {
     for (name, value) in entries.map("parameters")? {
         let own = name.clone().into_rust::<u16>().ok();

@@ -9,7 +9,7 @@ use crate::app::services::Services;
 use crate::app::session::{Saved, WithMemory};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperdrive::jobs::HiperdriveJob;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Wish};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Body;
 
@@ -71,26 +71,28 @@ impl Unit {
             Motor::JogPress { repeated: true, .. } | Motor::SlowJogPress { repeated: true, .. } => return,
             Motor::JogPress { direction, .. } => {
                 let outward = self.moves.is_freed(drive, direction);
-                Wish::Jog { direction, effort: self.moves.jog_effort(drive), outward }
+                MotionRequest::Jog { direction, effort: self.moves.jog_effort(drive), outward }
             }
             Motor::SlowJogPress { direction, .. } => {
                 let outward = self.moves.is_freed(drive, direction);
-                Wish::Jog { direction, effort: Effort::JOG, outward }
+                MotionRequest::Jog { direction, effort: Effort::JOG, outward }
             }
-            Motor::Lead(goal) => Wish::Lead(goal),
-            Motor::Acknowledge => Wish::Acknowledge,
-            Motor::Step { by } => Wish::Step { by, effort: self.moves.move_effort(drive) },
-            Motor::Move { target } => Wish::Move { target, effort: self.moves.move_effort(drive) },
-            Motor::Run { direction, end } => Wish::Run { direction, end, effort: self.moves.move_effort(drive) },
-            Motor::Pause => Wish::Pause,
-            Motor::Resume => Wish::Resume,
+            Motor::Lead(goal) => MotionRequest::Lead(goal),
+            Motor::Acknowledge => MotionRequest::Acknowledge,
+            Motor::Step { by } => MotionRequest::Step { by, effort: self.moves.move_effort(drive) },
+            Motor::Move { target } => MotionRequest::Move { target, effort: self.moves.move_effort(drive) },
+            Motor::Run { direction, end } => {
+                MotionRequest::Run { direction, end, effort: self.moves.move_effort(drive) }
+            }
+            Motor::Pause => MotionRequest::Pause,
+            Motor::Resume => MotionRequest::Resume,
         };
         if let Err(why) = self.may(drive, wish) {
             // What was under way goes on: nothing else has begun.
             return self.tell_of(drive, Severity::Warning, vec![why], services);
         }
         match wish {
-            Wish::Jog { .. } => self.moves.press(drive, wish),
+            MotionRequest::Jog { .. } => self.moves.press(drive, wish),
             _ => {
                 self.moves.want(drive, wish);
             }

@@ -15,11 +15,11 @@ mod differences;
 mod entries;
 mod follow;
 mod gate;
-mod places;
 mod report;
 mod seen;
 mod standstill;
 mod supply;
+mod test_targets;
 pub mod words;
 
 #[cfg(test)]
@@ -27,10 +27,10 @@ mod tests;
 
 pub use act::{Action, Ask, Button};
 pub use entries::{Entries, Preview, Reference};
-pub use places::{Outcome, Place, Travel};
 pub use report::{Device, end_lines, report};
 pub use seen::Seen;
 pub use supply::{Power, Restart};
+pub use test_targets::{Outcome, TestTarget, Travel};
 
 use chain::{Basis, Chain, Origin};
 use standstill::Standstill;
@@ -141,7 +141,7 @@ pub struct Axis {
     unexplained: Option<i64>,
     outcomes: [Option<Outcome>; 3],
     /// The test move under way: where it leads, and the act that began it.
-    going: Option<(Place, i32, u64)>,
+    going: Option<(TestTarget, i32, u64)>,
     saved: bool,
     power: Option<Power>,
     changes: Vec<Change>,
@@ -283,12 +283,12 @@ impl Axis {
     }
 
     /// What came of a test move.
-    pub fn outcome(&self, place: Place) -> Option<Outcome> {
+    pub fn outcome(&self, place: TestTarget) -> Option<Outcome> {
         self.outcomes.get(place as usize).copied().flatten()
     }
 
     /// The test move under way.
-    pub fn going(&self) -> Option<Place> {
+    pub fn going(&self) -> Option<TestTarget> {
         self.going.map(|(place, ..)| place)
     }
 

@@ -1,17 +1,17 @@
 //! Edits of a device's parameters, kept over a crash.
 
-use super::staged::Kept;
+use super::staged::SavedEdit;
 use super::unit::Unit;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Saved, Session};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Document;
 
 /// What is edited, each with its number.
-pub(crate) type Edits = Vec<Kept>;
+pub(crate) type Edits = Vec<SavedEdit>;
 
-impl OnDesk for Unit {
+impl HasSession for Unit {
     type Device = Hiperdrive;
 
     fn session(&self) -> &Session<Hiperdrive> {

@@ -21,7 +21,7 @@ pub use write::{change, item, op, other_type, plan, service, warning, written};
 
 use crate::app::Text;
 use crate::app::explain::{link, plain};
-use crate::devices::hiperdrive::jobs::{Doing, JobError};
+use crate::devices::hiperdrive::jobs::{JobError, JobStep};
 use crate::devices::hiperdrive::procedures::Error;
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
@@ -50,10 +50,10 @@ pub fn is_silence(error: &JobError) -> bool {
 }
 
 /// What a job does at the moment.
-pub fn doing(doing: &Doing) -> Text {
+pub fn doing(doing: &JobStep) -> Text {
     match doing {
-        Doing::Parameter(number) => parameter(*number),
-        Doing::Step(own) => check::step(*own),
-        Doing::Operation(item) => plain(item),
+        JobStep::Parameter(number) => parameter(*number),
+        JobStep::Step(own) => check::step(*own),
+        JobStep::Operation(item) => plain(item),
     }
 }

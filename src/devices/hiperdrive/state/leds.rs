@@ -34,7 +34,7 @@ pub enum Lamp {
 
 /// What a lamp says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct LedMeaning {
     /// How much it matters.
     pub severity: Severity,
     /// What it means.
@@ -108,13 +108,13 @@ impl Leds {
     }
 
     /// What a lamp says as it is.
-    pub fn said(&self, lamp: Lamp) -> Said {
+    pub fn said(&self, lamp: Lamp) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
             Lamp::Drives => drives(self.subject(), self.drives),
             Lamp::Bus(lamp) => bus(lamp, if lamp == BusLamp::Module { self.module } else { self.network }),
             Lamp::Port => port(self.port),
         };
-        Said { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
+        LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
     }
 
     /// What a lamp shows, in words.

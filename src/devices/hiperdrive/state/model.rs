@@ -4,10 +4,10 @@ use std::convert::Infallible;
 
 use super::{Action, Unit};
 use crate::app::action::Opened;
-use crate::app::line::Line;
+use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::OnLine;
+use crate::app::session::SessionEvents;
 use crate::app::{
     ActContext, DeviceMemory, DeviceModel, EditStep, MotionControl, Recording, RemembersDrives, Tab, Text,
 };
@@ -20,7 +20,7 @@ impl DeviceModel for Unit {
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
-        OnLine::let_go(self, JobEnd::Cancelled, services);
+        SessionEvents::let_go(self, JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.records.values_mut().for_each(|record| record.begin(&opened.began));
         self.began = Some(opened.began.clone());
@@ -84,7 +84,7 @@ impl DeviceModel for Unit {
 
     fn stop(&mut self, services: &mut Services) {
         self.moves.stop();
-        let pace = self.session.line.as_ref().and_then(Line::polling).filter(|_| self.moves.is_open());
+        let pace = self.session.line.as_ref().and_then(LiveSession::polling).filter(|_| self.moves.is_open());
         self.session.stop(services);
         // Whoever has the control goes on seeing the drives.
         if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {

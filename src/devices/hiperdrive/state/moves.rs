@@ -6,8 +6,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::devices::hiperdrive::jobs::{DriveView, Glance, Motion, View};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, HEARD, Lock, Motive, Permit, Phase, Wish};
+use crate::devices::hiperdrive::jobs::{DriveView, Glance, Motion, MotionSnapshot};
+use crate::devices::hiperdrive::procedures::dead_man::{
+    Effort, Ended, HEARD, Lock, MotionRequest, Motive, Permit, Phase,
+};
 use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Setpoint, State};
 use crate::units::Moment;
@@ -17,7 +19,7 @@ pub struct Moves {
     /// While the session is open.
     motion: Option<Motion>,
     /// What the drives said at the last look.
-    view: View,
+    view: MotionSnapshot,
     act: Option<Act>,
     /// How drives are jogged, and moved, where that is not as it usually is.
     jogs: BTreeMap<DriveNumber, Effort>,
@@ -63,7 +65,7 @@ impl Default for Moves {
     fn default() -> Self {
         Moves {
             motion: None,
-            view: View::default(),
+            view: MotionSnapshot::default(),
             act: None,
             jogs: BTreeMap::new(),
             jobs: BTreeMap::new(),
@@ -97,7 +99,7 @@ impl Moves {
         self.stop();
         self.look();
         self.motion = None;
-        (self.view, self.act) = (View::default(), None);
+        (self.view, self.act) = (MotionSnapshot::default(), None);
     }
 
     /// Another device: its limits are others.
@@ -162,21 +164,21 @@ impl Moves {
         self.drive(drive).and_then(|own| own.ended).is_some_and(|(own, _)| own >= number)
     }
 
-    fn intend(&mut self, drive: DriveNumber, wish: Wish, kind: Kind) -> Option<u64> {
+    fn intend(&mut self, drive: DriveNumber, wish: MotionRequest, kind: Kind) -> Option<u64> {
         // For one press: whatever is asked for next needs it freed again.
         self.freed = None;
         let number = self.motion.as_ref()?.intend(drive, wish);
-        let moves = wish.moves() || wish == Wish::Pause;
+        let moves = wish.moves() || wish == MotionRequest::Pause;
         self.act = Some(Act { drive, number, kind, moves, told: false });
         Some(number)
     }
 
     /// A jog is pressed. While one is held, nothing begins.
-    pub(super) fn press(&mut self, drive: DriveNumber, jog: Wish) {
+    pub(super) fn press(&mut self, drive: DriveNumber, jog: MotionRequest) {
         if !self.is_held() {
             self.intend(drive, jog, Kind::Held);
             self.used = match jog {
-                Wish::Jog { direction, outward: true, .. } => Some((drive, direction)),
+                MotionRequest::Jog { direction, outward: true, .. } => Some((drive, direction)),
                 _ => None,
             };
         }
@@ -206,7 +208,7 @@ impl Moves {
     fn stop_those(&mut self, which: impl FnOnce(Kind) -> bool) {
         let Some(act) = self.act.filter(|act| which(act.kind)) else { return };
         if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest(act.number)) {
-            motion.intend(act.drive, Wish::Stop);
+            motion.intend(act.drive, MotionRequest::Stop);
         }
         // Its end is still to be told; nothing keeps it alive any more.
         self.act = Some(Act { kind: Kind::Other, ..act });
@@ -224,8 +226,8 @@ impl Moves {
     }
 
     /// A move, a step, another state: kept alive by pictures. The number of the act; `None` while the session is not open.
-    pub(super) fn want(&mut self, drive: DriveNumber, wish: Wish) -> Option<u64> {
-        let kind = if matches!(wish, Wish::Run { .. }) { Kind::Run } else { Kind::Other };
+    pub(super) fn want(&mut self, drive: DriveNumber, wish: MotionRequest) -> Option<u64> {
+        let kind = if matches!(wish, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
         self.intend(drive, wish, kind)
     }
 
@@ -290,7 +292,7 @@ impl Moves {
     }
 
     /// What the drives said at the last look, and how well their connection works.
-    pub fn view(&self) -> &View {
+    pub fn view(&self) -> &MotionSnapshot {
         &self.view
     }
 

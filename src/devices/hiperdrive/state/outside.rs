@@ -5,7 +5,7 @@ use super::unit::Unit;
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::Change;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Outside, Permit, Wish};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest, Outside, Permit};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -51,7 +51,7 @@ impl Unit {
     /// Why not, in words.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_freed(drive, direction);
-        self.may(drive, Wish::Jog { direction, effort: Effort::JOG, outward })
+        self.may(drive, MotionRequest::Jog { direction, effort: Effort::JOG, outward })
     }
 
     /// This way may lead further out from outside the limits, and is not freed.

@@ -6,8 +6,8 @@ use jiff::Zoned;
 
 use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
-use crate::app::recorder::{GroupId, Line, Scale};
-use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::app::recorder::{GroupId, Scale, Series};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
@@ -43,7 +43,7 @@ impl Record {
     pub(super) fn add(&mut self, reading: Reading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
         let (at, actual) = (reading.at, reading.actual);
         let status = actual.status;
-        let sighting = Sighting {
+        let sighting = PositionSample {
             at,
             position: status.is_present().then_some(i64::from(actual.position)),
             is_bad: !status.is_present(),
@@ -107,15 +107,15 @@ impl Watchable for Beside {
         }
     }
 
-    fn line(&self, group: GroupId) -> Line {
+    fn line(&self, group: GroupId) -> Series {
         match self {
             Beside::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 1)];
-                Line::of(group, 0, TEXTS.text("hd_live.speed"), "drive speed".to_owned(), scales)
+                Series::of(group, 0, TEXTS.text("hd_live.speed"), "drive speed".to_owned(), scales)
             }
             Beside::Target(ruler) => {
                 let [scales, ..] = meaning(*ruler).scales;
-                Line::of(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
+                Series::of(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
             }
         }
     }

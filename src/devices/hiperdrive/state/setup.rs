@@ -11,7 +11,7 @@ use crate::app::services::Services;
 use crate::app::session::{Phase, Source, WithMemory};
 use crate::app::{DeviceFile, FileQuestion, Language, Severity, Text};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Wish};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
 use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -186,10 +186,10 @@ impl Unit {
             Ask::Save => self.plan(Change::Do(Service::Save), services),
             Ask::BelieveRestart => {}
             Ask::Acknowledge => {
-                if let Err(why) = self.may(drive, Wish::Acknowledge) {
+                if let Err(why) = self.may(drive, MotionRequest::Acknowledge) {
                     return self.tell_of(drive, Severity::Warning, vec![why], services);
                 }
-                self.moves.want(drive, Wish::Acknowledge);
+                self.moves.want(drive, MotionRequest::Acknowledge);
             }
             Ask::ConfirmLimits => {
                 if !self.confirm_limits(drive, services) {
@@ -199,7 +199,7 @@ impl Unit {
             Ask::Take => self.act(super::Action::Take, services),
             Ask::Give => self.act(super::Action::Give, services),
             Ask::Move(target) => {
-                let wish = Wish::Move { target: *target, effort: Effort::JOG };
+                let wish = MotionRequest::Move { target: *target, effort: Effort::JOG };
                 if let Err(why) = self.may(drive, wish) {
                     return self.tell_of(drive, Severity::Warning, vec![why], services);
                 }

@@ -43,7 +43,7 @@ pub struct Staged {
     earlier: Option<Image>,
     history: History<Image>,
     /// Edits of an earlier time whose parameter was not read yet.
-    waiting: Vec<Kept>,
+    waiting: Vec<SavedEdit>,
     /// What the drives are, as far as their variants are known.
     families: Families,
 }
@@ -53,7 +53,7 @@ pub(super) type Families = BTreeMap<DriveNumber, Family>;
 
 /// An edit that is kept: the parameter's own number, and what is wanted of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Kept(pub u16, pub Option<i64>);
+pub struct SavedEdit(pub u16, pub Option<i64>);
 
 /// Something that is wanted otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -189,19 +189,19 @@ impl Staged {
     }
 
     /// The edits, for a draft on disk; also those that wait for their parameter to be read.
-    pub fn kept(&self) -> Vec<Kept> {
-        let edited = self.differences().into_iter().map(|own| Kept(own.number.get(), own.to));
+    pub fn kept(&self) -> Vec<SavedEdit> {
+        let edited = self.differences().into_iter().map(|own| SavedEdit(own.number.get(), own.to));
         edited.chain(self.waiting.iter().copied()).collect()
     }
 
     /// Takes edits from a draft, as one step. Those whose parameter was not read wait for it; those that are none fall
     /// away.
-    pub fn take_draft(&mut self, draft: impl IntoIterator<Item = Kept>) {
+    pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
             return;
         };
-        for Kept(number, value) in draft {
+        for SavedEdit(number, value) in draft {
             let Some((number, row)) = ParameterNumber::new(number).and_then(|own| Some((own, own.row()?))) else {
                 continue;
             };
@@ -212,7 +212,7 @@ impl Staged {
                     // What it may not be stands there as it was left, and is marked.
                     wanted.values.insert(number, value);
                 }
-                Some(_) => self.waiting.push(Kept(number.get(), value)),
+                Some(_) => self.waiting.push(SavedEdit(number.get(), value)),
                 None if !self.is_device() => {
                     wanted.values.remove(&number);
                 }

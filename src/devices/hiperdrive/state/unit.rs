@@ -13,7 +13,7 @@ use super::ruler::{Measure, Ruler};
 use super::staged::{Mark, Staged};
 use super::unsaved::Unsaved;
 use crate::app::check::CheckLine;
-use crate::app::line::Line;
+use crate::app::live_session::LiveSession;
 use crate::app::session::{Phase, Session, Source};
 use crate::app::{Marks, PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
@@ -166,7 +166,7 @@ impl Unit {
             let next = self.records.remove(&drive).unwrap_or_else(|| self.new_record());
             self.records.insert(before, std::mem::replace(&mut self.record, next));
             self.record.gap();
-            self.record.track.poll(self.session.line.as_ref().and_then(Line::polling), false);
+            self.record.track.poll(self.session.line.as_ref().and_then(LiveSession::polling), false);
         }
     }
 

@@ -8,7 +8,7 @@ use super::unsaved::Unsaved;
 use super::words;
 use crate::app::review::OpWords;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
+use crate::app::session::{ApprovedPlanOf, Known, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
 use crate::devices::hiperdrive::profile::{
@@ -54,7 +54,7 @@ impl WithMemory for Unit {
     }
 
     /// Nothing moves meanwhile. No limit is known from which a device would count as worn.
-    fn commit(&mut self, agreed: Agreed<Hiperdrive>) -> HiperdriveJob {
+    fn commit(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin(&agreed.prepared.plan);
         HiperdriveJob::Commit(Box::new(agreed))

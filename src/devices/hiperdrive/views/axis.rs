@@ -21,16 +21,16 @@ use crate::ui::controls::{
     allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split,
 };
 use crate::ui::widgets::{Step as Line, StepState, Steps, steps};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What the page remembers from one picture to the next.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct AxisUiState {
     /// Which step is drawn, and since when on the window's clock.
     since: Option<(Step, f64)>,
 }
 
-impl View {
+impl AxisUiState {
     /// For how long a step has been drawn; zero: it is new.
     fn age(&mut self, step: Step, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
@@ -40,7 +40,7 @@ impl View {
 }
 
 /// The run, as it is drawn.
-pub(crate) struct Shown<'a> {
+pub(crate) struct AxisPicture<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a Seen,
@@ -48,15 +48,15 @@ pub(crate) struct Shown<'a> {
     looked_at: Duration,
 }
 
-impl Shown<'_> {
+impl AxisPicture<'_> {
     fn push(&self, actions: &mut Vec<Action>, action: Run) {
         actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
     /// A button of the run, with why it cannot be pressed.
-    fn button(&self, ui: &mut Ui, skin: &Skin, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
+    fn button(&self, ui: &mut Ui, theme: &Theme, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
         let allowed = self.axis.ask(own, self.seen).map(|_| ());
-        if allowed_button(ui, skin, &allowed, icon, word).clicked() {
+        if allowed_button(ui, theme, &allowed, icon, word).clicked() {
             self.push(actions, Run::Press(own));
         }
     }
@@ -69,78 +69,78 @@ const PRIMARY: f32 = 112.0;
 /// Below this width the list of steps does not stand beside the step.
 const BESIDE: f32 = 640.0;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUiState, actions: &mut Vec<Action>) {
     let Some(axis) = unit.axis() else {
-        intro(ui, skin, unit, actions);
-        ui.add_space(skin.space.groups);
-        notes(ui, skin);
+        intro(ui, theme, unit, actions);
+        ui.add_space(theme.space.groups);
+        notes(ui, theme);
         return;
     };
     let seen = unit.seen(unit.drive());
     let looked_at = view.age(axis.step(), ui.input(|input| input.time));
-    let shown = Shown { unit, axis, seen: &seen, looked_at };
+    let shown = AxisPicture { unit, axis, seen: &seen, looked_at };
     if let Some(end) = axis.end() {
-        end_ui(ui, skin, &shown, end, actions);
-        ui.add_space(skin.space.groups);
+        end_ui(ui, theme, &shown, end, actions);
+        ui.add_space(theme.space.groups);
     }
     let goes_on = axis.end().is_none();
     if ui.available_width() < BESIDE {
         // Nothing stands beside the step; at the end the list is the result.
         if goes_on {
-            step_ui(ui, skin, &shown, actions);
+            step_ui(ui, theme, &shown, actions);
         } else {
-            card(ui, skin, TEXTS.text("hd_axis.title"), |ui| list(ui, skin, &shown));
+            card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list(ui, theme, &shown));
         }
-        ui.add_space(skin.space.groups);
-        notes(ui, skin);
+        ui.add_space(theme.space.groups);
+        notes(ui, theme);
         return;
     }
     split(
         ui,
-        skin,
+        theme,
         (0.36, BESIDE),
         actions,
-        |ui, _| card(ui, skin, TEXTS.text("hd_axis.title"), |ui| list(ui, skin, &shown)),
+        |ui, _| card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list(ui, theme, &shown)),
         |ui, actions| {
             if goes_on {
-                step_ui(ui, skin, &shown, actions);
-                ui.add_space(skin.space.groups);
+                step_ui(ui, theme, &shown, actions);
+                ui.add_space(theme.space.groups);
             }
-            notes(ui, skin);
+            notes(ui, theme);
         },
     );
 }
 
-fn intro(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("hd_axis.title"), |ui| {
-        paragraph(ui, say(skin, "hd_axis.words"));
-        ui.add_space(skin.space.between);
+fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("hd_axis.title"), |ui| {
+        paragraph(ui, say(theme, "hd_axis.words"));
+        ui.add_space(theme.space.between);
         // Before the list: in a low window it is seen without scrolling.
         let allowed = unit.may_set_up();
         ui.horizontal(|ui| {
-            if primary(ui, skin, allowed.is_ok(), icons::PLAY, &say(skin, "hd_axis.begin")).clicked() {
+            if primary(ui, theme, allowed.is_ok(), icons::PLAY, &say(theme, "hd_axis.begin")).clicked() {
                 actions.push(Action::device(unit.session.id, Hiperdrive::Axis(Run::Begin)));
             }
             if let Err(why) = &allowed {
-                warning(ui, skin, why);
+                warning(ui, theme, why);
             }
         });
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
         // Lines of text, not of buttons.
         ui.spacing_mut().interact_size.y = ui.text_style_height(&egui::TextStyle::Body);
         for (number, step) in (1..).zip(Step::ALL) {
             ui.horizontal(|ui| {
                 let size = egui::vec2(NUMBERS, ui.spacing().interact_size.y);
                 let layout = egui::Layout::right_to_left(egui::Align::Center);
-                ui.allocate_ui_with_layout(size, layout, |ui| ui.label(skin.label(number.to_string())));
-                ui.label(skin.label(skin.words(&words::title(step))));
+                ui.allocate_ui_with_layout(size, layout, |ui| ui.label(theme.label(number.to_string())));
+                ui.label(theme.label(theme.words(&words::title(step))));
             });
         }
     });
 }
 
 /// All steps, with what was found in those that are done.
-fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
+fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let line = |step: Step| {
         let reached = shown.axis.reached(step);
         let state = match reached {
@@ -156,19 +156,19 @@ fn list(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
             _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| told),
         };
         Line {
-            title: skin.words(&words::title(step)),
+            title: theme.words(&words::title(step)),
             state,
-            word: skin.words(&words::reached(reached)),
-            note: found.map(|text| unbroken(skin.words(&text))).unwrap_or_default(),
+            word: theme.words(&words::reached(reached)),
+            note: found.map(|text| unbroken(theme.words(&text))).unwrap_or_default(),
             ..Line::default()
         }
     };
     let lines: Vec<Line> = Step::ALL.into_iter().map(line).collect();
-    steps(ui, skin, &Steps { steps: &lines, ..Steps::default() });
+    steps(ui, theme, &Steps { steps: &lines, ..Steps::default() });
 }
 
 /// The step that counts.
-fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
     if shown.looked_at.is_zero() {
@@ -179,97 +179,97 @@ fn step_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action
     }
     let place = Step::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
     let aside = |ui: &mut Ui| {
-        ui.label(skin.caption(format!("{place}/{}", Step::ALL.len())));
+        ui.label(theme.caption(format!("{place}/{}", Step::ALL.len())));
         if shown.unit.drives().len() > 1 {
             let drive = TEXTS.text("hd_axis.of_drive").with("drive", axis.drive().get());
-            ui.label(skin.caption(skin.words(&drive)));
+            ui.label(theme.caption(theme.words(&drive)));
         }
     };
-    card_with(ui, skin, words::title(step), aside, |ui| {
-        paragraph(ui, unbroken(skin.words(&words::todo(step, seen))));
-        ui.add_space(skin.space.between);
-        live(ui, skin, shown);
-        ui.add_space(skin.space.between);
-        let mut entries = axis.entries().shown(skin.language);
-        content::content_ui(ui, skin, shown, &mut entries, actions);
-        if entries != axis.entries().shown(skin.language) {
+    card_with(ui, theme, words::title(step), aside, |ui| {
+        paragraph(ui, unbroken(theme.words(&words::todo(step, seen))));
+        ui.add_space(theme.space.between);
+        live(ui, theme, shown);
+        ui.add_space(theme.space.between);
+        let mut entries = axis.entries().shown(theme.language);
+        content::content_ui(ui, theme, shown, &mut entries, actions);
+        if entries != axis.entries().shown(theme.language) {
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
-        ui.add_space(skin.space.groups);
-        foot(ui, skin, shown, actions);
-        ui.add_space(skin.space.between);
-        messages(ui, skin, shown, &entries);
+        ui.add_space(theme.space.groups);
+        foot(ui, theme, shown, actions);
+        ui.add_space(theme.space.between);
+        messages(ui, theme, shown, &entries);
     });
 }
 
 /// What comes and goes: a fault, what does not hold any more, what is missing, what was found.
-fn messages(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let (axis, seen) = (shown.axis, shown.seen);
     let fallen = axis.fallen().map(words::fallen);
     if let Some(why) = words::fault(seen) {
-        line(ui, skin, Severity::Error, &why);
+        line(ui, theme, Severity::Error, &why);
     }
     if let Some(why) = &fallen {
-        line(ui, skin, Severity::Error, why);
+        line(ui, theme, Severity::Error, why);
     }
     if let Some(why) = words::unexplained(axis, seen) {
-        warning(ui, skin, &why);
+        warning(ui, theme, &why);
     }
     if let (Err(why), None) = (axis.may_go_on(seen), &fallen) {
-        warning(ui, skin, &why);
+        warning(ui, theme, &why);
     }
-    content::messages_ui(ui, skin, shown, entries);
+    content::messages_ui(ui, theme, shown, entries);
     // The limits to be looked at stand large above.
     if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != Step::Confirm) {
-        ui.add_space(skin.space.inside);
-        row(ui, skin, &say(skin, "hd_axis.now"), unbroken(skin.words(&found)));
+        ui.add_space(theme.space.inside);
+        row(ui, theme, &say(theme, "hd_axis.now"), unbroken(theme.words(&found)));
     }
     if let (Step::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
-        warning(ui, skin, &differences);
+        warning(ui, theme, &differences);
     }
 }
 
 /// Where the axis is, and in which state its drive: always as high.
-fn live(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
-    skin.sunken().show(ui, |ui| {
+fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
+    theme.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
         let position = shown.seen.position.map_or_else(
-            || say(skin, "hd_axis.none"),
-            |position| skin.words(&words::millimetres(shown.seen.ruler(), position.into())),
+            || say(theme, "hd_axis.none"),
+            |position| theme.words(&words::millimetres(shown.seen.ruler(), position.into())),
         );
-        row(ui, skin, &say(skin, "hd_axis.position"), skin.value(position));
+        row(ui, theme, &say(theme, "hd_axis.position"), theme.value(position));
         let state = shown
             .seen
             .actual
-            .map_or_else(|| say(skin, "hd_axis.none"), |actual| skin.words(&explain::state(actual.status.state())));
+            .map_or_else(|| say(theme, "hd_axis.none"), |actual| theme.words(&explain::state(actual.status.state())));
         let code = shown.seen.error.filter(|code| *code != ErrorCode::NONE);
         let state = match (shown.seen.has_failed(), code) {
             (false, _) => RichText::new(state),
-            (true, None) => RichText::new(state).color(skin.palette.bad),
-            (true, Some(code)) => RichText::new(format!("{state} {:04X}", code.code())).color(skin.palette.bad),
+            (true, None) => RichText::new(state).color(theme.palette.bad),
+            (true, Some(code)) => RichText::new(format!("{state} {:04X}", code.code())).color(theme.palette.bad),
         };
-        row(ui, skin, &say(skin, "hd_axis.state"), state);
+        row(ui, theme, &say(theme, "hd_axis.state"), state);
     });
 }
 
 /// Back and cancel, and on. Before it is settled the step can only be cancelled, which stops what moves.
-fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+fn foot(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::may_leave(shown.looked_at).is_ok();
     let step = axis.step();
     let allowed = axis.may_go_on(seen);
     ui.horizontal_wrapped(|ui| {
-        if enabled_button(ui, settled && axis.may_go_back(seen), icons::ARROW_U_UP_LEFT, &say(skin, "hd_axis.back"))
+        if enabled_button(ui, settled && axis.may_go_back(seen), icons::ARROW_U_UP_LEFT, &say(theme, "hd_axis.back"))
             .clicked()
         {
             shown.push(actions, Run::Back);
         }
-        if button(ui, icons::X, &say(skin, "hd_axis.cancel")).clicked() {
+        if button(ui, icons::X, &say(theme, "hd_axis.cancel")).clicked() {
             shown.push(actions, Run::Cancel);
         }
-        let word = say(skin, if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
+        let word = say(theme, if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
         at_the_right(ui, |ui| {
-            if primary(ui, skin, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
+            if primary(ui, theme, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
             }
         });
@@ -277,12 +277,12 @@ fn foot(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
 }
 
 /// To the next step without this one, beside what the step does itself.
-fn skip(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if step.may_be_skipped() {
         let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
         let allowed = Axis::may_leave(shown.looked_at).is_ok() && shown.axis.may_skip(shown.seen);
-        if enabled_button(ui, allowed, "", &say(skin, id)).clicked() {
+        if enabled_button(ui, allowed, "", &say(theme, id)).clicked() {
             shown.push(actions, Run::Skip);
         }
     }
@@ -303,44 +303,45 @@ fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
 }
 
 /// How it ended: what can be done now, what was written, and whether that lasts.
-fn end_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, end: End, actions: &mut Vec<Action>) {
+fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
-    card(ui, skin, TEXTS.text(title), |ui| {
+    card(ui, theme, TEXTS.text(title), |ui| {
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &say(skin, "hd_axis.again")).clicked() {
+            if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &say(theme, "hd_axis.again")).clicked()
+            {
                 shown.push(actions, Run::Begin);
             }
-            if button(ui, icons::FLOPPY_DISK, &say(skin, "hd_axis.save_report")).clicked() {
+            if button(ui, icons::FLOPPY_DISK, &say(theme, "hd_axis.save_report")).clicked() {
                 shown.push(actions, Run::AskReport);
             }
-            if button(ui, icons::COPY, &say(skin, "hd_axis.copy_report")).clicked()
-                && let Some(report) = shown.unit.axis_report(skin.language)
+            if button(ui, icons::COPY, &say(theme, "hd_axis.copy_report")).clicked()
+                && let Some(report) = shown.unit.axis_report(theme.language)
             {
                 ui.ctx().copy_text(report);
             }
-            recall(ui, skin, shown, actions);
+            recall(ui, theme, shown, actions);
         });
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         if end == End::Cancelled {
-            line(ui, skin, Severity::Note, &TEXTS.text("hd_axis.stands"));
+            line(ui, theme, Severity::Note, &TEXTS.text("hd_axis.stands"));
         }
         let weight = if axis.is_saved() || axis.changes().is_empty() { Severity::Note } else { Severity::Warning };
         for text in end_lines(axis, shown.seen) {
-            line(ui, skin, weight, &text);
+            line(ui, theme, weight, &text);
         }
     });
 }
 
 /// What was known before is written back.
-fn recall(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let word = say(skin, "hd_axis.recall");
-    shown.button(ui, skin, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
+fn recall(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+    let word = say(theme, "hd_axis.recall");
+    shown.button(ui, theme, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
 /// What else one should know.
-fn notes(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, TEXTS.text("hd_axis.notes"), |ui| {
+fn notes(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, TEXTS.text("hd_axis.notes"), |ui| {
         for id in [
             "hd_axis.note_stop",
             "hd_axis.note_controller",
@@ -349,22 +350,22 @@ fn notes(ui: &mut Ui, skin: &Skin) {
             "hd_axis.note_factory",
             "hd_axis.note_words",
         ] {
-            line(ui, skin, Severity::Note, &TEXTS.text(id));
+            line(ui, theme, Severity::Note, &TEXTS.text(id));
         }
     });
 }
 
-fn line(ui: &mut Ui, skin: &Skin, own: Severity, text: &Text) {
-    let (icon, ink) = severity(skin, own);
+fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
+    let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));
-        paragraph(ui, skin.words(text));
+        paragraph(ui, theme.words(text));
     });
 }
 
-fn warning(ui: &mut Ui, skin: &Skin, why: &Text) {
+fn warning(ui: &mut Ui, theme: &Theme, why: &Text) {
     ui.horizontal_top(|ui| {
-        ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+        ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+        paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));
     });
 }

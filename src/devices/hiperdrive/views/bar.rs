@@ -8,56 +8,56 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, State};
 use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, name, paragraph};
-use crate::ui::stopping::{goes_down, means_motion, pressed_at};
-use crate::ui::{Skin, icons};
+use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
+use crate::ui::{Theme, icons};
 
 /// STOP: wide enough for a flat hand.
 const STOP: egui::Vec2 = vec2(112.0, 44.0);
 
 /// Draws it.
-pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
+pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     ui.horizontal_top(|ui| {
-        stop(ui, skin, (unit.moves.is_open(), studio.moves_by_hand()), actions);
+        stop(ui, theme, (unit.moves.is_open(), studio.moves_by_hand()), actions);
         ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = skin.space.inside;
+            ui.spacing_mut().item_spacing.y = theme.space.inside;
             ui.horizontal_wrapped(|ui| {
-                drives(ui, skin, unit, actions);
+                drives(ui, theme, unit, actions);
                 if unit.moves.is_open() {
-                    let word = say(skin, "hd_bar.give");
-                    if allowed_button(ui, skin, &unit.can_give(), icons::PLUGS, &word).clicked() {
+                    let word = say(theme, "hd_bar.give");
+                    if allowed_button(ui, theme, &unit.can_give(), icons::PLUGS, &word).clicked() {
                         actions.push(Action::device(id, Hiperdrive::Give));
                     }
-                    let well = || RichText::new(say(skin, "hd_bar.in_control")).color(skin.palette.good);
-                    ui.label(outside::badge(skin, unit).unwrap_or_else(well));
+                    let well = || RichText::new(say(theme, "hd_bar.in_control")).color(theme.palette.good);
+                    ui.label(outside::badge(theme, unit).unwrap_or_else(well));
                 } else {
-                    let word = say(skin, "hd_bar.take");
-                    if allowed_button(ui, skin, &unit.can_take(), icons::PLUGS_CONNECTED, &word).clicked() {
+                    let word = say(theme, "hd_bar.take");
+                    if allowed_button(ui, theme, &unit.can_take(), icons::PLUGS_CONNECTED, &word).clicked() {
                         actions.push(Action::device(id, Hiperdrive::Take));
                     }
-                    let watching = || skin.label(say(skin, "hd_bar.watching"));
-                    ui.label(outside::badge(skin, unit).unwrap_or_else(watching));
+                    let watching = || theme.label(say(theme, "hd_bar.watching"));
+                    ui.label(outside::badge(theme, unit).unwrap_or_else(watching));
                 }
             });
             if let Some(why) = unit.why_lost() {
-                let words = format!("{}  {}", icons::WARNING_CIRCLE, skin.words(&why));
-                paragraph(ui, RichText::new(words).color(skin.palette.bad));
+                let words = format!("{}  {}", icons::WARNING_CIRCLE, theme.words(&why));
+                paragraph(ui, RichText::new(words).color(theme.palette.bad));
             }
-            paragraph(ui, skin.caption(format!("{}  {}", icons::WARNING, say(skin, "hd_bar.stop_is_not"))));
+            paragraph(ui, theme.caption(format!("{}  {}", icons::WARNING, say(theme, "hd_bar.stop_is_not"))));
         });
     });
 }
 
 /// STOP of all drives; also while nothing is known to move.
-fn stop(ui: &mut Ui, skin: &Skin, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
-    let palette = skin.palette;
-    let word = skin.say("hd_bar.stop");
+fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
+    let palette = theme.palette;
+    let word = theme.say("hd_bar.stop");
     let (ink, fill) = if open { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
-    let text = RichText::new(format!("{}  {word}", icons::STOP)).font(skin.strong(skin.sizes.section)).color(ink);
+    let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.strong(theme.sizes.section)).color(ink);
     let edge = if open { Stroke::NONE } else { Stroke::new(1.0, palette.bad) };
     let button = egui::Button::new(text).fill(fill).stroke(edge);
     // Also down counts: a stop does not wait for a finger to be lifted.
-    let response = ui.add_sized(STOP, button).on_hover_text(skin.say("hd_bar.stop_hint"));
+    let response = ui.add_sized(STOP, button).on_hover_text(theme.say("hd_bar.stop_hint"));
     let pressed = goes_down(ui, &response);
     if name(response, true, &word).clicked() || pressed {
         // What is pressed on the heels of it means the same.
@@ -67,18 +67,18 @@ fn stop(ui: &mut Ui, skin: &Skin, (open, moves): (bool, bool), actions: &mut Vec
 }
 
 /// The drives of a hub; of an adapter nothing, it has one.
-fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drives = unit.drives();
     if drives.len() < 2 {
         return;
     }
-    ui.label(skin.label(say(skin, "hd_bar.drive")));
+    ui.label(theme.label(say(theme, "hd_bar.drive")));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
         ui.spacing_mut().button_padding.x = 6.0;
         let moving = unit.moving_drives();
         for drive in drives {
-            if drive_button(ui, skin, unit, (drive, moving.contains(&drive))) {
+            if drive_button(ui, theme, unit, (drive, moving.contains(&drive))) {
                 actions.push(Action::device(unit.session.id, Hiperdrive::SelectDrive(drive)));
             }
         }
@@ -86,8 +86,8 @@ fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
 }
 
 /// A drive with its state, as a sign and in words.
-fn drive_button(ui: &mut Ui, skin: &Skin, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
-    let palette = skin.palette;
+fn drive_button(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
+    let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.state_now(drive) };
     // Each sign is as wide as the others: no button changes its place because a drive changes its state.
     let (sign, colour) = match state {
@@ -99,12 +99,12 @@ fn drive_button(ui: &mut Ui, skin: &Skin, unit: &Unit, (drive, moves): (DriveNum
         Some(State::NotReady) => (icons::PLUGS, palette.muted),
         None => (icons::QUESTION, palette.muted),
     };
-    let words = state.map_or_else(|| say(skin, "hd_bar.unknown"), |state| skin.words(&explain::state(state)));
+    let words = state.map_or_else(|| say(theme, "hd_bar.unknown"), |state| theme.words(&explain::state(state)));
     let name = TEXTS.text("hd_bar.named").with("drive", drive.get());
-    let name = skin.words(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
+    let name = theme.words(&TEXTS.text("hd_bar.state").with_text("drive", name).with("state", words));
     let is_shown = drive == unit.drive();
     let ink = if is_shown { palette.text } else { palette.muted };
-    let font = skin.strong(skin.sizes.body);
+    let font = theme.strong(theme.sizes.body);
     let mut label = egui::text::LayoutJob::default();
     label.append(&drive.get().to_string(), 0.0, egui::TextFormat::simple(font.clone(), ink.into()));
     label.append(sign, 6.0, egui::TextFormat::simple(font, colour.into()));

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, expla
 use crate::devices::hiperdrive::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What parameter 47 is written for, with what is to be known of it.
 const SERVICES: [(Service, &str); 5] = [
@@ -20,47 +20,47 @@ const SERVICES: [(Service, &str); 5] = [
     (Service::Reset, "hd_services.reset"),
 ];
 
-pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let is_profile = unit.profile().is_some();
     two_columns(
         ui,
-        skin,
+        theme,
         &mut *actions,
         |ui, actions| {
-            identity(ui, skin, unit, actions);
+            identity(ui, theme, unit, actions);
             if !is_profile {
-                ui.add_space(skin.space.groups);
-                check(ui, skin, unit, actions);
+                ui.add_space(theme.space.groups);
+                check(ui, theme, unit, actions);
             }
         },
         |ui, _| {
-            drives(ui, skin, unit);
-            ui.add_space(skin.space.groups);
-            wiring(ui, skin);
+            drives(ui, theme, unit);
+            ui.add_space(theme.space.groups);
+            wiring(ui, theme);
         },
     );
     if !is_profile {
-        ui.add_space(skin.space.groups);
-        services(ui, skin, unit, actions);
+        ui.add_space(theme.space.groups);
+        services(ui, theme, unit, actions);
     }
 }
 
-fn identity(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+fn identity(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         if unit.profile().is_none()
-            && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &say(skin, "hd_device.read"))
+            && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &say(theme, "hd_device.read"))
                 .clicked()
         {
             actions.push(Action::Command(unit.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, skin, TEXTS.text("hd_device.title"), read, |ui| {
+    card_with(ui, theme, TEXTS.text("hd_device.title"), read, |ui| {
         let Some(identity) = unit.identity() else {
-            empty(ui, skin, &say(skin, "hd_device.nothing"), None);
+            empty(ui, theme, &say(theme, "hd_device.nothing"), None);
             return;
         };
-        ui.label(skin.value(&identity.category));
-        ui.add_space(skin.space.inside);
+        ui.label(theme.value(&identity.category));
+        ui.add_space(theme.space.inside);
         for (label, value) in [
             ("hd_device.name", &identity.name),
             ("hd_device.article", &identity.article_number),
@@ -68,73 +68,73 @@ fn identity(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
             ("hd_device.date", &identity.production_date),
             ("hd_device.version", &identity.version),
         ] {
-            row(ui, skin, &say(skin, label), skin.mono(value));
+            row(ui, theme, &say(theme, label), theme.mono(value));
         }
     });
 }
 
 /// What is plugged in, place by place.
-fn drives(ui: &mut Ui, skin: &Skin, unit: &Unit) {
-    card(ui, skin, TEXTS.text("hd_drives.title"), |ui| {
+fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+    card(ui, theme, TEXTS.text("hd_drives.title"), |ui| {
         let Some(identity) = unit.identity() else {
-            empty(ui, skin, &say(skin, "hd_device.nothing"), None);
+            empty(ui, theme, &say(theme, "hd_device.nothing"), None);
             return;
         };
         if identity.drives.is_empty() {
-            empty(ui, skin, &say(skin, "hd_drives.none"), None);
+            empty(ui, theme, &say(theme, "hd_drives.none"), None);
         }
         for drive in &identity.drives {
             ui.horizontal_wrapped(|ui| {
-                ui.label(skin.heading(drive.number.get().to_string()));
-                ui.label(skin.mono(&drive.name));
+                ui.label(theme.heading(drive.number.get().to_string()));
+                ui.label(theme.mono(&drive.name));
                 let id = if drive.requested { "hd_drives.requested" } else { "hd_drives.not_requested" };
-                ui.label(skin.caption(say(skin, id)));
+                ui.label(theme.caption(say(theme, id)));
             });
-            row(ui, skin, &say(skin, "hd_device.serial"), skin.mono(&drive.serial_number));
-            row(ui, skin, &say(skin, "hd_device.version"), skin.mono(&drive.version));
-            row(ui, skin, &say(skin, "hd_device.article"), skin.mono(&drive.article_number));
+            row(ui, theme, &say(theme, "hd_device.serial"), theme.mono(&drive.serial_number));
+            row(ui, theme, &say(theme, "hd_device.version"), theme.mono(&drive.version));
+            row(ui, theme, &say(theme, "hd_device.article"), theme.mono(&drive.article_number));
         }
         let places = identity.topology.drives();
         let taken = identity.drives.len();
         if taken < usize::from(places) {
             let text = TEXTS.text("hd_drives.empty").with("count", usize::from(places) - taken);
-            paragraph(ui, skin.caption(skin.words(&text)));
+            paragraph(ui, theme.caption(theme.words(&text)));
         }
     });
 }
 
-fn check(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+fn check(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
-        if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+        if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
             actions.push(Action::device(unit.session.id, Hiperdrive::Check));
         }
     };
-    card_with(ui, skin, "check_card.title", run, |ui| {
-        lines_ui(ui, skin, unit.check.as_deref(), TEXTS.text("hd_check.nothing"));
+    card_with(ui, theme, "check_card.title", run, |ui| {
+        lines_ui(ui, theme, unit.check.as_deref(), TEXTS.text("hd_check.nothing"));
     });
 }
 
 /// What can be done with all that the device keeps.
-fn services(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("hd_services.title"), |ui| {
+fn services(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {
-            if enabled_button(ui, unit.session.is_ready(), "", &skin.words(&explain::service(service))).clicked() {
+            if enabled_button(ui, unit.session.is_ready(), "", &theme.words(&explain::service(service))).clicked() {
                 let change = Change::Do(service);
                 actions.push(Action::device(unit.session.id, Hiperdrive::Plan(Box::new(change))));
             }
-            paragraph(ui, skin.caption(say(skin, note)));
-            ui.add_space(skin.space.inside);
+            paragraph(ui, theme.caption(say(theme, note)));
+            ui.add_space(theme.space.inside);
         }
-        paragraph(ui, skin.caption(say(skin, "hd_services.controller")));
+        paragraph(ui, theme.caption(say(theme, "hd_services.controller")));
     });
 }
 
 const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drives", "hd_wiring.manual"];
 
-fn wiring(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, "wiring.title", |ui| {
+fn wiring(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, skin.label(say(skin, note)));
+            paragraph(ui, theme.label(say(theme, note)));
         }
     });
 }
@@ -143,7 +143,7 @@ fn wiring(ui: &mut Ui, skin: &Skin) {
 mod tests {
     use super::WIRING;
     use crate::devices::hiperdrive::state::TEXTS;
-    use crate::ui::wires::check_notes;
+    use crate::ui::wiring::check_notes;
 
     /// Issue 22.23: HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter).
     #[test]

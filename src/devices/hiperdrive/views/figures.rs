@@ -7,25 +7,25 @@ use crate::devices::hiperdrive::procedures::cyclic::{Bucket, Histogram};
 use crate::devices::hiperdrive::protocol::{ControlBit, DriveNumber, StatusBit};
 use crate::devices::hiperdrive::state::{TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, empty, paragraph, row};
 use crate::ui::widgets::series;
 
 /// Status and control word with the names of their bits.
-pub(super) fn words_card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, drive: DriveNumber) {
-    card(ui, skin, TEXTS.text("hd_words.title"), |ui| {
+pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
+    card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
         let Some(actual) = unit.actual(drive) else {
-            empty(ui, skin, &say(skin, "hd_words.nothing"), None);
+            empty(ui, theme, &say(theme, "hd_words.nothing"), None);
             return;
         };
         let bits = |names: Vec<String>, word: u16| RichText::new(format!("0x{word:04X}  {}", names.join(" · ")));
-        let set = actual.status.set().map(|bit: StatusBit| skin.words(&explain::status_bit(bit))).collect();
-        row(ui, skin, &say(skin, "hd_words.status"), bits(set, actual.status.word()));
+        let set = actual.status.set().map(|bit: StatusBit| theme.words(&explain::status_bit(bit))).collect();
+        row(ui, theme, &say(theme, "hd_words.status"), bits(set, actual.status.word()));
         if let Some(sent) = unit.moves.sent(drive) {
             let speed_mode = sent.control.has(ControlBit::SpeedMode);
             let set = ControlBit::ALL.into_iter().filter(|bit| sent.control.has(*bit));
-            let set = set.map(|bit| skin.words(&explain::control_bit(bit, speed_mode))).collect();
-            row(ui, skin, &say(skin, "hd_words.control"), bits(set, sent.control.word()));
+            let set = set.map(|bit| theme.words(&explain::control_bit(bit, speed_mode))).collect();
+            row(ui, theme, &say(theme, "hd_words.control"), bits(set, sent.control.word()));
         }
     });
 }
@@ -35,42 +35,42 @@ const BARS: f32 = 96.0;
 const WORDS: f32 = 16.0;
 
 /// The cyclic connection: how many packets, what was wrong with them, and how far their intervals were off.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit) {
-    card(ui, skin, TEXTS.text("hd_link.title"), |ui| {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+    card(ui, theme, TEXTS.text("hd_link.title"), |ui| {
         let view = unit.moves.view();
         let link = &view.link;
         if link.sent == 0 {
-            empty(ui, skin, &say(skin, "hd_link.nothing"), None);
+            empty(ui, theme, &say(theme, "hd_link.nothing"), None);
             return;
         }
-        let milliseconds = skin.number(link.interval.as_secs_f64() * 1e3, 1);
-        row(ui, skin, &say(skin, "hd_link.interval"), skin.mono(format!("{milliseconds} ms")));
+        let milliseconds = theme.number(link.interval.as_secs_f64() * 1e3, 1);
+        row(ui, theme, &say(theme, "hd_link.interval"), theme.mono(format!("{milliseconds} ms")));
         let priority = if view.punctual { "hd_link.real_time" } else { "hd_link.ordinary" };
-        row(ui, skin, &say(skin, "hd_link.priority"), say(skin, priority));
-        row(ui, skin, &say(skin, "hd_link.packets"), skin.mono(format!("{} → · ← {}", link.sent, link.received)));
+        row(ui, theme, &say(theme, "hd_link.priority"), say(theme, priority));
+        row(ui, theme, &say(theme, "hd_link.packets"), theme.mono(format!("{} → · ← {}", link.sent, link.received)));
         let bad =
             [("hd_link.missed", link.missed), ("hd_link.stale", link.stale), ("hd_link.malformed", link.malformed)];
         for (id, count) in bad {
-            let ink = if count == 0 { skin.palette.text } else { skin.palette.warn };
-            row(ui, skin, &say(skin, id), skin.mono(count.to_string()).color(ink));
+            let ink = if count == 0 { theme.palette.text } else { theme.palette.warn };
+            row(ui, theme, &say(theme, id), theme.mono(count.to_string()).color(ink));
         }
         if let Some((least, greatest)) = link.intervals.range_us() {
             let off =
                 TEXTS.text("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));
-            row(ui, skin, &say(skin, "hd_link.jitter"), skin.mono(skin.words(&off)));
+            row(ui, theme, &say(theme, "hd_link.jitter"), theme.mono(theme.words(&off)));
         }
-        histogram(ui, skin, &view.link.intervals);
-        paragraph(ui, skin.caption(say(skin, "hd_link.words")));
+        histogram(ui, theme, &view.link.intervals);
+        paragraph(ui, theme.caption(say(theme, "hd_link.words")));
     });
 }
 
 /// A bar a bucket; as many are high as there were, on a scale of decades, so that one late packet in a million is seen.
-fn histogram(ui: &mut Ui, skin: &Skin, histogram: &Histogram) {
+fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     let buckets: Vec<Bucket> = histogram.buckets().collect();
     let size = vec2(ui.available_width().max(0.0), BARS + WORDS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let told: Vec<String> = buckets.iter().map(|bucket| format!("{} {}", span(bucket), bucket.count)).collect();
-    let label = say(skin, "hd_link.jitter");
+    let label = say(theme, "hd_link.jitter");
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, &label);
         info.current_text_value = Some(told.join(", "));
@@ -91,15 +91,15 @@ fn histogram(ui: &mut Ui, skin: &Skin, histogram: &Histogram) {
             pos2(left + 1.0, ground - BARS * height(bucket.count)),
             pos2(left + width - 1.0, ground),
         );
-        painter.rect_filled(bar, 1.0, series(skin, 1));
+        painter.rect_filled(bar, 1.0, series(theme, 1));
         let place = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width, rect.bottom()));
         if response.hover_pos().is_some_and(|at| place.contains(at)) {
             response.clone().on_hover_text(format!("{}: {}", span(bucket), bucket.count));
         }
     }
-    painter.hline(rect.x_range(), ground, Stroke::new(1.0, skin.palette.line));
-    let font = FontId::monospace(skin.sizes.caption);
-    let ink = skin.palette.muted.into();
+    painter.hline(rect.x_range(), ground, Stroke::new(1.0, theme.palette.line));
+    let font = FontId::monospace(theme.sizes.caption);
+    let ink = theme.palette.muted.into();
     // Where the middle is and how far the ends are.
     let first = buckets.first().map(span).unwrap_or_default();
     let last = buckets.last().map(span).unwrap_or_default();

@@ -2,14 +2,14 @@
 
 use egui::{FontId, Ui, Vec2, vec2};
 
-use super::motion::{View, effort_ui, length_ui, why_not};
+use super::motion::{MotionUiState, effort_ui, length_ui, why_not};
 use super::outside;
 use crate::app::{Action, HoldEvent, SessionId};
 use crate::devices::hiperdrive::procedures::dead_man::Outside;
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber};
 use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{allowed_button, card, paragraph, problem};
 use crate::ui::widgets::{HoldButton, hold_button};
 
@@ -17,23 +17,23 @@ use crate::ui::widgets::{HoldButton, hold_button};
 const PAD: f32 = 72.0;
 
 /// The card.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("hd_jog.title"), |ui| {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("hd_jog.title"), |ui| {
         let drafts = &mut view.jog_effort;
         let drive = unit.drive();
         let own = (unit.moves.jog_effort(drive), unit.moves.jogs_with(drive), drafts);
-        let effort = effort_ui(ui, skin, unit, own, Motor::JogEffort, actions);
+        let effort = effort_ui(ui, theme, unit, own, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(drive));
-        pads_ui(ui, skin, unit, allowed.is_ok(), actions);
-        pads_note(ui, skin, unit);
-        why_not(ui, skin, &allowed);
-        ui.add_space(skin.space.between);
+        pads_ui(ui, theme, unit, allowed.is_ok(), actions);
+        pads_note(ui, theme, unit);
+        why_not(ui, theme, &allowed);
+        ui.add_space(theme.space.between);
         ui.separator();
-        ui.label(skin.heading(say(skin, "hd_step.title")));
-        length_ui(ui, skin, unit, "hd_step.by", &mut view.step, actions);
+        ui.label(theme.heading(say(theme, "hd_step.title")));
+        length_ui(ui, theme, unit, "hd_step.by", &mut view.step, actions);
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
-                if allowed_button(ui, skin, &allowed, "", &say(skin, id)).clicked() {
+                if allowed_button(ui, theme, &allowed, "", &say(theme, id)).clicked() {
                     match forms::step(unit, &view.step, unit.measure, sign) {
                         Ok(by) => {
                             view.step_problem = None;
@@ -45,55 +45,55 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
                 }
             }
         });
-        problem(ui, skin, view.step_problem.as_ref());
-        paragraph(ui, skin.caption(say(skin, "hd_step.words")));
+        problem(ui, theme, view.step_problem.as_ref());
+        paragraph(ui, theme.caption(say(theme, "hd_step.words")));
         // At the end: nothing that can be clicked moves away when it comes.
-        outside::block_ui(ui, skin, unit, &mut view.outside, actions);
+        outside::block_ui(ui, theme, unit, &mut view.outside, actions);
     });
 }
 
 /// What the pads do, or why both or one of them are blocked, in the same room: nothing below moves when that changes.
-fn pads_note(ui: &mut Ui, skin: &Skin, unit: &Unit) {
+fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let outside = unit.outside(drive).filter(|own| {
         let ways = [Direction::Counterclockwise, Direction::Clockwise];
         own.is_far && ways.into_iter().any(|way| unit.is_blocked(drive, way))
     });
     let (id, colour) = match outside.map(|own| own.outside) {
-        None => ("hd_jog.words", skin.palette.muted),
-        Some(Outside::At(_)) => ("hd_jog.outside", skin.palette.bad),
-        Some(Outside::Unclear) => ("hd_jog.unclear", skin.palette.bad),
+        None => ("hd_jog.words", theme.palette.muted),
+        Some(Outside::At(_)) => ("hd_jog.outside", theme.palette.bad),
+        Some(Outside::Unclear) => ("hd_jog.unclear", theme.palette.bad),
     };
     let width = ui.available_width();
-    let font = FontId::proportional(skin.sizes.caption);
-    let height = |id| ui.painter().layout(say(skin, id), font.clone(), colour.into(), width).size().y;
+    let font = FontId::proportional(theme.sizes.caption);
+    let height = |id| ui.painter().layout(say(theme, id), font.clone(), colour.into(), width).size().y;
     let room = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear"].into_iter().map(height).fold(0.0, f32::max);
     ui.allocate_ui(vec2(width, room), |ui| {
         ui.set_min_height(room);
-        paragraph(ui, skin.caption(say(skin, id)).color(colour));
+        paragraph(ui, theme.caption(say(theme, id)).color(colour));
     });
 }
 
 /// The two buttons that are held.
-pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
-    let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
+pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
+    let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     ui.horizontal(|ui| {
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_jog.down"), (Direction::Clockwise, "+", "hd_jog.up")]
         {
             let blocked = unit.is_blocked(unit.drive(), direction);
             let caption = say(
-                skin,
+                theme,
                 match unit.outside(unit.drive()).map(|own| own.outside) {
                     Some(Outside::Unclear) if blocked => "hd_outside.pad_unclear",
                     _ if blocked => "hd_outside.pad",
                     _ => "hd_jog.hold",
                 },
             );
-            let (enabled, label) = (enabled && !blocked, say(skin, label));
+            let (enabled, label) = (enabled && !blocked, say(theme, label));
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let press = Motor::JogPress { direction, repeated: false };
-            pad_ui(ui, skin, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);
+            pad_ui(ui, theme, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);
         }
     });
 }
@@ -101,14 +101,14 @@ pub(super) fn pads_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, enabled: bool, acti
 /// A button that moves a drive while it is held; `press` begins that.
 pub(super) fn pad_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     (session, drive): (SessionId, DriveNumber),
     press: Motor,
     (button, size): (&HoldButton<'_>, Vec2),
     actions: &mut Vec<Action>,
 ) {
     // For another drive it is another button: what is held for the one, or has the keyboard, does not count for the other.
-    let event = ui.push_id((session, drive), |ui| hold_button(ui, skin, button, size)).inner;
+    let event = ui.push_id((session, drive), |ui| hold_button(ui, theme, button, size)).inner;
     let motor = match event {
         Some(HoldEvent::Press) => press,
         Some(HoldEvent::Hold) => Motor::JogHold,

@@ -6,46 +6,46 @@ use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, PortLi
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::leds::{Lamp, Leds};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, entry, name, options, paragraph, severity};
 
 /// What is picked.
 #[derive(Default)]
-pub(super) struct View(Leds);
+pub(super) struct LedsUiState(Leds);
 
 /// Size of a lamp's button, and of the lamp in it.
 const BUTTON: egui::Vec2 = vec2(248.0, 44.0);
 const RADIUS: f32 = 9.0;
 
-pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, View(leds): &mut View) {
-    card(ui, skin, TEXTS.text("hd_led.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "hd_led.words")));
-        device(ui, skin, leds);
-        ui.add_space(skin.space.between);
+pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, LedsUiState(leds): &mut LedsUiState) {
+    card(ui, theme, TEXTS.text("hd_led.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "hd_led.words")));
+        device(ui, theme, leds);
+        ui.add_space(theme.space.between);
         for lamp in Lamp::ALL {
-            row(ui, skin, leds, lamp);
+            row(ui, theme, leds, lamp);
         }
     });
 }
 
 /// Which device it is, and where its switch S3 is.
-fn device(ui: &mut Ui, skin: &Skin, leds: &mut Leds) {
+fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     let (mut hub, mut s3) = (leds.hub, leds.s3);
-    let word = say(skin, "hd_led.device");
-    entry(ui, skin, &word, |ui| {
+    let word = say(theme, "hd_led.device");
+    entry(ui, theme, &word, |ui| {
         let kinds = [(false, "hd_led.adapter"), (true, "hd_led.hub")];
-        options(ui, &word, &mut hub, kinds.map(|(own, id)| (own, say(skin, id))))
+        options(ui, &word, &mut hub, kinds.map(|(own, id)| (own, say(theme, id))))
     });
     if hub {
-        let word = say(skin, "hd_led.switch");
+        let word = say(theme, "hd_led.switch");
         let positions = (0..=8_u8).map(|own| match own {
-            0 => (own, say(skin, "hd_led.switch_zero")),
+            0 => (own, say(theme, "hd_led.switch_zero")),
             drive => (own, drive.to_string()),
         });
-        entry(ui, skin, &word, |ui| options(ui, &word, &mut s3, positions));
+        entry(ui, theme, &word, |ui| options(ui, &word, &mut s3, positions));
         if s3 != 0 {
             let away = TEXTS.text("hd_led.switch_away").with("drive", s3);
-            paragraph(ui, RichText::new(skin.words(&away)).color(skin.palette.warn));
+            paragraph(ui, RichText::new(theme.words(&away)).color(theme.palette.warn));
         }
     }
     if (hub, s3) != (leds.hub, leds.s3) {
@@ -54,63 +54,63 @@ fn device(ui: &mut Ui, skin: &Skin, leds: &mut Leds) {
 }
 
 /// A lamp, and what it says beside it.
-fn row(ui: &mut Ui, skin: &Skin, leds: &mut Leds, lamp: Lamp) {
+fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Lamp) {
     ui.horizontal_top(|ui| {
-        lamp_ui(ui, skin, leds, lamp);
+        lamp_ui(ui, theme, leds, lamp);
         ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = skin.space.inside;
+            ui.spacing_mut().item_spacing.y = theme.space.inside;
             let said = leds.said(lamp);
-            let (icon, ink) = severity(skin, said.severity);
+            let (icon, ink) = severity(theme, said.severity);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(ink));
-                paragraph(ui, RichText::new(skin.words(&said.meaning)).font(skin.strong(skin.sizes.body)));
+                paragraph(ui, RichText::new(theme.words(&said.meaning)).font(theme.strong(theme.sizes.body)));
             });
-            paragraph(ui, skin.label(skin.words(&said.remedy)));
+            paragraph(ui, theme.label(theme.words(&said.remedy)));
         });
     });
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
 }
 
 /// Pressed, it shows the next of what it can.
-fn lamp_ui(ui: &mut Ui, skin: &Skin, leds: &mut Leds, lamp: Lamp) {
-    let shown = skin.words(&leds.shown(lamp));
+fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Lamp) {
+    let shown = theme.words(&leds.shown(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
     let (rect, painter) = (response.rect, ui.painter());
     let middle = pos2(rect.left() + 24.0, rect.center().y);
-    paint(painter, skin, middle, look(skin, leds, lamp));
+    paint(painter, theme, middle, look(theme, leds, lamp));
     let text = pos2(rect.left() + 48.0, rect.center().y);
     let about = match lamp {
         Lamp::Drives if leds.hub && leds.s3 != 0 => {
-            skin.words(&TEXTS.text("hd_led.switch_drive").with("drive", leds.s3))
+            theme.words(&TEXTS.text("hd_led.switch_drive").with("drive", leds.s3))
         }
-        Lamp::Drives => say(skin, "hd_led.what_drives"),
-        Lamp::Bus(BusLamp::Module) => say(skin, "hd_led.what_module"),
-        Lamp::Bus(BusLamp::Network) => say(skin, "hd_led.what_network"),
-        Lamp::Port => say(skin, "hd_led.what_port"),
+        Lamp::Drives => say(theme, "hd_led.what_drives"),
+        Lamp::Bus(BusLamp::Module) => say(theme, "hd_led.what_module"),
+        Lamp::Bus(BusLamp::Network) => say(theme, "hd_led.what_network"),
+        Lamp::Port => say(theme, "hd_led.what_port"),
     };
-    let strong = skin.strong(skin.sizes.body);
-    let named = painter.text(text, Align2::LEFT_BOTTOM, lamp.name(), strong, skin.palette.text.into());
-    let caption = FontId::proportional(skin.sizes.caption);
-    let beside = named.right_bottom() + vec2(skin.space.between, -1.0);
-    painter.text(beside, Align2::LEFT_BOTTOM, about, caption, skin.palette.muted.into());
-    let body = FontId::proportional(skin.sizes.body);
-    painter.text(text, Align2::LEFT_TOP, &shown, body, skin.palette.muted.into());
+    let strong = theme.strong(theme.sizes.body);
+    let named = painter.text(text, Align2::LEFT_BOTTOM, lamp.name(), strong, theme.palette.text.into());
+    let caption = FontId::proportional(theme.sizes.caption);
+    let beside = named.right_bottom() + vec2(theme.space.between, -1.0);
+    painter.text(beside, Align2::LEFT_BOTTOM, about, caption, theme.palette.muted.into());
+    let body = FontId::proportional(theme.sizes.body);
+    painter.text(text, Align2::LEFT_TOP, &shown, body, theme.palette.muted.into());
     if name(response, true, &format!("{}: {shown}", lamp.name())).clicked() {
         leds.click(lamp);
     }
 }
 
 /// How a lamp is drawn: its left and its right half, and whether it comes and goes.
-struct Look {
+struct LedStyle {
     left: Option<Color32>,
     right: Option<Color32>,
     blinks: bool,
 }
 
-fn look(skin: &Skin, leds: &Leds, lamp: Lamp) -> Look {
-    let palette = skin.palette;
+fn look(theme: &Theme, leds: &Leds, lamp: Lamp) -> LedStyle {
+    let palette = theme.palette;
     let (green, red, yellow) = (Some(palette.good.into()), Some(palette.bad.into()), Some(palette.staged.into()));
-    let look = |left, right, blinks| Look { left, right, blinks };
+    let look = |left, right, blinks| LedStyle { left, right, blinks };
     match lamp {
         Lamp::Drives => match leds.drives {
             DriveLight::Off => look(None, None, false),
@@ -137,7 +137,7 @@ fn look(skin: &Skin, leds: &Leds, lamp: Lamp) -> Look {
 }
 
 /// A disc of two halves; what comes and goes has rays.
-fn paint(painter: &Painter, skin: &Skin, middle: Pos2, look: Look) {
+fn paint(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
     let half = |from: f32, colour: Color32| {
         let points = (0..=16_u8).map(|step| {
             let angle = from + std::f32::consts::PI * f32::from(step) / 16.0;
@@ -151,13 +151,13 @@ fn paint(painter: &Painter, skin: &Skin, middle: Pos2, look: Look) {
             painter.add(half(from, colour));
         }
     }
-    painter.circle_stroke(middle, RADIUS, Stroke::new(1.0, skin.palette.muted));
+    painter.circle_stroke(middle, RADIUS, Stroke::new(1.0, theme.palette.muted));
     if look.blinks {
         for ray in 0..8_u8 {
             let angle = f32::from(ray) * std::f32::consts::TAU / 8.0;
             let along = vec2(angle.cos(), angle.sin());
             let ends = [middle + along * (RADIUS + 3.0), middle + along * (RADIUS + 6.0)];
-            painter.line_segment(ends, Stroke::new(1.5, skin.palette.muted));
+            painter.line_segment(ends, Stroke::new(1.5, theme.palette.muted));
         }
     }
 }

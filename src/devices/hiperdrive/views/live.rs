@@ -7,28 +7,28 @@ use crate::app::Rgb;
 use crate::devices::hiperdrive::protocol::{State, turns};
 use crate::devices::hiperdrive::state::{Measure, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::row;
 use crate::ui::panels::live::LOW;
 
-pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
+pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let drive = unit.drive();
     let actual = unit.actual(drive);
     let ruler = unit.ruler(drive);
     let in_measure = |steps: i32, measure: Measure| {
         // Beyond a thousandth nobody measures.
         let decimals = ruler.decimals(measure).min(3);
-        ruler.of(steps.into(), measure).map(|value| skin.number(value, decimals))
+        ruler.of(steps.into(), measure).map(|value| theme.number(value, decimals))
     };
     let main = actual.map(|own| in_measure(own.position, unit.measure).unwrap_or_else(|| own.position.to_string()));
-    let palette = skin.palette;
-    let mut warning = badge(skin, unit);
+    let palette = theme.palette;
+    let mut warning = badge(theme, unit);
     ui.horizontal(|ui| {
         let shown = main.unwrap_or_else(|| "–".to_owned());
         let ink = if unit.outside_words(drive).is_some() { palette.bad } else { ink };
-        ui.label(RichText::new(shown).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
+        ui.label(RichText::new(shown).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
         // In the same line: nothing below it moves when it comes.
-        let measure = skin.label(say(skin, unit.measure.unit()));
+        let measure = theme.label(say(theme, unit.measure.unit()));
         ui.label(measure);
         if let Some(badge) = warning.take_if(|own| fits(ui, own)) {
             ui.label(badge);
@@ -45,31 +45,36 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
         State::Moving | State::Enabled => palette.good,
         State::NotReady | State::Ready | State::Operational => palette.muted,
     };
-    let word = skin.words(&explain::state(state));
+    let word = theme.words(&explain::state(state));
     // Short enough for one line beside the widest state: the rows below stay where they are.
     let told_below = TEXTS.text("hd_outside.beside_state").with("state", &word);
-    let word = if is_told_below { skin.words(&told_below) } else { word };
-    let rpm = skin.number(unit.speed_scale(drive).rpm(actual.speed), 1);
-    let speed = format!("{rpm} {}", skin.say("unit.revolutions_per_minute"));
+    let word = if is_told_below { theme.words(&told_below) } else { word };
+    let rpm = theme.number(unit.speed_scale(drive).rpm(actual.speed), 1);
+    let speed = format!("{rpm} {}", theme.say("unit.revolutions_per_minute"));
     if ui.available_height() < LOW {
         // In a low window the plot needs the room.
         let words = format!("{word} · {speed}");
-        ui.add(egui::Label::new(RichText::new(words).size(skin.sizes.caption).color(colour)).truncate());
+        ui.add(egui::Label::new(RichText::new(words).size(theme.sizes.caption).color(colour)).truncate());
         return;
     }
-    row(ui, skin, &say(skin, "hd_live.state"), RichText::new(word).color(colour));
-    row(ui, skin, &say(skin, "hd_effort.speed"), skin.mono(speed));
+    row(ui, theme, &say(theme, "hd_live.state"), RichText::new(word).color(colour));
+    row(ui, theme, &say(theme, "hd_effort.speed"), theme.mono(speed));
     let target = unit.moves.sent(drive).map(|sent| in_measure(sent.target, unit.measure).unwrap_or_default());
     if let Some(target) = target {
-        row(ui, skin, &say(skin, "hd_live.target"), skin.mono(format!("{target} {}", say(skin, unit.measure.unit()))));
+        row(
+            ui,
+            theme,
+            &say(theme, "hd_live.target"),
+            theme.mono(format!("{target} {}", say(theme, unit.measure.unit()))),
+        );
     }
     let whole = if ruler.scale == crate::devices::hiperdrive::protocol::PositionScale::FACTORY {
         let (turn, step) = turns(actual.position);
-        format!("{}  {} {turn} · {} {step}", actual.position, skin.say("live.turns"), skin.say("live.step"))
+        format!("{}  {} {turn} · {} {step}", actual.position, theme.say("live.turns"), theme.say("live.step"))
     } else {
         actual.position.to_string()
     };
-    row(ui, skin, &skin.say("live.raw"), skin.mono(whole));
+    row(ui, theme, &theme.say("live.raw"), theme.mono(whole));
 }
 
 /// Whether a text has room in the rest of the line.

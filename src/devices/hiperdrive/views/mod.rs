@@ -27,7 +27,7 @@ use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::Unit;
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Skin, backups, foot, icons, workspace};
+use crate::ui::{Theme, backups, edit_bar, icons, workspace};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,18 +67,18 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(crate) struct View {
+pub(crate) struct HiperdriveUiState {
     drives: BTreeMap<DriveNumber, DriveEntries>,
-    parameters: parameters::View,
-    leds: leds::View,
-    network: network::View,
+    parameters: parameters::DriveParametersUiState,
+    leds: leds::LedsUiState,
+    network: network::NetworkUiState,
 }
 
 /// What is typed for one drive.
 #[derive(Default)]
 struct DriveEntries {
-    motion: motion::View,
-    axis: axis::View,
+    motion: motion::MotionUiState,
+    axis: axis::AxisUiState,
 }
 
 /// The view of HIPERDRIVE drives.
@@ -87,7 +87,7 @@ pub(crate) struct HiperdriveView;
 impl TypedDeviceView for HiperdriveView {
     type Device = Unit;
     type Page = Page;
-    type Memory = View;
+    type Memory = HiperdriveUiState;
     type ConnectForm = connect_form::HiperdriveConnectForm;
 
     const HAS_UNDO_KEYS: bool = true;
@@ -102,34 +102,34 @@ impl TypedDeviceView for HiperdriveView {
 
     fn page_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         (studio, device): (&Studio, &AnyDevice),
         unit: &Unit,
-        (page, view): (Page, &mut View),
+        (page, view): (Page, &mut HiperdriveUiState),
         actions: &mut Vec<Action>,
     ) {
         let narrow = ui.available_width() < 720.0;
-        let around = if narrow { skin.space.groups } else { skin.space.around } as i8;
+        let around = if narrow { theme.space.groups } else { theme.space.around } as i8;
         let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
         let id = egui::Id::unique(unit.session.id);
         if unit.profile().is_none() {
             // Stays where it is while the rest scrolls: STOP, and what it is not.
             egui::Panel::top(id.with("hiperdrive_bar"))
                 .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
-                .show(ui, |ui| bar::bar_ui(ui, skin, studio, unit, actions));
+                .show(ui, |ui| bar::bar_ui(ui, theme, studio, unit, actions));
         }
         if page.has_foot() {
             egui::Panel::bottom(id.with("hiperdrive_foot"))
                 .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
                 .show_separator_line(false)
-                .show(ui, |ui| foot::foot_ui(ui, skin, (studio, device), foot::Edited::Values, actions));
+                .show(ui, |ui| edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
         }
         let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
         let drive = unit.drive();
         if page == Page::Parameters {
             // A table scrolls by itself.
             let frame = frame.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
-            frame.show(ui, |ui| parameters::page_ui(ui, skin, unit, &mut view.parameters, actions));
+            frame.show(ui, |ui| parameters::page_ui(ui, theme, unit, &mut view.parameters, actions));
             return;
         }
         ScrollArea::vertical().id_salt((unit.session.id, page.place())).auto_shrink(false).show(ui, |ui| {
@@ -137,40 +137,47 @@ impl TypedDeviceView for HiperdriveView {
                 // No entry, and nothing that undoes what was typed into it, is another drive's.
                 Page::Motion => {
                     let own = &mut view.drives.entry(drive).or_default().motion;
-                    ui.push_id(drive, |ui| motion::page_ui(ui, skin, unit, own, actions));
+                    ui.push_id(drive, |ui| motion::page_ui(ui, theme, unit, own, actions));
                 }
                 Page::Parameters => {}
                 Page::Axis => {
                     let own = &mut view.drives.entry(drive).or_default().axis;
-                    ui.push_id(drive, |ui| axis::page_ui(ui, skin, unit, own, actions));
+                    ui.push_id(drive, |ui| axis::page_ui(ui, theme, unit, own, actions));
                 }
                 Page::Diagnosis => {
-                    errors::cards_ui(ui, skin, unit, actions);
-                    ui.add_space(skin.space.groups);
-                    leds::cards_ui(ui, skin, &mut view.leds);
+                    errors::cards_ui(ui, theme, unit, actions);
+                    ui.add_space(theme.space.groups);
+                    leds::cards_ui(ui, theme, &mut view.leds);
                 }
                 Page::Device => {
-                    device::cards_ui(ui, skin, unit, actions);
-                    ui.add_space(skin.space.groups);
-                    network::card_ui(ui, skin, unit, &mut view.network, actions);
+                    device::cards_ui(ui, theme, unit, actions);
+                    ui.add_space(theme.space.groups);
+                    network::card_ui(ui, theme, unit, &mut view.network, actions);
                 }
-                Page::Backups => backups::page_ui(ui, skin, device, actions),
+                Page::Backups => backups::page_ui(ui, theme, device, actions),
             });
         });
     }
 
-    fn running_ui(ui: &mut Ui, skin: &Skin, device: &AnyDevice, _unit: &Unit, _page: Page, actions: &mut Vec<Action>) {
+    fn running_ui(
+        ui: &mut Ui,
+        theme: &Theme,
+        device: &AnyDevice,
+        _unit: &Unit,
+        _page: Page,
+        actions: &mut Vec<Action>,
+    ) {
         // Below, so that nothing moves away under the finger that holds a drive.
         if device.running().is_some() && !device.is_reviewing() {
             egui::Panel::bottom(egui::Id::unique(device.id()).with("hiperdrive_running"))
                 .frame(egui::Frame::NONE.inner_margin(egui::Margin { left: 0, right: 0, top: 0, bottom: 8 }))
                 .show_separator_line(false)
-                .show(ui, |ui| workspace::running_ui(ui, skin, device, None, actions));
+                .show(ui, |ui| workspace::running_ui(ui, theme, device, None, actions));
         }
     }
 
-    fn value_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, ink: Rgb) {
-        live::value_ui(ui, skin, unit, ink);
+    fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
+        live::value_ui(ui, theme, unit, ink);
     }
 
     fn motion(unit: &Unit) -> Option<Text> {
@@ -187,6 +194,6 @@ impl TypedDeviceView for HiperdriveView {
 }
 
 /// A text of this folder's catalogue, or a common one, in the window's language.
-pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
-    skin.words(&TEXTS.text(id))
+pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+    theme.words(&TEXTS.text(id))
 }

@@ -13,16 +13,16 @@ use crate::ui::controls::{
     allowed_button, card, card_with, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry,
     two_columns,
 };
-use crate::ui::stopping::{goes_down, means_motion, pressed_at};
+use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// A percentage as it is typed.
 type Draft = Option<String>;
 
 /// What is typed.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct MotionUiState {
     pub(super) jog_effort: [Draft; 2],
     pub(super) step: String,
     pub(super) step_problem: Option<Text>,
@@ -42,59 +42,59 @@ const BESIDE: f32 = 560.0;
 /// Height of a window below which the states stand behind what moves the drive.
 const LOW: f32 = 760.0;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     if unit.profile().is_some() {
-        empty(ui, skin, &say(skin, "hd_motion.offline"), None);
+        empty(ui, theme, &say(theme, "hd_motion.offline"), None);
         return;
     }
     // In a low window what moves the drive comes before the picture of its states, but not where that says what has failed.
     // The window counts, not what is left of it: nothing changes its place because a notice comes.
     let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
     let low = ui.ctx().content_rect().height() < LOW && !has_failed;
-    locks(ui, skin, unit, actions);
+    locks(ui, theme, unit, actions);
     if !low {
-        states(ui, skin, unit, actions);
-        ui.add_space(skin.space.groups);
+        states(ui, theme, unit, actions);
+        ui.add_space(theme.space.groups);
     }
     // By a name of its own: what comes and goes above takes the keyboard from no entry.
     let id = Id::unique("motion").with((unit.session.id, unit.drive()));
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
         two_columns(
             ui,
-            skin,
+            theme,
             (view, &mut *actions),
-            |ui, (view, actions)| jog::card_ui(ui, skin, unit, view, actions),
-            |ui, (view, actions)| moves(ui, skin, unit, view, actions),
+            |ui, (view, actions)| jog::card_ui(ui, theme, unit, view, actions),
+            |ui, (view, actions)| moves(ui, theme, unit, view, actions),
         );
     });
-    ui.add_space(skin.space.groups);
+    ui.add_space(theme.space.groups);
     if low {
-        states(ui, skin, unit, actions);
-        ui.add_space(skin.space.groups);
+        states(ui, theme, unit, actions);
+        ui.add_space(theme.space.groups);
     }
-    figures::words_card_ui(ui, skin, unit, unit.drive());
+    figures::words_card_ui(ui, theme, unit, unit.drive());
 }
 
 /// Why nothing moves, and what to do.
-fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     for lock in unit.moves.locks(drive) {
-        skin.sunken().show(ui, |ui| {
+        theme.sunken().show(ui, |ui| {
             ui.set_width(ui.available_width().max(0.0));
             ui.horizontal_top(|ui| {
-                ui.label(RichText::new(icons::LOCK_SIMPLE).color(skin.palette.warn));
-                paragraph(ui, skin.words(&explain::lock(lock)));
+                ui.label(RichText::new(icons::LOCK_SIMPLE).color(theme.palette.warn));
+                paragraph(ui, theme.words(&explain::lock(lock)));
             });
             if lock == Lock::LimitsUnconfirmed
                 && let Some((low, high)) = unit.limits_to_confirm(drive)
             {
                 let [low, high] = [low, high].map(|steps| {
                     let places = unit.in_all_units(drive, steps);
-                    places.iter().map(|place| skin.words(place)).collect::<Vec<_>>().join("   ")
+                    places.iter().map(|place| theme.words(place)).collect::<Vec<_>>().join("   ")
                 });
-                row(ui, skin, &say(skin, "hd_limits.lower"), skin.mono(low));
-                row(ui, skin, &say(skin, "hd_limits.upper"), skin.mono(high));
-                if allowed_button(ui, skin, &unit.may_confirm(drive), icons::CHECK, &say(skin, "hd_limits.confirm"))
+                row(ui, theme, &say(theme, "hd_limits.lower"), theme.mono(low));
+                row(ui, theme, &say(theme, "hd_limits.upper"), theme.mono(high));
+                if allowed_button(ui, theme, &unit.may_confirm(drive), icons::CHECK, &say(theme, "hd_limits.confirm"))
                     .clicked()
                 {
                     let confirm = Hiperdrive::Drive(Motor::ConfirmLimits(drive));
@@ -102,36 +102,36 @@ fn locks(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
                 }
             }
         });
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
     }
 }
 
 /// The diagram, and what the drive does just now: beside the heading, or below where that is narrow. Always as high, since
 /// nothing may move away under the finger that holds a drive.
-fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= BESIDE;
     let mut acts = Vec::new();
     let aside = |ui: &mut Ui| {
         ui.allocate_space(vec2(0.0, ui.spacing().interact_size.y));
         if beside {
-            news(ui, skin, unit, &mut acts);
+            news(ui, theme, unit, &mut acts);
         }
     };
-    card_with(ui, skin, TEXTS.text("hd_states.title"), aside, |ui| {
+    card_with(ui, theme, TEXTS.text("hd_states.title"), aside, |ui| {
         let drive = unit.drive();
         let actual = unit.actual(drive);
         let present = actual.map(|actual| actual.status.state());
-        let names = State::ALL.map(|state| skin.words(&explain::state(state)));
+        let names = State::ALL.map(|state| theme.words(&explain::state(state)));
         let open = unit.moves.is_open();
         let reachable: Vec<State> = if open { unit.reachable(drive) } else { Vec::new() };
-        let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| skin.words(&hint)));
+        let hints = State::ALL.map(|state| unit.hint(drive, state).map(|hint| theme.words(&hint)));
         let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
-        if let Some(act) = state_machine(ui, skin, &machine).and_then(Unit::leads_to) {
+        if let Some(act) = state_machine(ui, theme, &machine).and_then(Unit::leads_to) {
             motor(actions, unit.session.id, act);
         }
         if !beside {
             let top = ui.cursor().top();
-            ui.horizontal_wrapped(|ui| news(ui, skin, unit, actions));
+            ui.horizontal_wrapped(|ui| news(ui, theme, unit, actions));
             ui.add_space((top + SAID - ui.cursor().top()).max(0.0));
         }
     });
@@ -139,25 +139,25 @@ fn states(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
 }
 
 /// What has failed and the way out of it; or how the last act goes on or ended.
-fn news(ui: &mut Ui, skin: &Skin, unit: &Unit, actions: &mut Vec<Action>) {
+fn news(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
         let open = unit.moves.is_open();
-        if enabled_button(ui, open, icons::CHECK, &say(skin, "hd_states.acknowledge")).clicked() {
+        if enabled_button(ui, open, icons::CHECK, &say(theme, "hd_states.acknowledge")).clicked() {
             motor(actions, unit.session.id, Motor::Acknowledge);
         }
         let newest = unit.drive_status(drive).and_then(|own| own.buffer.first().copied());
         if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
             let words = explain::error(code);
-            let text = format!("{:04X}  {}", code.code(), skin.words(&words.name));
-            let label = egui::Label::new(RichText::new(text).color(skin.palette.bad)).truncate();
-            ui.add(label).on_hover_text(skin.words(&words.remedy));
+            let text = format!("{:04X}  {}", code.code(), theme.words(&words.name));
+            let label = egui::Label::new(RichText::new(text).color(theme.palette.bad)).truncate();
+            ui.add(label).on_hover_text(theme.words(&words.remedy));
             return;
         }
     }
     if let Some(said) = unit.said(drive) {
-        let ink = if said.is_well { skin.palette.good } else { skin.palette.warn };
-        ui.add(egui::Label::new(RichText::new(skin.words(&said.words)).color(ink)).truncate());
+        let ink = if said.is_well { theme.palette.good } else { theme.palette.warn };
+        ui.add(egui::Label::new(RichText::new(theme.words(&said.words)).color(ink)).truncate());
     }
 }
 
@@ -166,26 +166,32 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
 }
 
 /// To a position, and at a speed: with the same effort.
-fn moves(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
-    let allowed = card(ui, skin, TEXTS.text("hd_move.title"), |ui| to_position(ui, skin, unit, view, actions));
-    ui.add_space(skin.space.groups);
-    card(ui, skin, TEXTS.text("hd_run.title"), |ui| at_speed(ui, skin, unit, &allowed, actions));
+fn moves(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
+    let allowed = card(ui, theme, TEXTS.text("hd_move.title"), |ui| to_position(ui, theme, unit, view, actions));
+    ui.add_space(theme.space.groups);
+    card(ui, theme, TEXTS.text("hd_run.title"), |ui| at_speed(ui, theme, unit, &allowed, actions));
 }
 
 /// To a position; whether the drive may be moved with the effort that is typed.
-fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) -> Result<(), Text> {
+fn to_position(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &Unit,
+    view: &mut MotionUiState,
+    actions: &mut Vec<Action>,
+) -> Result<(), Text> {
     let (drive, id) = (unit.drive(), unit.session.id);
     // Both rows stay where nothing is known for a moment: nothing below them moves, and no entry loses the keyboard.
     let unknown = || "–".to_owned();
-    let now = unit.actual(drive).map(|actual| skin.words(&unit.place(drive, actual.position)));
-    row(ui, skin, &say(skin, "hd_move.now"), skin.mono(now.unwrap_or_else(unknown)));
-    let range = unit.limits(drive).map(|limits| skin.words(&unit.places(drive, limits)));
-    row(ui, skin, &say(skin, "hd_move.range"), skin.mono(range.unwrap_or_else(unknown)));
-    length_ui(ui, skin, unit, "hd_move.target", &mut view.target, actions);
+    let now = unit.actual(drive).map(|actual| theme.words(&unit.place(drive, actual.position)));
+    row(ui, theme, &say(theme, "hd_move.now"), theme.mono(now.unwrap_or_else(unknown)));
+    let range = unit.limits(drive).map(|limits| theme.words(&unit.places(drive, limits)));
+    row(ui, theme, &say(theme, "hd_move.range"), theme.mono(range.unwrap_or_else(unknown)));
+    length_ui(ui, theme, unit, "hd_move.target", &mut view.target, actions);
     let drafts = &mut view.move_effort;
     let effort = effort_ui(
         ui,
-        skin,
+        theme,
         unit,
         (unit.moves.move_effort(drive), unit.moves.moves_with(drive), drafts),
         Motor::MoveEffort,
@@ -193,14 +199,14 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
     );
     let allowed = effort.and(unit.may_move(drive));
     ui.horizontal_wrapped(|ui| {
-        if allowed_button(ui, skin, &allowed, icons::PLAY, &say(skin, "hd_move.go")).clicked() {
+        if allowed_button(ui, theme, &allowed, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
             view.target_problem = forms::target(unit, &view.target, unit.measure)
                 .map(|target| motor(actions, id, Motor::Move { target }))
                 .err();
         }
         match unit.moves.phase(drive) {
             Some(Phase::Paused { .. }) => {
-                let response = allowed_button(ui, skin, &allowed, icons::FAST_FORWARD, &say(skin, "hd_move.resume"));
+                let response = allowed_button(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
                 // It stands where the pause was: a second click in a fright is meant for that.
                 if response.clicked() && !means_motion(ui.ctx(), false, pressed_at(ui, pressed)) {
@@ -209,49 +215,49 @@ fn to_position(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: 
             }
             phase => {
                 let on_its_way = matches!(phase, Some(Phase::Moving(Motive::Job { .. })));
-                if enabled_button(ui, on_its_way, icons::PAUSE, &say(skin, "hd_move.pause")).clicked() {
+                if enabled_button(ui, on_its_way, icons::PAUSE, &say(theme, "hd_move.pause")).clicked() {
                     means_motion(ui.ctx(), true, ui.input(|input| input.time));
                     motor(actions, id, Motor::Pause);
                 }
             }
         }
     });
-    problem(ui, skin, view.target_problem.as_ref());
-    why_not(ui, skin, &allowed);
+    problem(ui, theme, view.target_problem.as_ref());
+    why_not(ui, theme, &allowed);
     allowed
 }
 
 /// Why nothing can be moved.
-pub(super) fn why_not(ui: &mut Ui, skin: &Skin, allowed: &Result<(), Text>) {
+pub(super) fn why_not(ui: &mut Ui, theme: &Theme, allowed: &Result<(), Text>) {
     if let Err(why) = allowed {
-        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+        paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));
     }
 }
 
 /// At a speed, to the end of the range or, for experts, without one.
-fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
+fn at_speed(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let mut expert = unit.moves.is_expert(unit.drive());
     let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };
     ui.horizontal_wrapped(|ui| {
         let ways = [(Direction::Counterclockwise, "hd_run.back"), (Direction::Clockwise, "hd_run.forth")];
         for (direction, word) in ways {
-            if allowed_button(ui, skin, allowed, "", &say(skin, word)).clicked() {
+            if allowed_button(ui, theme, allowed, "", &say(theme, word)).clicked() {
                 motor(actions, id, Motor::Run { direction, end });
             }
         }
     });
-    paragraph(ui, skin.caption(say(skin, "hd_run.words")));
+    paragraph(ui, theme.caption(say(theme, "hd_run.words")));
     let endless = unit.could_run_endlessly(unit.drive());
     // It can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
-        if ui.checkbox(&mut expert, say(skin, "hd_run.expert")).changed() {
+        if ui.checkbox(&mut expert, say(theme, "hd_run.expert")).changed() {
             motor(actions, id, Motor::Expert(expert));
         }
     });
     match endless {
-        Ok(()) => paragraph(ui, skin.caption(say(skin, "hd_run.expert_words"))),
-        Err(why) => paragraph(ui, skin.caption(skin.words(&why))),
+        Ok(()) => paragraph(ui, theme.caption(say(theme, "hd_run.expert_words"))),
+        Err(why) => paragraph(ui, theme.caption(theme.words(&why))),
     }
 }
 
@@ -262,7 +268,7 @@ fn at_speed(ui: &mut Ui, skin: &Skin, unit: &Unit, allowed: &Result<(), Text>, a
 /// What is typed is no percentage: nothing may begin with it.
 pub(super) fn effort_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     unit: &Unit,
     (effort, under_way, drafts): (Effort, Option<Effort>, &mut [Draft; 2]),
     set: impl Fn(Effort) -> Motor,
@@ -275,8 +281,8 @@ pub(super) fn effort_ui(
         ("hd_effort.speed", effort.speed, sent.0, speed, true),
         ("hd_effort.torque", effort.torque, sent.1, torque, false),
     ] {
-        let word = say(skin, word);
-        entry(ui, skin, &word, |ui| {
+        let word = say(theme, word);
+        entry(ui, theme, &word, |ui| {
             let mut text = draft.take().unwrap_or_else(|| own.get().to_string());
             let response = text_entry(ui, &mut text, PERCENT, &word, "");
             let typed = forms::percent(&text);
@@ -291,18 +297,19 @@ pub(super) fn effort_ui(
             if response.has_focus() || typed.is_err() {
                 *draft = Some(text);
             }
-            ui.label(skin.label("%"));
+            ui.label(theme.label("%"));
             let beside = if is_speed { unit.speed_of(own) } else { unit.torque_of(own) };
             let waits = sent.filter(|sent| *sent != own && typed.is_ok());
             if let Some(sent) = waits {
                 let words = TEXTS.text("hd_effort.sent").with("sent", sent.get());
-                let label = ui.label(RichText::new(skin.words(&words)).color(skin.palette.warn));
-                label.on_hover_text(say(skin, "hd_effort.waits"));
+                let label = ui.label(RichText::new(theme.words(&words)).color(theme.palette.warn));
+                label.on_hover_text(say(theme, "hd_effort.waits"));
             } else if let Some(beside) = beside.filter(|_| typed.is_ok()) {
-                ui.label(skin.caption(skin.words(&beside)));
+                ui.label(theme.caption(theme.words(&beside)));
             }
             if let Err(why) = typed {
-                ui.label(RichText::new(icons::WARNING_CIRCLE).color(skin.palette.bad)).on_hover_text(skin.words(&why));
+                ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad))
+                    .on_hover_text(theme.words(&why));
                 taken = Err(why);
             }
         });
@@ -313,21 +320,21 @@ pub(super) fn effort_ui(
 /// A length or a place: a number and its measure.
 pub(super) fn length_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     unit: &Unit,
     id: &'static str,
     text: &mut String,
     actions: &mut Vec<Action>,
 ) {
-    let word = say(skin, id);
+    let word = say(theme, id);
     let ruler = unit.ruler(unit.drive());
     let mut measure = unit.measure;
-    entry(ui, skin, &word, |ui| {
+    entry(ui, theme, &word, |ui| {
         text_entry(ui, text, NUMBER, &word, "");
-        let measures = ruler.measures().map(|own| (own, say(skin, own.unit())));
+        let measures = ruler.measures().map(|own| (own, say(theme, own.unit())));
         ui.push_id(id, |ui| {
             ui.spacing_mut().combo_width = MEASURE;
-            if choice(ui, &say(skin, "hd_move.measure"), &mut measure, measures) {
+            if choice(ui, &say(theme, "hd_move.measure"), &mut measure, measures) {
                 actions.push(Action::device(unit.session.id, Hiperdrive::SetMeasure(measure)));
             }
         });

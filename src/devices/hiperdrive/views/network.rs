@@ -14,11 +14,11 @@ use crate::ui::controls::{
     allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row,
     severity, split,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed and is not written.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct NetworkUiState {
     /// As the device had it when typing began.
     of: Option<NetworkSettings>,
     form: Option<Form>,
@@ -27,32 +27,32 @@ pub(super) struct View {
 /// Width of an address.
 const ADDRESS: f32 = 148.0;
 
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {
     if unit.profile().is_some() {
-        switches(ui, skin, unit);
+        switches(ui, theme, unit);
         return;
     }
     split(
         ui,
-        skin,
+        theme,
         (0.5, 640.0),
         (view, actions),
-        |ui, (view, actions)| settings(ui, skin, unit, view, actions),
-        |ui, _| switches(ui, skin, unit),
+        |ui, (view, actions)| settings(ui, theme, unit, view, actions),
+        |ui, _| switches(ui, theme, unit),
     );
 }
 
-fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+fn settings(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let mut asked = Vec::new();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &say(skin, "hd_net.read")).clicked() {
+        if enabled_button(ui, unit.session.is_ready(), icons::ARROW_CLOCKWISE, &say(theme, "hd_net.read")).clicked() {
             asked.push(Action::Command(id, DeviceCommand::Read));
         }
     };
-    card_with(ui, skin, TEXTS.text("hd_net.title"), read, |ui| {
+    card_with(ui, theme, TEXTS.text("hd_net.title"), read, |ui| {
         let Some(now) = unit.network_settings() else {
-            empty(ui, skin, &say(skin, "hd_net.nothing"), None);
+            empty(ui, theme, &say(theme, "hd_net.nothing"), None);
             return;
         };
         // What was typed beside other settings is not for these.
@@ -61,15 +61,15 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
         }
         let before = Form::of(&now);
         let mut form = view.form.clone().unwrap_or_else(|| before.clone());
-        form_ui(ui, skin, &before, &mut form);
+        form_ui(ui, theme, &before, &mut form);
         if let Some(mac) = unit.network().and_then(|own| own.mac) {
             let mac: Vec<String> = mac.iter().map(|byte| format!("{byte:02X}")).collect();
-            row(ui, skin, &say(skin, "hd_net.mac"), skin.mono(mac.join(":")));
+            row(ui, theme, &say(theme, "hd_net.mac"), theme.mono(mac.join(":")));
         }
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
         let wanted = form.settings(&now);
-        outlook(ui, skin, unit, &now, &wanted);
-        ui.add_space(skin.space.inside);
+        outlook(ui, theme, unit, &now, &wanted);
+        ui.add_space(theme.space.inside);
         let allowed = match (&wanted, unit.may_plan()) {
             (_, Err(why)) => Err(why),
             (Err(why), _) => Err(why.clone()),
@@ -78,13 +78,13 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
         };
         ui.horizontal_wrapped(|ui| {
             let may = allowed.as_ref().map(|_| ()).map_err(Clone::clone);
-            if allowed_button(ui, skin, &may, icons::LIST_CHECKS, &say(skin, "hd_net.write")).clicked()
+            if allowed_button(ui, theme, &may, icons::LIST_CHECKS, &say(theme, "hd_net.write")).clicked()
                 && let Ok(own) = allowed
             {
                 let change = Change::Network(own);
                 actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))));
             }
-            if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &say(skin, "hd_net.revert")).clicked() {
+            if enabled_button(ui, form != before, icons::ARROW_U_UP_LEFT, &say(theme, "hd_net.revert")).clicked() {
                 form = before.clone();
             }
         });
@@ -93,17 +93,17 @@ fn settings(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mu
     actions.append(&mut asked);
 }
 
-fn form_ui(ui: &mut Ui, skin: &Skin, before: &Form, form: &mut Form) {
-    let word = say(skin, "hd_net.source");
+fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
+    let word = say(theme, "hd_net.source");
     let mut sources = vec![AddressSource::Dhcp, AddressSource::Bootp, AddressSource::Stored];
     if !sources.contains(&before.source) {
         sources.push(before.source);
     }
-    let named = sources.into_iter().map(|own| (own, skin.words(&network::source(own))));
+    let named = sources.into_iter().map(|own| (own, theme.words(&network::source(own))));
     // Below its name: beside it there is no room in a narrow column.
-    ui.label(skin.label(word.as_str()));
+    ui.label(theme.label(word.as_str()));
     options(ui, &word, &mut form.source, named);
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
     let types = form.has_addresses();
     let [first, second] = &mut form.name_servers;
     let [first_before, second_before] = &before.name_servers;
@@ -115,58 +115,58 @@ fn form_ui(ui: &mut Ui, skin: &Skin, before: &Form, form: &mut Form) {
         ("hd_net.second_server", second, second_before, false),
         ("hd_net.domain", &mut form.domain, &before.domain, false),
     ] {
-        let word = say(skin, id);
+        let word = say(theme, id);
         if !types {
-            let shown = if was.is_empty() { say(skin, "hd_axis.none") } else { was.clone() };
-            row(ui, skin, &word, skin.mono(shown));
+            let shown = if was.is_empty() { say(theme, "hd_axis.none") } else { was.clone() };
+            row(ui, theme, &word, theme.mono(shown));
             continue;
         }
-        entry(ui, skin, &word, |ui| {
-            let hint = if is_needed { String::new() } else { say(skin, "hd_net.optional") };
-            mono_entry(ui, skin, own, ADDRESS, &word, &hint);
+        entry(ui, theme, &word, |ui| {
+            let hint = if is_needed { String::new() } else { say(theme, "hd_net.optional") };
+            mono_entry(ui, theme, own, ADDRESS, &word, &hint);
             if own != was && !was.is_empty() {
                 let was = TEXTS.text("hd_net.was").with("value", was);
-                ui.add(egui::Label::new(RichText::new(skin.words(&was)).color(skin.palette.staged)).truncate());
+                ui.add(egui::Label::new(RichText::new(theme.words(&was)).color(theme.palette.staged)).truncate());
             }
         });
     }
 }
 
 /// What will be at the next power-up.
-fn outlook(ui: &mut Ui, skin: &Skin, unit: &Unit, now: &NetworkSettings, wanted: &Result<NetworkSettings, Text>) {
-    ui.label(skin.label(say(skin, "hd_net.at_power_up")));
+fn outlook(ui: &mut Ui, theme: &Theme, unit: &Unit, now: &NetworkSettings, wanted: &Result<NetworkSettings, Text>) {
+    ui.label(theme.label(say(theme, "hd_net.at_power_up")));
     match wanted {
-        Err(why) => problem(ui, skin, Some(why)),
+        Err(why) => problem(ui, theme, Some(why)),
         Ok(wanted) => {
             for (own, text) in network::consequences(unit.address_switch(), now, wanted, unit.host()) {
-                line(ui, skin, own, &text);
+                line(ui, theme, own, &text);
             }
         }
     }
 }
 
-fn line(ui: &mut Ui, skin: &Skin, own: Severity, text: &Text) {
-    let (icon, ink) = severity(skin, own);
+fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
+    let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));
-        paragraph(ui, skin.words(text));
+        paragraph(ui, theme.words(text));
     });
 }
 
 /// What each position means; the present one stands out.
-fn switches(ui: &mut Ui, skin: &Skin, unit: &Unit) {
-    card(ui, skin, TEXTS.text("hd_net.switches"), |ui| {
+fn switches(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+    card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();
         if let Some(own) = switch {
-            row(ui, skin, &say(skin, "hd_net.switch_now"), skin.value(own.number().to_string()));
-            ui.add_space(skin.space.inside);
+            row(ui, theme, &say(theme, "hd_net.switch_now"), theme.value(own.number().to_string()));
+            ui.add_space(theme.space.inside);
         }
         for position in network::positions(switch) {
-            let words = skin.words(&position.meaning);
+            let words = theme.words(&position.meaning);
             ui.horizontal_top(|ui| {
-                let ink = if position.is_now { skin.palette.accent } else { skin.palette.muted };
+                let ink = if position.is_now { theme.palette.accent } else { theme.palette.muted };
                 let mark = if position.is_now { icons::CARET_RIGHT } else { "" };
-                for (width, text) in [(16.0, RichText::new(mark)), (44.0, skin.mono(position.digits))] {
+                for (width, text) in [(16.0, RichText::new(mark)), (44.0, theme.mono(position.digits))] {
                     let size = egui::vec2(width, 18.0);
                     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Min), |ui| {
                         ui.set_min_width(width);
@@ -174,10 +174,10 @@ fn switches(ui: &mut Ui, skin: &Skin, unit: &Unit) {
                     });
                 }
                 let text = RichText::new(words);
-                paragraph(ui, if position.is_now { text } else { text.color(skin.palette.muted) });
+                paragraph(ui, if position.is_now { text } else { text.color(theme.palette.muted) });
             });
         }
-        ui.add_space(skin.space.inside);
-        paragraph(ui, skin.caption(say(skin, "hd_net.switch_words")));
+        ui.add_space(theme.space.inside);
+        paragraph(ui, theme.caption(say(theme, "hd_net.switch_words")));
     });
 }

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, paragraph, problem};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed.
 #[derive(Default)]
@@ -20,24 +20,24 @@ pub(super) struct Draft {
 }
 
 /// The word for it in one line, where a drive is outside its limits.
-pub(crate) fn badge(skin: &Skin, unit: &Unit) -> Option<RichText> {
+pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
     unit.outside_words(unit.drive())?;
-    let words = format!("{}  {}", icons::WARNING, say(skin, "hd_outside.short"));
-    Some(RichText::new(words).font(skin.strong(skin.sizes.body)).color(skin.palette.bad))
+    let words = format!("{}  {}", icons::WARNING, say(theme, "hd_outside.short"));
+    Some(RichText::new(words).font(theme.strong(theme.sizes.body)).color(theme.palette.bad))
 }
 
 /// What is outside, what is blocked, and what can be done. Nothing where the drive is inside, or at the end of its range.
-pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
+pub(super) fn block_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
     let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {
         *draft = Draft::default();
         return;
     };
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.between);
     ui.separator();
-    let strong = RichText::new(skin.words(&words)).font(skin.strong(skin.sizes.body)).color(skin.palette.bad);
+    let strong = RichText::new(theme.words(&words)).font(theme.strong(theme.sizes.body)).color(theme.palette.bad);
     ui.horizontal_top(|ui| {
-        ui.label(RichText::new(icons::WARNING).color(skin.palette.bad));
+        ui.label(RichText::new(icons::WARNING).color(theme.palette.bad));
         paragraph(ui, strong);
     });
     let ways = [Direction::Counterclockwise, Direction::Clockwise].into_iter();
@@ -50,7 +50,7 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
         (None, Outside::At(Side::Above)) => "hd_outside.blocked_up",
         (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
     };
-    paragraph(ui, skin.caption(say(skin, words)));
+    paragraph(ui, theme.caption(say(theme, words)));
     // The buttons stay once one was pressed: what can be clicked below them does not move under the pointer.
     let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move(drive) };
     ui.horizontal_wrapped(|ui| {
@@ -59,16 +59,16 @@ pub(super) fn block_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, draft: &mut Draft,
                 Direction::Clockwise => "hd_outside.free_up",
                 Direction::Counterclockwise => "hd_outside.free_down",
             };
-            if allowed_button(ui, skin, &allowed, icons::LOCK_SIMPLE_OPEN, &say(skin, free)).clicked() {
+            if allowed_button(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &say(theme, free)).clicked() {
                 actions.push(Action::device(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
             }
         }
     });
-    length_ui(ui, skin, unit, "hd_outside.place", &mut draft.place, actions);
-    if allowed_button(ui, skin, &unit.may_plan(), "", &say(skin, "hd_outside.set")).clicked() {
+    length_ui(ui, theme, unit, "hd_outside.place", &mut draft.place, actions);
+    if allowed_button(ui, theme, &unit.may_plan(), "", &say(theme, "hd_outside.set")).clicked() {
         let change =
             forms::steps(unit, &draft.place, unit.measure).and_then(|position| unit.reference_here(drive, position));
         draft.problem = change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();
     }
-    problem(ui, skin, draft.problem.as_ref());
+    problem(ui, theme, draft.problem.as_ref());
 }

@@ -13,24 +13,25 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Row, Unit, forms};
 use crate::ui::controls::{empty, options, paragraph, text_entry};
 use crate::ui::widgets::{
-    Place, RegisterEvent, RegisterGroup, RegisterKind, RegisterRow, RegisterTable, RegisterView, register_table,
+    RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable, RegisterView,
+    register_table,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is looked for and what is typed.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct DriveParametersUiState {
     sought: String,
-    shown: Shown,
+    shown: ParameterFilter,
     table: RegisterView,
     /// The lines of the table when it was drawn the last time.
     lines: Vec<Vec<ParameterNumber>>,
-    scales: BTreeMap<DriveNumber, scale::View>,
+    scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
 /// Which parameters; or not them, but what two of them mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Shown {
+pub(crate) enum ParameterFilter {
     All,
     /// Those that can be written; whatever is looked for by name or number.
     #[default]
@@ -43,68 +44,75 @@ pub(crate) enum Shown {
 /// Width of what is looked for.
 const SOUGHT: f32 = 160.0;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
-    head(ui, skin, view);
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &Unit,
+    view: &mut DriveParametersUiState,
+    actions: &mut Vec<Action>,
+) {
+    head(ui, theme, view);
     if let Some(refusal) = &unit.refusal {
-        paragraph(ui, RichText::new(skin.words(refusal)).color(skin.palette.bad));
+        paragraph(ui, RichText::new(theme.words(refusal)).color(theme.palette.bad));
     }
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
     if view.shows_scale() {
         ScrollArea::vertical().id_salt("scale").auto_shrink(false).show(ui, |ui| {
             let drive = unit.drive();
             let own = view.scales.entry(drive).or_default();
-            ui.push_id(drive, |ui| scale::card_ui(ui, skin, unit, own, actions));
+            ui.push_id(drive, |ui| scale::card_ui(ui, theme, unit, own, actions));
         });
         return;
     }
     let id = egui::Id::unique(unit.session.id).with("hiperdrive_parameters_foot");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = skin.space.inside;
-        ui.add_space(skin.space.inside);
-        paragraph(ui, skin.caption(say(skin, "hd_params.controller")));
-        paragraph(ui, skin.caption(say(skin, "hd_params.not_kept")));
+        ui.spacing_mut().item_spacing.y = theme.space.inside;
+        ui.add_space(theme.space.inside);
+        paragraph(ui, theme.caption(say(theme, "hd_params.controller")));
+        paragraph(ui, theme.caption(say(theme, "hd_params.not_kept")));
     });
     let rows = once(Some(unit.drive())).chain(once(None)).map(|of| {
-        let rows = unit.rows(of).into_iter().filter(|row| view.shows(skin, row));
+        let rows = unit.rows(of).into_iter().filter(|row| view.shows(theme, row));
         rows.collect::<Vec<Row>>()
     });
     let rows: Vec<Vec<Row>> = rows.collect();
     view.follow(&rows);
     if rows.iter().all(Vec::is_empty) {
-        empty(ui, skin, &say(skin, "hd_params.none"), None);
+        empty(ui, theme, &say(theme, "hd_params.none"), None);
     } else {
-        table(ui, skin, unit, &rows, view, actions);
+        table(ui, theme, unit, &rows, view, actions);
     }
 }
 
 /// What is shown, and why what was typed is not taken.
-fn head(ui: &mut Ui, skin: &Skin, view: &mut View) {
+fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
-        let sought = say(skin, "hd_params.seek");
-        if text_entry(ui, &mut view.sought, SOUGHT, &sought, &sought).changed() && view.shown == Shown::Scale {
-            view.shown = Shown::All;
+        let sought = say(theme, "hd_params.seek");
+        if text_entry(ui, &mut view.sought, SOUGHT, &sought, &sought).changed() && view.shown == ParameterFilter::Scale
+        {
+            view.shown = ParameterFilter::All;
         }
         let shown = [
-            (Shown::All, "hd_params.all"),
-            (Shown::Written, "hd_params.written"),
-            (Shown::Changed, "hd_params.changed"),
-            (Shown::Scale, "hd_scale.title"),
+            (ParameterFilter::All, "hd_params.all"),
+            (ParameterFilter::Written, "hd_params.written"),
+            (ParameterFilter::Changed, "hd_params.changed"),
+            (ParameterFilter::Scale, "hd_scale.title"),
         ];
-        if options(ui, &say(skin, "hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, say(skin, id)))) {
+        if options(ui, &say(theme, "hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, say(theme, id)))) {
             // What is being typed counts before other lines are shown.
             ui.memory_mut(|memory| memory.stop_text_input());
         }
     });
-    if let Some(problem) = view.table.problem(skin).filter(|_| !view.shows_scale()) {
+    if let Some(problem) = view.table.problem(theme).filter(|_| !view.shows_scale()) {
         let words = format!("{}  {problem}", icons::WARNING_CIRCLE);
-        paragraph(ui, RichText::new(words).color(skin.palette.bad));
+        paragraph(ui, RichText::new(words).color(theme.palette.bad));
     }
 }
 
-impl View {
+impl DriveParametersUiState {
     /// The table goes once what is typed into it is taken or refused.
     fn shows_scale(&self) -> bool {
-        self.shown == Shown::Scale && (self.table.typed().is_none() || self.table.is_refused())
+        self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }
 
     /// What is being typed, or was refused.
@@ -113,18 +121,18 @@ impl View {
         self.lines.get(place.group)?.get(place.row).copied()
     }
 
-    fn shows(&self, skin: &Skin, row: &Row) -> bool {
+    fn shows(&self, theme: &Theme, row: &Row) -> bool {
         if self.typed() == Some(row.number) {
             return true;
         }
         let sought = self.sought.trim().to_lowercase();
         let fits = sought.is_empty()
             || row.number.get().to_string().contains(&sought)
-            || skin.words(&row.name).to_lowercase().contains(&sought);
+            || theme.words(&row.name).to_lowercase().contains(&sought);
         fits && match self.shown {
-            Shown::All | Shown::Scale => true,
-            Shown::Written => row.is_editable || !sought.is_empty(),
-            Shown::Changed => row.is_edited || row.changed_from.is_some(),
+            ParameterFilter::All | ParameterFilter::Scale => true,
+            ParameterFilter::Written => row.is_editable || !sought.is_empty(),
+            ParameterFilter::Changed => row.is_edited || row.changed_from.is_some(),
         }
     }
 
@@ -139,24 +147,31 @@ impl View {
         self.table.follow(|place| {
             let number = before.get(place.group)?.get(place.row)?;
             let row = now.get(place.group)?.iter().position(|own| own == number)?;
-            Some(Place { row, ..place })
+            Some(RegisterLocation { row, ..place })
         });
     }
 }
 
-fn table(ui: &mut Ui, skin: &Skin, unit: &Unit, rows: &[Vec<Row>], view: &mut View, actions: &mut Vec<Action>) {
+fn table(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &Unit,
+    rows: &[Vec<Row>],
+    view: &mut DriveParametersUiState,
+    actions: &mut Vec<Action>,
+) {
     let groups: Vec<RegisterGroup> = ["hd_params.drive", "hd_params.device"]
         .into_iter()
         .zip(rows)
-        .map(|(title, rows)| RegisterGroup { title: say(skin, title), note: String::new(), rows: rows.len() })
+        .map(|(title, rows)| RegisterGroup { title: say(theme, title), note: String::new(), rows: rows.len() })
         .collect();
-    let at = |place: Place| rows.get(place.group)?.get(place.row);
-    let row = |place: Place| at(place).map(|row| row_of(skin, row)).unwrap_or_default();
-    let label = skin.say("page.parameters");
+    let at = |place: RegisterLocation| rows.get(place.group)?.get(place.row);
+    let row = |place: RegisterLocation| at(place).map(|row| row_of(theme, row)).unwrap_or_default();
+    let label = theme.say("page.parameters");
     let table = RegisterTable { label: &label, groups: &groups, row: &row, kind: RegisterKind::Numbers };
     let mut edits = Vec::new();
     let height = ui.available_height();
-    let output = register_table(ui, skin, &table, height, &mut view.table, &mut |place, text| {
+    let output = register_table(ui, theme, &table, height, &mut view.table, &mut |place, text| {
         if let Some(row) = at(place).filter(|row| text != own_text(row)) {
             edits.push(forms::parameter(row, text)?);
         }
@@ -174,8 +189,8 @@ fn own_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }
 
-fn row_of(skin: &Skin, row: &Row) -> RegisterRow {
-    let words = |text: Option<&Text>| text.map(|text| skin.words(text)).unwrap_or_default();
+fn row_of(theme: &Theme, row: &Row) -> RegisterRow {
+    let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
     let value = own_text(row);
     // A unit that is a part of another one is multiplied.
     let unit = match words(row.unit.as_ref()) {
@@ -185,7 +200,7 @@ fn row_of(skin: &Skin, row: &Row) -> RegisterRow {
     let meaning = [unit, words(row.meaning.as_ref())].into_iter().filter(|own| !own.is_empty());
     RegisterRow {
         address: row.number.to_string(),
-        name: skin.words(&row.name),
+        name: theme.words(&row.name),
         meaning: if value.is_empty() { String::new() } else { meaning.collect::<Vec<_>>().join(" · ") },
         range: words(row.range.as_ref()),
         differs: row.is_editable && !row.factory.is_empty() && !value.is_empty() && value != row.factory,
@@ -193,8 +208,8 @@ fn row_of(skin: &Skin, row: &Row) -> RegisterRow {
         changed: row.changed_from.is_some(),
         before: row.changed_from.map(|was| was.to_string()).unwrap_or_default(),
         edited: row.is_edited,
-        kept: row.kind.saved.then(|| say(skin, "hd_params.is_kept")),
-        read_only: row.why_not_editable().map(|why| skin.words(&why)),
+        kept: row.kind.saved.then(|| say(theme, "hd_params.is_kept")),
+        read_only: row.why_not_editable().map(|why| theme.words(&why)),
         value,
         ..RegisterRow::default()
     }

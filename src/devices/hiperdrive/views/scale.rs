@@ -6,11 +6,11 @@ use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{Action as Hiperdrive, Edit, LimitsStay, Measure, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{card, enabled_button, entry, options, paragraph, problem, row, settled_entry, text_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct ScaleUiState {
     pitch: Option<(String, Option<Text>)>,
     step: String,
     stay_as_numbers: bool,
@@ -21,34 +21,34 @@ pub(super) struct View {
 const NUMBER: f32 = 88.0;
 
 /// The card.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleUiState, actions: &mut Vec<Action>) {
     let (id, drive) = (unit.session.id, unit.drive());
-    card(ui, skin, TEXTS.text("hd_scale.title"), |ui| {
-        let word = say(skin, "hd_scale.pitch");
+    card(ui, theme, TEXTS.text("hd_scale.title"), |ui| {
+        let word = say(theme, "hd_scale.pitch");
         let pitch = unit.pitch(drive);
-        let shown = pitch.map(|own| skin.plain(own.nanometres as f64 / 1e6)).unwrap_or_default();
-        entry(ui, skin, &word, |ui| {
+        let shown = pitch.map(|own| theme.plain(own.nanometres as f64 / 1e6)).unwrap_or_default();
+        entry(ui, theme, &word, |ui| {
             settled_entry(ui, &mut view.pitch, &shown, NUMBER, &word, |text| {
                 let pitch = if text.trim().is_empty() { None } else { Some(forms::length(text)?) };
                 actions.push(Action::device(id, Hiperdrive::SetPitch(drive, pitch)));
                 Ok(())
             });
-            ui.label(skin.label(say(skin, "hd_scale.a_turn")));
+            ui.label(theme.label(say(theme, "hd_scale.a_turn")));
         });
-        problem(ui, skin, view.pitch.as_ref().and_then(|(_, why)| why.as_ref()));
-        let word = say(skin, "hd_scale.step");
-        entry(ui, skin, &word, |ui| {
+        problem(ui, theme, view.pitch.as_ref().and_then(|(_, why)| why.as_ref()));
+        let word = say(theme, "hd_scale.step");
+        entry(ui, theme, &word, |ui| {
             text_entry(ui, &mut view.step, NUMBER, &word, "0.01");
-            ui.label(skin.label(say(skin, Measure::Millimetres.unit())));
+            ui.label(theme.label(say(theme, Measure::Millimetres.unit())));
         });
-        let word = say(skin, "hd_scale.limits");
-        entry(ui, skin, &word, |ui| {
+        let word = say(theme, "hd_scale.limits");
+        entry(ui, theme, &word, |ui| {
             let ways = [(false, "hd_scale.in_place"), (true, "hd_scale.as_numbers")];
-            options(ui, &word, &mut view.stay_as_numbers, ways.map(|(own, id)| (own, say(skin, id))));
+            options(ui, &word, &mut view.stay_as_numbers, ways.map(|(own, id)| (own, say(theme, id))));
         });
         ui.horizontal(|ui| {
             let ready = pitch.is_some() && !view.step.trim().is_empty();
-            if enabled_button(ui, ready, icons::RULER, &say(skin, "hd_scale.set")).clicked()
+            if enabled_button(ui, ready, icons::RULER, &say(theme, "hd_scale.set")).clicked()
                 && let Some(pitch) = pitch
             {
                 let limits = if view.stay_as_numbers { LimitsStay::AsNumbers } else { LimitsStay::InPlace };
@@ -61,23 +61,23 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, unit: &Unit, view: &mut View, ac
                     .err();
             }
         });
-        problem(ui, skin, view.refused.as_ref());
-        becomes(ui, skin, unit);
-        paragraph(ui, skin.caption(say(skin, "hd_scale.words")));
+        problem(ui, theme, view.refused.as_ref());
+        becomes(ui, theme, unit);
+        paragraph(ui, theme.caption(say(theme, "hd_scale.words")));
     });
 }
 
 /// What the scale as it is wanted makes of a turn and of the limits.
-fn becomes(ui: &mut Ui, skin: &Skin, unit: &Unit) {
+fn becomes(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let ruler = unit.wanted_ruler(drive);
-    let turn = format!("{} {}", skin.plain(ruler.scale.steps_per_turn()), say(skin, Measure::Steps.unit()));
-    row(ui, skin, &say(skin, "hd_scale.turn"), skin.mono(turn));
+    let turn = format!("{} {}", theme.plain(ruler.scale.steps_per_turn()), say(theme, Measure::Steps.unit()));
+    row(ui, theme, &say(theme, "hd_scale.turn"), theme.mono(turn));
     let Some((low, high)) = unit.staged.wanted().and_then(|image| image.limits(drive)) else { return };
     for measure in [Measure::Turns, Measure::Millimetres] {
         if let Some((low, high)) = ruler.of(low, measure).zip(ruler.of(high, measure)) {
-            let words = format!("{} … {} {}", skin.number(low, 2), skin.number(high, 2), say(skin, measure.unit()));
-            row(ui, skin, &say(skin, "hd_move.range"), skin.mono(words));
+            let words = format!("{} … {} {}", theme.number(low, 2), theme.number(high, 2), say(theme, measure.unit()));
+            row(ui, theme, &say(theme, "hd_move.range"), theme.mono(words));
         }
     }
 }

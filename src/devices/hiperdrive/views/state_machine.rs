@@ -11,7 +11,7 @@ use egui::accesskit::Role;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 use crate::devices::hiperdrive::protocol::State;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
 /// What is drawn.
@@ -72,11 +72,11 @@ impl Plan {
 }
 
 /// Draws it; the state that was asked for.
-pub(crate) fn state_machine(ui: &mut Ui, skin: &Skin, machine: &StateMachine<'_>) -> Option<State> {
+pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'_>) -> Option<State> {
     let size = vec2(ui.available_width().max(240.0), 2.0 * BOX + BETWEEN);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let plan = Plan::new(rect);
-    arrows(ui.painter(), skin, &plan, machine.present);
+    arrows(ui.painter(), theme, &plan, machine.present);
     let mut wanted = None;
     for ((state, name), hint) in State::ALL.into_iter().zip(machine.names).zip(machine.hints) {
         let place = plan.rect(state);
@@ -92,9 +92,9 @@ pub(crate) fn state_machine(ui: &mut Ui, skin: &Skin, machine: &StateMachine<'_>
         if let Some(hint) = hint {
             response = response.on_hover_text(hint);
         }
-        box_ui(ui.painter(), skin, place, name, look(skin, state, is_present, is_reachable, response.hovered()));
+        box_ui(ui.painter(), theme, place, name, look(theme, state, is_present, is_reachable, response.hovered()));
         if response.has_focus() {
-            focus_ring(ui.painter(), skin, place, skin.radius);
+            focus_ring(ui.painter(), theme, place, theme.radius);
         }
         if response.clicked() {
             wanted = Some(state);
@@ -104,15 +104,15 @@ pub(crate) fn state_machine(ui: &mut Ui, skin: &Skin, machine: &StateMachine<'_>
 }
 
 /// How a box looks.
-struct Look {
+struct BoxStyle {
     fill: Color32,
     edge: Stroke,
     ink: Color32,
     strong: bool,
 }
 
-fn look(skin: &Skin, state: State, is_present: bool, is_reachable: bool, hovered: bool) -> Look {
-    let palette = skin.palette;
+fn look(theme: &Theme, state: State, is_present: bool, is_reachable: bool, hovered: bool) -> BoxStyle {
+    let palette = theme.palette;
     if is_present {
         let (fill, ink) = match state {
             State::Fault => (palette.bad, palette.on_bad),
@@ -120,37 +120,37 @@ fn look(skin: &Skin, state: State, is_present: bool, is_reachable: bool, hovered
             State::Moving => (palette.good, palette.on_bad),
             _ => (palette.accent, palette.on_accent),
         };
-        return Look { fill: fill.into(), edge: Stroke::NONE, ink: ink.into(), strong: true };
+        return BoxStyle { fill: fill.into(), edge: Stroke::NONE, ink: ink.into(), strong: true };
     }
     let (edge, ink) = if is_reachable { (palette.accent, palette.text) } else { (palette.line, palette.muted) };
     let fill = match (is_reachable, hovered) {
         (true, true) => Color32::from(palette.accent).gamma_multiply(0.15),
         _ => palette.raised.into(),
     };
-    Look { fill, edge: Stroke::new(1.0, edge), ink: ink.into(), strong: false }
+    BoxStyle { fill, edge: Stroke::new(1.0, edge), ink: ink.into(), strong: false }
 }
 
-fn box_ui(painter: &Painter, skin: &Skin, rect: Rect, name: &str, look: Look) {
-    painter.rect_filled(rect, skin.radius, look.fill);
-    painter.rect_stroke(rect, skin.radius, look.edge, StrokeKind::Inside);
-    let font = |size| if look.strong { skin.strong(size) } else { FontId::proportional(size) };
+fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxStyle) {
+    painter.rect_filled(rect, theme.radius, look.fill);
+    painter.rect_stroke(rect, theme.radius, look.edge, StrokeKind::Inside);
+    let font = |size| if look.strong { theme.strong(size) } else { FontId::proportional(size) };
     let room = rect.width() - 8.0;
-    let whole = painter.layout_no_wrap(name.to_owned(), font(skin.sizes.body), look.ink);
+    let whole = painter.layout_no_wrap(name.to_owned(), font(theme.sizes.body), look.ink);
     let words = if whole.size().x <= room {
         whole
     } else {
-        painter.layout(name.to_owned(), font(skin.sizes.caption), look.ink, room)
+        painter.layout(name.to_owned(), font(theme.sizes.caption), look.ink, room)
     };
     painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), rect).min, words, look.ink);
 }
 
 /// The lines between the boxes: there and back in the row, three into the fault, two out of the lock.
-fn arrows(painter: &Painter, skin: &Skin, plan: &Plan, present: Option<State>) {
-    let faint = Color32::from(skin.palette.muted).gamma_multiply(0.7);
+fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
+    let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);
     // What leads away from where the drive is.
     let ink = |from: &[State]| {
         let own = present.is_some_and(|present| from.contains(&present));
-        Stroke::new(if own { 1.5 } else { 1.0 }, if own { skin.palette.accent.into() } else { faint })
+        Stroke::new(if own { 1.5 } else { 1.0 }, if own { theme.palette.accent.into() } else { faint })
     };
     let row = [State::NotReady, State::Ready, State::Operational, State::Enabled, State::Moving];
     for (left, right) in row.iter().zip(row.iter().skip(1)) {
@@ -201,7 +201,7 @@ mod tests {
     use egui_kittest::kittest::{NodeT, Queryable};
 
     use super::*;
-    use crate::ui::widgets::tests::{NONE, focus, press, skin, window};
+    use crate::ui::widgets::tests::{NONE, focus, press, theme, window};
 
     fn states(present: Option<State>) -> Harness<'static, Vec<State>> {
         let names = State::ALL.map(|state| state.name().to_owned());
@@ -212,7 +212,7 @@ mod tests {
         };
         window(Vec::new(), move |ui, asked: &mut Vec<State>| {
             let machine = StateMachine { present, reachable: &reachable, names: &names, hints: &hints };
-            asked.extend(state_machine(ui, &skin(), &machine));
+            asked.extend(state_machine(ui, &theme(), &machine));
         })
     }
 

@@ -7,7 +7,7 @@ use serde_json::json;
 use super::write::{commit, operations, plan_text};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
-use crate::cli::plan::Shown;
+use crate::cli::plan::PlanReport;
 use crate::cli::profiles::{Left, keep, say_mounting_left, to_restore, write_restore};
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
@@ -138,7 +138,7 @@ fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<
     Ok(())
 }
 
-fn shown(prepared: &Prepared) -> Shown {
+fn shown(prepared: &Prepared) -> PlanReport {
     let (operations, write_cycles) = (operations(&prepared.plan), prepared.plan.write_cycles());
-    Shown { operations, text: plan_text(prepared), write_cycles }
+    PlanReport { operations, text: plan_text(prepared), write_cycles }
 }

@@ -5,7 +5,7 @@ use crate::app::Given;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
 use crate::cli::runner::{self, Runs};
-use crate::devices::hiperface::jobs::{Doing, Hiperface, Remark, may_have_other_master};
+use crate::devices::hiperface::jobs::{DeviceMessage, Hiperface, JobStep, may_have_other_master};
 use crate::devices::hiperface::procedures::AccessCodes;
 use crate::devices::hiperface::protocol::StatusCode;
 use crate::devices::hiperface::state::explain as words;
@@ -18,7 +18,7 @@ pub(super) type Runner = runner::Runner<Hiperface>;
 
 impl Runs for Hiperface {
     /// How the line is set: for `identify`.
-    type Kept = CharacterFormat;
+    type Context = CharacterFormat;
     const HAS_ONE_MASTER: bool = true;
     const COMMANDS: &'static dyn DeviceCommands = &HiperfaceCommands;
 
@@ -34,8 +34,8 @@ impl Runs for Hiperface {
     }
 
     /// Every code that the encoder announced, on a line of its own.
-    fn say(remark: &Remark) {
-        if let Remark::CodesUnheard(count) = remark {
+    fn say(remark: &DeviceMessage) {
+        if let DeviceMessage::CodesUnheard(count) = remark {
             say(&format!("{}\n", words::codes_unheard(*count).terminal()));
         }
         for code in codes(remark) {
@@ -44,7 +44,7 @@ impl Runs for Hiperface {
         }
     }
 
-    fn step(doing: &Doing) -> String {
+    fn step(doing: &JobStep) -> String {
         doing.to_string()
     }
 }
@@ -54,9 +54,9 @@ pub(super) fn codes_met(runner: &Runner) -> Vec<StatusCode> {
     runner.remarks.iter().flat_map(codes).copied().collect()
 }
 
-fn codes(remark: &Remark) -> &[StatusCode] {
+fn codes(remark: &DeviceMessage) -> &[StatusCode] {
     match remark {
-        Remark::Codes(codes) => codes,
-        Remark::CodesUnheard(_) | Remark::Found(_) | Remark::Line(_) => &[],
+        DeviceMessage::Codes(codes) => codes,
+        DeviceMessage::CodesUnheard(_) | DeviceMessage::Found(_) | DeviceMessage::Line(_) => &[],
     }
 }

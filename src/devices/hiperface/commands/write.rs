@@ -7,7 +7,7 @@ use crate::cli::args::{Common, Consenting, Write};
 use crate::cli::consent::{agreed, check_wear, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
-use crate::cli::plan::{self, Spent};
+use crate::cli::plan::{self, WriteSummary};
 use crate::cli::profiles::show_changed;
 use crate::cli::runner::unexpected;
 use crate::cli::{Failure, Result};
@@ -103,9 +103,14 @@ fn number(item: Item, value: &str) -> Result<i64> {
 }
 
 /// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
-pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+pub(super) fn commit(
+    runner: &mut Runner,
+    output: &Output,
+    prepared: Prepared,
+    consent: &Consenting,
+) -> Result<WriteSummary> {
     if prepared.plan.is_empty() {
-        return Ok(Spent::default());
+        return Ok(WriteSummary::default());
     }
     check_wear::<Hiperface>(consent, &prepared)?;
     let text = plan_text(&prepared);
@@ -114,7 +119,7 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
         HiperfaceOutput::Committed(committed) => committed,
         other => return Err(unexpected(&other)),
     };
-    Ok(Spent::of(output, committed))
+    Ok(WriteSummary::of(output, committed))
 }
 
 /// The plan for a person: each operation old → new, and what it costs.

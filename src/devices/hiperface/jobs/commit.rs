@@ -1,6 +1,6 @@
 //! Carries a plan out.
 
-use super::{ChangeKind, Commit, Committed, Doing, Hiperface, JobError, Prepared, WEAR_LIMIT};
+use super::{ChangeKind, Commit, Committed, Hiperface, JobError, JobStep, Prepared, WEAR_LIMIT};
 use crate::devices::hiperface::procedures::write::EncoderWrite;
 use crate::devices::hiperface::procedures::{Identity, profile_of};
 use crate::devices::hiperface::profile::{Base, HiperfacePlan, Op, Recorded, Scalar, created_by};
@@ -8,17 +8,17 @@ use crate::devices::hiperface::protocol::KIND;
 use crate::profile::Body;
 use crate::store::DeviceKey;
 use crate::worker::commit::{Planned, backup_of, write_plan};
-use crate::worker::{Desk, Progress};
+use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
     encoder: &mut Hiperface,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     commit: &Commit,
-    tell: &mut dyn FnMut(Progress<Doing>),
+    tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let mut write = EncoderWrite::new(encoder.master(desk), &commit.prepared.identity);
-    write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| Doing::Operation(op.clone()))))
+    write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| JobStep::Operation(op.clone()))))
 }
 
 /// How backups and the logbook know an encoder.

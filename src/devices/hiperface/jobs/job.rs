@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::devices::hiperface::procedures::check::Line;
+use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
 use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, Findings, Found};
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::procedures::{Error, Identity, LineQuality, PositionReading, Rest, SaveOptions, Survey};
@@ -209,7 +209,7 @@ impl Prepared {
 }
 
 /// A plan that a person consented to.
-pub type Commit = crate::worker::commit::Agreed<Prepared>;
+pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 /// What a commit did.
 pub type Committed = crate::worker::Committed<Written>;
@@ -241,7 +241,7 @@ pub struct SavedProfile {
 
 /// What a HIPERFACE encoder says on the way.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Remark {
+pub enum DeviceMessage {
     /// Status codes that replies announced.
     Codes(Vec<StatusCode>),
     /// So many status codes may have been lost: 50h takes them out of the encoder, and its reply was lost or damaged.
@@ -254,7 +254,7 @@ pub enum Remark {
 
 /// The step that a HIPERFACE job is at. Its text is the command line's.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Doing {
+pub enum JobStep {
     /// The data field of that number is read.
     Field(u64),
     /// An operation of a plan is carried out.
@@ -263,12 +263,12 @@ pub enum Doing {
     Attempt(Attempt),
 }
 
-impl fmt::Display for Doing {
+impl fmt::Display for JobStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Doing::Field(field) => write!(f, "field:{field}"),
-            Doing::Operation(op) => op.item().fmt(f),
-            Doing::Attempt(attempt) => attempt.fmt(f),
+            JobStep::Field(field) => write!(f, "field:{field}"),
+            JobStep::Operation(op) => op.item().fmt(f),
+            JobStep::Attempt(attempt) => attempt.fmt(f),
         }
     }
 }
@@ -284,7 +284,7 @@ pub enum HiperfaceOutput {
     Rest(Rest),
     Value(Value),
     Saved(Box<SavedProfile>),
-    Check(Vec<Line>),
+    Check(Vec<HiperfaceStepResult>),
     Reset(Vec<StatusCode>),
     Found(Findings),
     Configured,

@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 pub use commit::device_key;
 pub use job::{
-    Change, ChangeKind, Commit, Committed, Doing, HiperfaceJob, HiperfaceOutput, JobError, OtherType, Prepared, Remark,
-    SavedProfile, Value, WEAR_LIMIT,
+    Change, ChangeKind, Commit, Committed, DeviceMessage, HiperfaceJob, HiperfaceOutput, JobError, JobStep, OtherType,
+    Prepared, SavedProfile, Value, WEAR_LIMIT,
 };
 pub use open::{check, may_have_other_master, open};
 pub use types::{BrokenTypes, encoder_types};
@@ -29,7 +29,7 @@ use crate::devices::hiperface::profile::{FieldRange, Item, PlanError};
 use crate::devices::hiperface::protocol::{EncoderTypes, Geometry, StatusCode};
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::store::{DeviceKey, Store};
-use crate::worker::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
 
 /// A HIPERFACE encoder at the end of its wire.
 pub struct Hiperface {
@@ -53,19 +53,19 @@ impl fmt::Debug for Hiperface {
 
 impl Hiperface {
     /// The host's side of the line.
-    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }
 
     /// Notes who has answered.
-    fn identified(&mut self, desk: &Desk, identity: &Identity) {
+    fn identified(&mut self, desk: &SessionContext, identity: &Identity) {
         self.geometry = identity.geometry;
         self.identified = Some(device_key(identity, desk.is_virtual));
     }
 
     /// Keeps the status codes that were read, before they are shown. An encoder that is not known yet is asked who it is:
     /// its logbook is to have them.
-    fn keep_codes(&mut self, desk: &mut Desk, codes: &[StatusCode]) {
+    fn keep_codes(&mut self, desk: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
         }
@@ -80,7 +80,7 @@ impl Hiperface {
     }
 
     /// The same for what is sampled, where a code that stays comes with each sample.
-    fn keep_sampled_codes(&mut self, desk: &mut Desk) {
+    fn keep_sampled_codes(&mut self, desk: &mut SessionContext) {
         let codes = self.station.take_codes_read();
         if !codes.is_empty() && self.status.is_news(&codes, desk.clock.now()) {
             self.keep_codes(desk, &codes);
@@ -119,16 +119,16 @@ impl Device for Hiperface {
     type Job = HiperfaceJob;
     type Output = HiperfaceOutput;
     type Error = JobError;
-    type Remark = Remark;
+    type DeviceMessage = DeviceMessage;
     type Sample = Sample;
     type Watch = Watch;
-    type Doing = Doing;
+    type JobStep = JobStep;
 
     fn run(
         &mut self,
-        desk: &mut Desk,
+        desk: &mut SessionContext,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Tell<Remark, Doing>),
+        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
         let result = self.carry_out(desk, job, tell);
         let codes = self.station.take_codes_read();
@@ -136,7 +136,7 @@ impl Device for Hiperface {
         result
     }
 
-    fn sample(&mut self, desk: &mut Desk) -> Result<Sample, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<Sample, JobError> {
         let geometry = self.geometry;
         let met_before = self.station.codes_met.len();
         let sample = read_sample(&mut self.master(desk), geometry);
@@ -147,7 +147,7 @@ impl Device for Hiperface {
         Ok(sample)
     }
 
-    fn watch(&mut self, desk: &mut Desk, what: &Watch) -> Result<Watched<Sample>, JobError> {
+    fn watch(&mut self, desk: &mut SessionContext, what: &Watch) -> Result<Watched<Sample>, JobError> {
         let met_before = self.station.codes_met.len();
         let reading = read_watched(&mut self.master(desk), *what);
         self.keep_sampled_codes(desk);
@@ -159,8 +159,8 @@ impl Device for Hiperface {
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
     }
 
-    fn take_remark(&mut self) -> Option<Remark> {
-        let codes = Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(Remark::Codes);
+    fn take_remark(&mut self) -> Option<DeviceMessage> {
+        let codes = Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(DeviceMessage::Codes);
         codes.or_else(|| self.unheard())
     }
 
@@ -169,7 +169,7 @@ impl Device for Hiperface {
     }
 
     /// What went wrong on the line since it was told last.
-    fn idle(&mut self, _desk: &mut Desk) -> Option<Remark> {
+    fn idle(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
         if let Some(unheard) = self.unheard() {
             return Some(unheard);
         }
@@ -179,20 +179,20 @@ impl Device for Hiperface {
             return None;
         }
         self.told_troubles = line.quality.troubles();
-        Some(Remark::Line(line.quality.clone()))
+        Some(DeviceMessage::Line(line.quality.clone()))
     }
 }
 
 impl Hiperface {
-    fn unheard(&mut self) -> Option<Remark> {
-        Some(self.station.take_codes_unheard()).filter(|count| *count > 0).map(Remark::CodesUnheard)
+    fn unheard(&mut self) -> Option<DeviceMessage> {
+        Some(self.station.take_codes_unheard()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
     }
 
     fn carry_out(
         &mut self,
-        desk: &mut Desk,
+        desk: &mut SessionContext,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Tell<Remark, Doing>),
+        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
         let types = self.types.clone();
         let steps = &mut |progress| tell(Tell::Progress(progress));
@@ -204,7 +204,7 @@ impl Hiperface {
             }
             HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, steps)?),
             HiperfaceJob::Survey => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });
+                let progress = &mut |done, total| steps(Progress { done, total, what: JobStep::Field(done) });
                 let survey = procedures::survey(&mut self.master(desk), &types, progress)?;
                 self.identified(desk, &survey.identity);
                 HiperfaceOutput::Surveyed(Box::new(survey))
@@ -228,7 +228,7 @@ impl Hiperface {
             }
             HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(desk), item)?),
             HiperfaceJob::Save(options) => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: Doing::Field(done) });
+                let progress = &mut |done, total| steps(Progress { done, total, what: JobStep::Field(done) });
                 let profile = procedures::save(&mut self.master(desk), &types, options, progress)?;
                 let locked = profile.fields.iter().filter(|field| field.bytes.is_none());
                 let locked = locked.map(|field| (field.number, field.status.code())).collect();
@@ -250,12 +250,12 @@ impl Hiperface {
     }
 }
 
-fn told(news: News<'_>) -> Tell<Remark, Doing> {
+fn told(news: News<'_>) -> Tell<DeviceMessage, JobStep> {
     match news {
         News::Trying { done, total, attempt } => {
-            Tell::Progress(Progress { done, total, what: Doing::Attempt(attempt.clone()) })
+            Tell::Progress(Progress { done, total, what: JobStep::Attempt(attempt.clone()) })
         }
-        News::Found(found) => Tell::Remark(Remark::Found(found.clone())),
+        News::Found(found) => Tell::Remark(DeviceMessage::Found(found.clone())),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Change, Doing, Hiperface, JobError, OtherType, Prepared, device_key};
+use super::{Change, Hiperface, JobError, JobStep, OtherType, Prepared, device_key};
 use crate::devices::hiperface::procedures::write::{ensure_free, read_guarded_fields, read_memory};
 use crate::devices::hiperface::procedures::{
     Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
@@ -15,13 +15,13 @@ use crate::devices::hiperface::protocol::{
     BROADCAST, CodeNumber, FreeMemory, Geometry, LineSettings, nearest_in_phase,
 };
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Desk, Progress};
+use crate::worker::{Progress, SessionContext};
 
 pub(super) fn prepare(
     encoder: &mut Hiperface,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     change: Change,
-    tell: &mut dyn FnMut(Progress<Doing>),
+    tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
     let mut master = encoder.master(desk);
@@ -65,14 +65,14 @@ fn restore(
     prepared: &mut Prepared,
     profile: &HiperfaceProfile,
     options: RestoreOptions,
-    tell: &mut dyn FnMut(Progress<Doing>),
+    tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<(), JobError> {
     let serial_number = prepared.identity.serial.serial_number.clone();
     let encoder_type = prepared.identity.label.encoder_type;
     // Known before the fields are read.
     check_allowed(profile, &serial_number, encoder_type, &options)?;
     let memory = read_memory(master)?;
-    let progress = &mut |done, total| tell(Progress { done, total, what: Doing::Field(done) });
+    let progress = &mut |done, total| tell(Progress { done, total, what: JobStep::Field(done) });
     let fields = read_all_fields(master, memory.fields, progress)?;
     let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
     let Restore { common, unknown_fields, created_left } = restore;

@@ -10,7 +10,7 @@ use crate::devices::hiperface::protocol::{DataFieldStatus, EncoderTypes, Positio
 pub use crate::analysis::check::Verdict;
 
 /// One line of the check.
-pub type Line = crate::analysis::check::Line<Step, Finding>;
+pub type HiperfaceStepResult = crate::analysis::check::StepResult<Step, Finding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,21 +92,21 @@ pub enum Finding {
 ///
 /// # Errors
 /// The line, or the user's wish.
-pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Result<Vec<Line>, Error> {
+pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Result<Vec<HiperfaceStepResult>, Error> {
     let mut lines = Vec::new();
     let codes = if restart {
         let codes = reset(master)?;
-        lines.push(Line { step: Step::Restart, verdict: Verdict::Good, findings: Vec::new() });
+        lines.push(HiperfaceStepResult { step: Step::Restart, verdict: Verdict::Good, findings: Vec::new() });
         codes
     } else {
         read_status(master)?
     };
-    lines.push(Line { step: Step::Status, verdict: verdict(&codes), findings: found(&codes) });
+    lines.push(HiperfaceStepResult { step: Step::Status, verdict: verdict(&codes), findings: found(&codes) });
     let identity = identify(master, types)?;
     let known = if identity.geometry.is_some() { Verdict::Good } else { Verdict::Attention };
     let findings =
         vec![Finding::Name(identity.name.clone()), Finding::SerialNumber(identity.serial.serial_number.clone())];
-    lines.push(Line { step: Step::Identity, verdict: known, findings });
+    lines.push(HiperfaceStepResult { step: Step::Identity, verdict: known, findings });
     lines.push(check_position(master, &identity)?);
     lines.extend(check_limits(master, &identity)?);
     lines.push(check_fields(master, &identity)?);
@@ -114,7 +114,7 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
     Ok(lines)
 }
 
-fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Error> {
+fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<HiperfaceStepResult, Error> {
     let step = Step::Position;
     let reading = read_position(master, identity.geometry);
     match tolerated(master, reading)? {
@@ -125,15 +125,17 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Line, 
             }];
             findings.extend(found(&reading.codes));
             let verdict = if reading.valid { verdict(&reading.codes) } else { Verdict::Bad };
-            Ok(Line { step, verdict, findings })
+            Ok(HiperfaceStepResult { step, verdict, findings })
         }
-        Err(Error::Rejected { codes, .. }) => Ok(Line { step, verdict: Verdict::Bad, findings: found(&codes) }),
-        Err(why) => Ok(Line { step, verdict: Verdict::Bad, findings: vec![Finding::Unreadable(why)] }),
+        Err(Error::Rejected { codes, .. }) => {
+            Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: found(&codes) })
+        }
+        Err(why) => Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: vec![Finding::Unreadable(why)] }),
     }
 }
 
 /// The limits of the extended label, as far as their channels answer.
-fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<Line>, Error> {
+fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended() else { return Ok(None) };
     let mut findings = Vec::new();
     let mut worst = Verdict::Good;
@@ -154,10 +156,10 @@ fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<L
             }
         }
     }
-    Ok((!findings.is_empty()).then_some(Line { step: Step::Limits, verdict: worst, findings }))
+    Ok((!findings.is_empty()).then_some(HiperfaceStepResult { step: Step::Limits, verdict: worst, findings }))
 }
 
-fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Error> {
+fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<HiperfaceStepResult, Error> {
     let mut findings = Vec::new();
     let mut verdict = Verdict::Good;
     for number in 0..identity.memory.map_or(0, |memory| memory.fields) {
@@ -177,14 +179,14 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Line, Er
             }
         }
     }
-    Ok(Line { step: Step::DataFields, verdict, findings })
+    Ok(HiperfaceStepResult { step: Step::DataFields, verdict, findings })
 }
 
 /// A line on which something had to be repeated works, and somebody should look at its wiring.
-fn check_line(master: &mut Master<'_>) -> Line {
+fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };
-    Line { step: Step::Line, verdict, findings: vec![Finding::Line(quality)] }
+    HiperfaceStepResult { step: Step::Line, verdict, findings: vec![Finding::Line(quality)] }
 }
 
 fn verdict(codes: &[StatusCode]) -> Verdict {

@@ -12,13 +12,13 @@ use super::error::Damage;
 use super::{Error, Station};
 use crate::devices::hiperface::protocol::{Answer, Command, Reply, Request};
 use crate::link::Ctx;
-use crate::link::line::{Line, TRIES};
+use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 pub(super) use exchange::{Answered, Trouble};
 
 /// The host's side of a HIPERFACE line.
 pub struct Master<'a> {
-    line: Line<'a>,
+    line: SerialLine<'a>,
     station: &'a mut Station,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Master<'a> {
     /// A master on this line, for one job: it has its patience before it.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
-        Master { line: Line::new(ctx), station }
+        Master { line: SerialLine::new(ctx), station }
     }
 
     /// What is known about the line.

@@ -7,7 +7,7 @@ use super::{
 
 /// One thing that a frame says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Said {
+pub enum FrameFact {
     /// Whom it concerns, and which command.
     Heading {
         /// 40h…5Fh, FFh in a broadcast.
@@ -75,18 +75,18 @@ pub enum Arguments {
 ///
 /// # Errors
 /// When the bytes are no frame.
-pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<Said>, FrameError> {
+pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact>, FrameError> {
     let frame = Frame::parse(bytes)?;
-    let mut said = vec![Said::Heading { address: frame.address, command: frame.command }];
+    let mut said = vec![FrameFact::Heading { address: frame.address, command: frame.command }];
     if let Some(answer) = request.and_then(|request| request.parse_reply(frame.address, bytes).ok()) {
         said.extend(answered(answer));
         return Ok(said);
     }
     match Request::parse(&frame) {
-        Ok(request) => said.push(Said::Request(arguments(request))),
+        Ok(request) => said.push(FrameFact::Request(arguments(request))),
         Err(error) => match guess_reply(&frame, bytes) {
             Some(answer) => said.extend(answered(answer)),
-            None => said.push(Said::NoRequest(error)),
+            None => said.push(FrameFact::NoRequest(error)),
         },
     }
     Ok(said)
@@ -153,11 +153,11 @@ fn arguments(request: Request) -> Arguments {
     }
 }
 
-fn answered(answer: Answer) -> Vec<Said> {
+fn answered(answer: Answer) -> Vec<FrameFact> {
     match answer {
-        Answer::Rejected { codes, .. } => codes.into_iter().map(Said::Refused).collect(),
-        Answer::Reply { reply: Reply::Status(codes), .. } => codes.into_iter().map(Said::Code).collect(),
-        Answer::Reply { reply, .. } => vec![Said::Reply(reply)],
+        Answer::Rejected { codes, .. } => codes.into_iter().map(FrameFact::Refused).collect(),
+        Answer::Reply { reply: Reply::Status(codes), .. } => codes.into_iter().map(FrameFact::Code).collect(),
+        Answer::Reply { reply, .. } => vec![FrameFact::Reply(reply)],
     }
 }
 
@@ -168,15 +168,15 @@ mod tests {
 
     #[test]
     fn frames_are_told_apart() {
-        let heading = |command| Said::Heading { address: 0x40, command };
+        let heading = |command| FrameFact::Heading { address: 0x40, command };
         let cases = [
-            ("40 42 02", 0x42, Said::Request(Arguments::None)),
-            ("40 42 00 0E 05 31 38", 0x42, Said::Reply(Reply::Position(0x000E_0531))),
-            ("40 D0 0F 9F", 0xD0, Said::Code(StatusCode::WRONG_CODE)),
-            ("40 4D 00 C9 C4", 0x4D, Said::Reply(Reply::Done)),
-            ("40 4F 02 0D", 0x4F, Said::Reply(Reply::Done)),
-            ("40 4B 01 05 02 0D", 0x4B, Said::Reply(Reply::Done)),
-            ("40 41 01", 0x41, Said::NoRequest(RequestError::Command(0x41))),
+            ("40 42 02", 0x42, FrameFact::Request(Arguments::None)),
+            ("40 42 00 0E 05 31 38", 0x42, FrameFact::Reply(Reply::Position(0x000E_0531))),
+            ("40 D0 0F 9F", 0xD0, FrameFact::Code(StatusCode::WRONG_CODE)),
+            ("40 4D 00 C9 C4", 0x4D, FrameFact::Reply(Reply::Done)),
+            ("40 4F 02 0D", 0x4F, FrameFact::Reply(Reply::Done)),
+            ("40 4B 01 05 02 0D", 0x4B, FrameFact::Reply(Reply::Done)),
+            ("40 41 01", 0x41, FrameFact::NoRequest(RequestError::Command(0x41))),
         ];
         for (bytes, command, expected) in cases {
             let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
@@ -193,7 +193,7 @@ mod tests {
         ];
         for (bytes, expected) in cases {
             let said = describe(&parse_hex(bytes).unwrap(), None).unwrap();
-            assert_eq!(said.last(), Some(&Said::Request(expected)), "{bytes}");
+            assert_eq!(said.last(), Some(&FrameFact::Request(expected)), "{bytes}");
         }
     }
 
@@ -207,6 +207,6 @@ mod tests {
     fn a_refusal_is_told_from_its_request() {
         let request = Request::ReadPosition;
         let said = describe(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
-        assert_eq!(said.last(), Some(&Said::Refused(StatusCode::new(0x1F))));
+        assert_eq!(said.last(), Some(&FrameFact::Refused(StatusCode::new(0x1F))));
     }
 }

@@ -33,7 +33,7 @@ pub use command::{COMMANDS, Command, CommandRow};
 pub use data_field::{
     AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
 };
-pub use describe::{Arguments, Said, describe};
+pub use describe::{Arguments, FrameFact, describe};
 pub use encoder_type::{EncoderType, EncoderTypes, TypeTableError};
 pub use extended_label::{ExtendedLabel, LabelError, LabelParameter, LabelPart};
 pub use frame::{Frame, FrameError, checksum};

@@ -50,11 +50,11 @@ impl Geometry {
                 let per_turn = self.steps_per_turn().unwrap_or(1);
                 let (turns, steps) = (u64::from(raw) / per_turn, u64::from(raw) % per_turn);
                 let degrees = steps as f64 * 360.0 / per_turn as f64;
-                Position { raw, in_range, place: Place::Rotary { turns, steps, degrees } }
+                Position { raw, in_range, place: Location::Rotary { turns, steps, degrees } }
             }
             Geometry::Linear { period_nm, .. } => {
                 let nanometres = f64::from(raw) * f64::from(period_nm) / f64::from(STEPS_PER_PERIOD);
-                Position { raw, in_range, place: Place::Linear { millimetres: nanometres * 1e-6 } }
+                Position { raw, in_range, place: Location::Linear { millimetres: nanometres * 1e-6 } }
             }
         }
     }
@@ -77,11 +77,11 @@ pub struct Position {
     pub raw: u32,
     /// The word lies within the encoder's measuring range.
     pub in_range: bool,
-    place: Place,
+    place: Location,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
+enum Location {
     Rotary { turns: u64, steps: u64, degrees: f64 },
     Linear { millimetres: f64 },
 }
@@ -90,32 +90,32 @@ impl Position {
     /// Whole revolutions; `None` for a linear encoder.
     pub fn turns(self) -> Option<u64> {
         match self.place {
-            Place::Rotary { turns, .. } => Some(turns),
-            Place::Linear { .. } => None,
+            Location::Rotary { turns, .. } => Some(turns),
+            Location::Linear { .. } => None,
         }
     }
 
     /// Steps within the revolution; `None` for a linear encoder.
     pub fn steps(self) -> Option<u64> {
         match self.place {
-            Place::Rotary { steps, .. } => Some(steps),
-            Place::Linear { .. } => None,
+            Location::Rotary { steps, .. } => Some(steps),
+            Location::Linear { .. } => None,
         }
     }
 
     /// Degrees within the revolution, 0 up to 360; `None` for a linear encoder.
     pub fn degrees(self) -> Option<f64> {
         match self.place {
-            Place::Rotary { degrees, .. } => Some(degrees),
-            Place::Linear { .. } => None,
+            Location::Rotary { degrees, .. } => Some(degrees),
+            Location::Linear { .. } => None,
         }
     }
 
     /// Millimetres; `None` for a rotary encoder.
     pub fn millimetres(self) -> Option<f64> {
         match self.place {
-            Place::Rotary { .. } => None,
-            Place::Linear { millimetres } => Some(millimetres),
+            Location::Rotary { .. } => None,
+            Location::Linear { millimetres } => Some(millimetres),
         }
     }
 }
@@ -123,8 +123,8 @@ impl Position {
 impl fmt::Display for Position {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.place {
-            Place::Rotary { turns, degrees, .. } => write!(f, "turn {turns}, {degrees:.3}°"),
-            Place::Linear { millimetres } => write!(f, "{millimetres:.6} mm"),
+            Location::Rotary { turns, degrees, .. } => write!(f, "turn {turns}, {degrees:.3}°"),
+            Location::Linear { millimetres } => write!(f, "{millimetres:.6} mm"),
         }
     }
 }

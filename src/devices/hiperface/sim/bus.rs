@@ -10,7 +10,7 @@ use super::config::Config;
 use super::encoder::{Encoder, Heard};
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::Faults;
-use crate::sim::line::{Character, Line, Queue, Wires};
+use crate::sim::line::{Character, Queue, VirtualLine, Wires};
 use crate::units::{CharacterFormat, Moment, Parity};
 
 /// A line with one or several encoders, seen from the host. Made of a [`Config`].
@@ -175,7 +175,7 @@ fn garbage(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }
 
-impl Line for Bus {
+impl VirtualLine for Bus {
     type Event = Event;
 
     fn wires(&self) -> &Wires {

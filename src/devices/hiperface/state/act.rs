@@ -7,7 +7,7 @@ use super::encoder::Encoder;
 use super::write::with_options;
 use crate::app::Text;
 use crate::app::services::Services;
-use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::app::session::{Phase, Saved, SessionEvents, WithMemory};
 use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::profile::Item;

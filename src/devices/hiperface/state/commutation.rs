@@ -5,8 +5,8 @@
 
 mod act;
 mod form;
+mod offset_location;
 mod outcome;
-mod place;
 mod report;
 
 use crate::analysis::arctan::{Phase, exact};
@@ -18,8 +18,8 @@ use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::TEXTS;
 
 pub use form::{Form, Inputs, Slot, Source, Storage, Vector};
+pub use offset_location::OffsetLocation;
 pub use outcome::{Offset, Setting, Stored, may_read, stored};
-pub use place::Place;
 pub use report::kind_words;
 
 /// What can be done in the assistant.

@@ -2,7 +2,7 @@
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, OnDesk, ProfileFile, Session};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
 use crate::devices::hiperface::jobs::Hiperface;
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::profile::Document;
@@ -10,7 +10,7 @@ use crate::profile::Document;
 /// Edited bytes: field, address, byte.
 pub(crate) type Edits = Vec<(u8, usize, u8)>;
 
-impl OnDesk for Encoder {
+impl HasSession for Encoder {
     type Device = Hiperface;
 
     fn session(&self) -> &Session<Hiperface> {

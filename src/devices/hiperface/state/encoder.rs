@@ -32,7 +32,7 @@ pub struct Encoder {
     /// How good the line is.
     pub line_quality: LineQuality,
     /// The last device check.
-    pub check: Option<Vec<check::Line>>,
+    pub check: Option<Vec<check::HiperfaceStepResult>>,
     /// The counter as last read.
     pub counter: Option<u32>,
     /// The last position that was set here: from where, to where.

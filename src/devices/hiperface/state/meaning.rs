@@ -2,7 +2,7 @@
 
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::hiperface::procedures::Damage;
-use crate::devices::hiperface::protocol::{Answer, Frame, Reply, Request, Said, StatusCode, describe};
+use crate::devices::hiperface::protocol::{Answer, Frame, FrameFact, Reply, Request, StatusCode, describe};
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
@@ -46,7 +46,7 @@ impl Meaning {
             Err(error) => return Explained::broken(words::damage(&Damage::Reply(error.into()))),
         };
         // The heading repeats the request's; of a reply only what it gives is new.
-        let known = |said: &Said| asked.is_some() && matches!(said, Said::Heading { .. });
+        let known = |said: &FrameFact| asked.is_some() && matches!(said, FrameFact::Heading { .. });
         let meaning = said.iter().filter(|said| !known(said)).map(words::frame).collect();
         let fault = answer.filter(reports).map(|_| TraceFault::Reported);
         Explained { meaning, fault }

@@ -6,13 +6,13 @@ pub mod commutation;
 mod connect_form;
 mod drafts;
 mod encoder;
+mod events;
 pub mod explain;
 pub mod forms;
 mod kind;
 mod meaning;
 mod model;
 mod mounting;
-mod news;
 mod record;
 #[cfg(test)]
 mod recorded;

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use super::{Action, Encoder};
 use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Services, World};
-use crate::app::session::OnLine;
+use crate::app::session::SessionEvents;
 use crate::app::{ActContext, DeviceMemory, DeviceModel, Prepare, Recording, SineCosineSource, Tab, Text};
 use crate::devices::hiperface::jobs::{Hiperface, HiperfaceJob};
 use crate::devices::hiperface::procedures::AccessCodes;

@@ -7,8 +7,8 @@ use jiff::Zoned;
 
 use crate::analysis::history::Value;
 use crate::app::Text;
-use crate::app::recorder::{GroupId, Line, Scale};
-use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::app::recorder::{GroupId, Scale, Series};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
@@ -33,7 +33,7 @@ impl Record {
         for sample in samples {
             match sample {
                 Sample::Position(reading) => {
-                    let sighting = Sighting {
+                    let sighting = PositionSample {
                         at: reading.at,
                         position: Some(reading.raw.into()),
                         is_bad: !reading.valid,
@@ -43,7 +43,7 @@ impl Record {
                     (self.last, self.refused) = (Some(reading), false);
                 }
                 Sample::NoPosition { at, .. } => {
-                    self.track.add(&[Sighting { at, position: None, is_bad: true, is_warned: false }], &meaning);
+                    self.track.add(&[PositionSample { at, position: None, is_bad: true, is_warned: false }], &meaning);
                     self.refused = true;
                 }
                 Sample::Watched(reading) => self.track.add_watched(&reading.what, &watching(&reading)),
@@ -112,13 +112,13 @@ impl Watchable for Watch {
         true
     }
 
-    fn line(&self, group: GroupId) -> Line {
+    fn line(&self, group: GroupId) -> Series {
         let (heading, unit) = match *self {
             Watch::TEMPERATURE => ("temperature".to_owned(), "unit.celsius"),
             Watch::Analogue(channel) => (format!("analogue {channel:02X}h"), "unit.counts"),
             Watch::Counter => ("counter".to_owned(), "unit.counts"),
         };
-        Line::of(group, 0, watch_name(*self), heading, vec![Scale::new(unit, 1.0, 0)])
+        Series::of(group, 0, watch_name(*self), heading, vec![Scale::new(unit, 1.0, 0)])
     }
 }
 

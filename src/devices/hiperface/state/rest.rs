@@ -3,7 +3,7 @@
 
 use super::{Action, Encoder};
 use crate::app::services::Services;
-use crate::app::session::OnLine;
+use crate::app::session::SessionEvents;
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::Rest;

@@ -6,13 +6,15 @@ use crossbeam_channel::Receiver;
 use crate::app::action::{AnyOpened, Done, OpenFailed, Opened};
 use crate::app::connect::context::FinderContext;
 use crate::app::connect::form::Finder;
-use crate::app::leaving::Leaver;
-use crate::app::line::Line;
+use crate::app::live_session::LiveSession;
 use crate::app::services::Services;
 use crate::app::session::Kind as _;
+use crate::app::shutdown::Leaver;
 use crate::app::studio::SessionId;
 use crate::app::{DeviceModel, Text, explain};
-use crate::devices::hiperface::jobs::{Doing, Hiperface, HiperfaceJob, HiperfaceOutput, Remark, may_have_other_master};
+use crate::devices::hiperface::jobs::{
+    DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobStep, may_have_other_master,
+};
 use crate::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, LinkForm, TEXTS};
@@ -26,7 +28,7 @@ pub struct Search {
     /// The link it searches on.
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
-    pub(crate) line: Option<Line<Hiperface>>,
+    pub(crate) line: Option<LiveSession<Hiperface>>,
     /// Ends when its link is open or cannot be opened.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     /// All that answered so far.
@@ -37,7 +39,7 @@ pub struct Search {
 
 impl Search {
     /// How far it is.
-    pub fn progress(&self) -> Option<&Progress<Doing>> {
+    pub fn progress(&self) -> Option<&Progress<JobStep>> {
         self.line.as_ref()?.running()?.progress.as_ref()
     }
 
@@ -58,7 +60,7 @@ impl Search {
     pub(crate) fn opened(&mut self, result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>, services: &Services) {
         match result {
             Ok(opened) => {
-                let mut line = Line::new(*opened);
+                let mut line = LiveSession::new(*opened);
                 let job = HiperfaceJob::Find(self.options.clone());
                 if line.submit(job, TEXTS.text("job.find"), false, services.now()).is_err() {
                     self.end = Some(Text::new("session.ended"));
@@ -70,10 +72,10 @@ impl Search {
     }
 
     pub(crate) fn pump(&mut self) {
-        let dead = self.line.as_ref().is_some_and(Line::is_dead);
-        while let Some(event) = self.line.as_mut().and_then(Line::next) {
+        let dead = self.line.as_ref().is_some_and(LiveSession::is_dead);
+        while let Some(event) = self.line.as_mut().and_then(LiveSession::next) {
             match event {
-                Event::Remark(Remark::Found(found)) => self.found.push(found),
+                Event::Remark(DeviceMessage::Found(found)) => self.found.push(found),
                 Event::Finished(_, output) => self.finish(*output),
                 Event::Failed(_, error) | Event::Cancelled(_, error) => {
                     self.end = words::job(&error).into_iter().next();
@@ -81,7 +83,7 @@ impl Search {
                 Event::Lost(error) => self.end = Some(explain::link(&error)),
                 Event::Started(_)
                 | Event::Progress(..)
-                | Event::Remark(Remark::Codes(_) | Remark::CodesUnheard(_) | Remark::Line(_))
+                | Event::Remark(DeviceMessage::Codes(_) | DeviceMessage::CodesUnheard(_) | DeviceMessage::Line(_))
                 | Event::PollFailed(_) => {}
             }
         }

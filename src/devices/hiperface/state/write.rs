@@ -6,7 +6,7 @@ use super::review::Review;
 use super::rules;
 use crate::app::review::Permit;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Known, OnLine, Saved, WithMemory, without_edits};
+use crate::app::session::{ApprovedPlanOf, Known, Saved, SessionEvents, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
 use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
@@ -56,7 +56,7 @@ impl WithMemory for Encoder {
         HiperfaceJob::Prepare(change)
     }
 
-    fn commit(&mut self, agreed: Agreed<Hiperface>) -> HiperfaceJob {
+    fn commit(&mut self, agreed: ApprovedPlanOf<Hiperface>) -> HiperfaceJob {
         HiperfaceJob::Commit(Box::new(agreed))
     }
 

@@ -15,7 +15,7 @@ use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, labelled_entry, paragraph, row, split, text_entry,
     verdict_ui,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Width of an entry for a number.
 const NUMBER: f32 = 96.0;
@@ -26,39 +26,39 @@ const POSITION: f32 = 80.0;
 /// The least width for two columns.
 const COLUMNS: f32 = 700.0;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let mut form = encoder.commutation.form.clone();
     // Beside the long column where there are two, else at the end.
     let wide = ui.available_width() >= COLUMNS;
     split(
         ui,
-        skin,
+        theme,
         (0.5, COLUMNS),
         (&mut *actions, &mut form),
         |ui, (_, form)| {
-            before(ui, skin, form);
-            ui.add_space(skin.space.groups);
-            motor(ui, skin, encoder, form);
+            before(ui, theme, form);
+            ui.add_space(theme.space.groups);
+            motor(ui, theme, encoder, form);
             if wide {
-                ui.add_space(skin.space.groups);
-                result::report_ui(ui, skin, encoder);
+                ui.add_space(theme.space.groups);
+                result::report_ui(ui, theme, encoder);
             }
         },
         |ui, (actions, form)| {
-            rest(ui, skin, encoder, form, actions);
-            ui.add_space(skin.space.groups);
-            second(ui, skin, encoder, form, actions);
-            ui.add_space(skin.space.groups);
-            result::offset_ui(ui, skin, encoder);
-            ui.add_space(skin.space.groups);
-            result::field_ui(ui, skin, encoder, form, actions);
-            ui.add_space(skin.space.groups);
-            result::position_ui(ui, skin, encoder, form, actions);
+            rest(ui, theme, encoder, form, actions);
+            ui.add_space(theme.space.groups);
+            second(ui, theme, encoder, form, actions);
+            ui.add_space(theme.space.groups);
+            result::offset_ui(ui, theme, encoder);
+            ui.add_space(theme.space.groups);
+            result::field_ui(ui, theme, encoder, form, actions);
+            ui.add_space(theme.space.groups);
+            result::position_ui(ui, theme, encoder, form, actions);
         },
     );
     if !wide {
-        ui.add_space(skin.space.groups);
-        result::report_ui(ui, skin, encoder);
+        ui.add_space(theme.space.groups);
+        result::report_ui(ui, theme, encoder);
     }
     if form != encoder.commutation.form {
         actions.push(ask(encoder, Assistant::Edit(Box::new(form))));
@@ -69,140 +69,140 @@ fn ask(encoder: &Encoder, action: Assistant) -> Action {
     Action::device(encoder.session.id, Hiperface::Commutation(action))
 }
 
-fn before(ui: &mut Ui, skin: &Skin, form: &mut Form) {
-    card(ui, skin, TEXTS.text("commutation.before"), |ui| {
+fn before(ui: &mut Ui, theme: &Theme, form: &mut Form) {
+    card(ui, theme, TEXTS.text("commutation.before"), |ui| {
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-            paragraph(ui, RichText::new(say(skin, "commutation.danger")).color(skin.palette.warn));
+            ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+            paragraph(ui, RichText::new(say(theme, "commutation.danger")).color(theme.palette.warn));
         });
-        ui.checkbox(&mut form.disabled, say(skin, "commutation.disabled"));
-        ui.checkbox(&mut form.uncoupled, say(skin, "commutation.uncoupled"));
-        ui.checkbox(&mut form.released, say(skin, "commutation.released"));
+        ui.checkbox(&mut form.disabled, say(theme, "commutation.disabled"));
+        ui.checkbox(&mut form.uncoupled, say(theme, "commutation.uncoupled"));
+        ui.checkbox(&mut form.released, say(theme, "commutation.released"));
         let (current, time) = form.limit_problems();
-        number(ui, skin, "commutation.current", &mut form.current_a, "");
-        problem_ui(ui, skin, current.as_ref());
-        number(ui, skin, "commutation.time", &mut form.time_s, "");
-        problem_ui(ui, skin, time.as_ref());
-        entry(ui, skin, &say(skin, "commutation.vector"), |ui| {
-            let vectors = Vector::ALL.map(|vector| (vector, say(skin, vector.word())));
-            choice(ui, &say(skin, "commutation.vector"), &mut form.vector, vectors);
+        number(ui, theme, "commutation.current", &mut form.current_a, "");
+        problem_ui(ui, theme, current.as_ref());
+        number(ui, theme, "commutation.time", &mut form.time_s, "");
+        problem_ui(ui, theme, time.as_ref());
+        entry(ui, theme, &say(theme, "commutation.vector"), |ui| {
+            let vectors = Vector::ALL.map(|vector| (vector, say(theme, vector.word())));
+            choice(ui, &say(theme, "commutation.vector"), &mut form.vector, vectors);
         });
         if form.vector == Vector::Other {
-            number(ui, skin, "commutation.vector_angle", &mut form.vector_deg, "0");
+            number(ui, theme, "commutation.vector_angle", &mut form.vector_deg, "0");
         }
     });
 }
 
 /// What is wrong with the entry above.
-fn problem_ui(ui: &mut Ui, skin: &Skin, problem: Option<&Text>) {
+fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&Text>) {
     if let Some(why) = problem {
-        paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.bad));
+        paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.bad));
     }
 }
 
-fn motor(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form) {
-    card(ui, skin, TEXTS.text("commutation.motor"), |ui| {
-        number(ui, skin, "commutation.pole_pairs", &mut form.pole_pairs, "");
+fn motor(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
+    card(ui, theme, TEXTS.text("commutation.motor"), |ui| {
+        number(ui, theme, "commutation.pole_pairs", &mut form.pole_pairs, "");
         let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
-        number(ui, skin, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
+        number(ui, theme, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
         if let Some(words) = form.other_periods(encoder.geometry()) {
-            verdict_ui(ui, skin, Verdict::Warn, &words);
+            verdict_ui(ui, theme, Verdict::Warn, &words);
         }
-        entry(ui, skin, &say(skin, "commutation.direction"), |ui| {
+        entry(ui, theme, &say(theme, "commutation.direction"), |ui| {
             let directions = [(false, "commutation.with"), (true, "commutation.against")];
-            let directions = directions.map(|(reversed, id)| (reversed, say(skin, id)));
-            choice(ui, &say(skin, "commutation.direction"), &mut form.reversed, directions);
+            let directions = directions.map(|(reversed, id)| (reversed, say(theme, id)));
+            choice(ui, &say(theme, "commutation.direction"), &mut form.reversed, directions);
         });
-        entry(ui, skin, &say(skin, "commutation.source"), |ui| {
+        entry(ui, theme, &say(theme, "commutation.source"), |ui| {
             let sources = [
                 (Source::Signals, "commutation.from_signals"),
                 (Source::Typed, "commutation.from_typed"),
                 (Source::Absolute, "commutation.from_absolute"),
             ];
-            let sources = sources.map(|(source, id)| (source, say(skin, id)));
-            choice(ui, &say(skin, "commutation.source"), &mut form.source, sources);
+            let sources = sources.map(|(source, id)| (source, say(theme, id)));
+            choice(ui, &say(theme, "commutation.source"), &mut form.source, sources);
         });
         if form.source == Source::Typed {
-            number(ui, skin, "commutation.phase", &mut form.phase, &skin.number(0.0, 4));
+            number(ui, theme, "commutation.phase", &mut form.phase, &theme.number(0.0, 4));
         }
-        let limit = number(ui, skin, "commutation.limit", &mut form.limit_deg, "5");
-        limit.on_hover_text(say(skin, "commutation.limit_hint"));
+        let limit = number(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
+        limit.on_hover_text(say(theme, "commutation.limit_hint"));
         if let Err(why) = form.inputs(encoder.geometry()) {
-            paragraph(ui, skin.label(skin.words(&why)));
+            paragraph(ui, theme.label(theme.words(&why)));
         }
     });
 }
 
-fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
-    labelled_entry(ui, skin, TEXTS.text(id), text, NUMBER, hint)
+fn number(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
+    labelled_entry(ui, theme, TEXTS.text(id), text, NUMBER, hint)
 }
 
-fn rest(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+fn rest(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let any = Slot::ALL.into_iter().any(|slot| commutation.reading(slot).is_some());
     let mut clear = false;
     let aside = |ui: &mut Ui| {
-        clear = icon_button(ui, any, icons::TRASH, &say(skin, "commutation.clear")).clicked();
+        clear = icon_button(ui, any, icons::TRASH, &say(theme, "commutation.clear")).clicked();
     };
-    card_with(ui, skin, TEXTS.text("commutation.rest"), aside, |ui| {
-        paragraph(ui, skin.label(say(skin, "commutation.rest_words")));
+    card_with(ui, theme, TEXTS.text("commutation.rest"), aside, |ui| {
+        paragraph(ui, theme.label(say(theme, "commutation.rest_words")));
         let [one, other, _] = &mut form.typed;
-        slot(ui, skin, encoder, Slot::OneSide, one, actions);
-        slot(ui, skin, encoder, Slot::OtherSide, other, actions);
+        slot(ui, theme, encoder, Slot::OneSide, one, actions);
+        slot(ui, theme, encoder, Slot::OtherSide, other, actions);
         match commutation.offset(encoder.geometry()) {
             Ok(offset) => {
                 if let Some(apart) = offset.apart_deg {
                     let text = TEXTS.text("commutation.apart_value").with_number("apart", apart, 2);
-                    row(ui, skin, &say(skin, "commutation.apart"), skin.mono(skin.words(&text)));
+                    row(ui, theme, &say(theme, "commutation.apart"), theme.mono(theme.words(&text)));
                 }
-                row(ui, skin, &say(skin, "commutation.mean"), skin.mono(skin.number(offset.fine_periods, 5)));
+                row(ui, theme, &say(theme, "commutation.mean"), theme.mono(theme.number(offset.fine_periods, 5)));
                 if offset.apart_deg.is_none() {
-                    verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.only_one_side"));
+                    verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.only_one_side"));
                 }
             }
             Err(why) if any => {
-                paragraph(ui, RichText::new(skin.words(&why)).color(skin.palette.warn));
+                paragraph(ui, RichText::new(theme.words(&why)).color(theme.palette.warn));
             }
             Err(_) => {}
         }
-        problem_ui(ui, skin, commutation.problem.as_ref());
+        problem_ui(ui, theme, commutation.problem.as_ref());
     });
     if clear {
         actions.push(ask(encoder, Assistant::Clear));
     }
 }
 
-fn second(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("commutation.second"), |ui| {
-        paragraph(ui, skin.label(say(skin, "commutation.second_words")));
-        number(ui, skin, "commutation.second_angle", &mut form.second_deg, "90");
+fn second(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("commutation.second"), |ui| {
+        paragraph(ui, theme.label(say(theme, "commutation.second_words")));
+        number(ui, theme, "commutation.second_angle", &mut form.second_deg, "90");
         let [_, _, typed] = &mut form.typed;
-        slot(ui, skin, encoder, Slot::Second, typed, actions);
+        slot(ui, theme, encoder, Slot::Second, typed, actions);
         match encoder.commutation.second(encoder.geometry()) {
-            Some(Ok((verdict, words))) => verdict_ui(ui, skin, verdict, &words),
-            Some(Err(why)) => paragraph(ui, skin.label(skin.words(&why))),
+            Some(Ok((verdict, words))) => verdict_ui(ui, theme, verdict, &words),
+            Some(Err(why)) => paragraph(ui, theme.label(theme.words(&why))),
             None => {}
         }
     });
 }
 
 /// One position: as it was read or taken, and both ways to get it.
-fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
+fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let (read, take) = match slot {
         Slot::OneSide => ("commutation.read_one", "commutation.use_one"),
         Slot::OtherSide => ("commutation.read_other", "commutation.use_other"),
         Slot::Second => ("commutation.read_second", "commutation.use_second"),
     };
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
     let reading = commutation.reading(slot);
     let shown = match reading {
-        Some(reading) => skin.mono(skin.number(reading.fine_periods, 5)),
-        None => skin.mono("–").color(skin.palette.muted),
+        Some(reading) => theme.mono(theme.number(reading.fine_periods, 5)),
+        None => theme.mono("–").color(theme.palette.muted),
     };
-    row(ui, skin, &say(skin, slot.word()), shown);
+    row(ui, theme, &say(theme, slot.word()), shown);
     if let Some(reading) = reading {
-        ui.label(skin.caption(skin.words(&kind_words(reading))));
+        ui.label(theme.caption(theme.words(&kind_words(reading))));
     }
     ui.horizontal_wrapped(|ui| {
         let allowed = may_read(commutation, encoder.session.is_ready());
@@ -210,16 +210,16 @@ fn slot(ui: &mut Ui, skin: &Skin, encoder: &Encoder, slot: Slot, typed: &mut Str
         let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_min_width(size.x);
-            if allowed_button(ui, skin, &allowed, icons::CROSSHAIR, &say(skin, read)).clicked() {
+            if allowed_button(ui, theme, &allowed, icons::CROSSHAIR, &say(theme, read)).clicked() {
                 actions.push(ask(encoder, Assistant::Read(slot)));
             }
         });
         // What is typed for one place has to be told from what is typed for another.
-        let label = format!("{} · {}", say(skin, slot.word()), say(skin, "commutation.fine"));
-        let response = text_entry(ui, typed, POSITION, &label, &say(skin, "commutation.or_type"));
+        let label = format!("{} · {}", say(theme, slot.word()), say(theme, "commutation.fine"));
+        let response = text_entry(ui, typed, POSITION, &label, &say(theme, "commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let filled = !typed.trim().is_empty();
-        if icon_button(ui, filled, icons::CHECK, &say(skin, take)).clicked() || (enter && filled) {
+        if icon_button(ui, filled, icons::CHECK, &say(theme, take)).clicked() || (enter && filled) {
             actions.push(ask(encoder, Assistant::Use(slot)));
         }
     });

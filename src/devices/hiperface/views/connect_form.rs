@@ -16,7 +16,7 @@ use crate::devices::hiperface::state::{LinkForm, LinkKind, Search, SearchAction,
 use crate::ui::controls::{allowed_button, button, choice, entry, fill, name, paragraph, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{echo, margin, network, parity, recording, serial, unfolded};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What the form remembers of the search's options.
 #[derive(Default)]
@@ -37,32 +37,32 @@ impl TypedConnectForm for HiperfaceConnectForm {
 
     fn form_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         dialog: &Dialog,
         form: &mut LinkForm,
         (view, open): (&mut SearchView, &mut bool),
         actions: &mut Vec<Action>,
     ) {
-        kinds(ui, skin, form);
-        ui.add_space(skin.space.between);
+        kinds(ui, theme, form);
+        ui.add_space(theme.space.between);
         match form.kind {
-            LinkKind::Virtual => simulated(ui, skin, form),
-            LinkKind::Serial => serial(ui, skin, dialog, &mut form.port, actions),
-            LinkKind::Tcp => network(ui, skin, &mut form.host, &mut form.tcp_port),
-            LinkKind::Replay => recording(ui, skin, &mut form.file, actions),
+            LinkKind::Virtual => simulated(ui, theme, form),
+            LinkKind::Serial => serial(ui, theme, dialog, &mut form.port, actions),
+            LinkKind::Tcp => network(ui, theme, &mut form.host, &mut form.tcp_port),
+            LinkKind::Replay => recording(ui, theme, &mut form.file, actions),
         }
         if form.kind != LinkKind::Replay {
-            line(ui, skin, form);
-            more(ui, skin, form, open);
+            line(ui, theme, form);
+            more(ui, theme, form, open);
         }
         if form.kind != LinkKind::Replay {
-            ui.add_space(skin.space.between);
-            search(ui, skin, dialog, view, actions);
+            ui.add_space(theme.space.between);
+            search(ui, theme, dialog, view, actions);
         }
     }
 }
 
-fn kinds(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
+fn kinds(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     ui.horizontal(|ui| {
         let kinds = [
             (LinkKind::Virtual, "connect.virtual"),
@@ -71,7 +71,7 @@ fn kinds(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
             (LinkKind::Replay, "connect.replay"),
         ];
         for (kind, id) in kinds {
-            let word = say(skin, id);
+            let word = say(theme, id);
             let response = ui.add(egui::Button::selectable(form.kind == kind, &word));
             if name(response, true, &word).clicked() {
                 form.kind = kind;
@@ -80,77 +80,79 @@ fn kinds(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
     });
 }
 
-fn simulated(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
-    entry(ui, skin, &say(skin, "connect.model"), |ui| {
+fn simulated(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
+    entry(ui, theme, &say(theme, "connect.model"), |ui| {
         let mut at = LinkForm::models().position(|model| model == form.model).unwrap_or(0);
         let models = LinkForm::models().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
-        if choice(ui, &say(skin, "connect.model"), &mut at, models)
+        if choice(ui, &say(theme, "connect.model"), &mut at, models)
             && let Some(model) = LinkForm::models().nth(at)
         {
             model.clone_into(&mut form.model);
         }
     });
-    entry(ui, skin, &skin.say("connect.rpm"), |ui| text_entry(ui, &mut form.rpm, 96.0, &skin.say("connect.rpm"), "0"));
-    entry(ui, skin, &skin.say("connect.fault"), |ui| {
-        text_entry(ui, &mut form.fault, 200.0, &skin.say("connect.fault"), "drop:0.01");
+    entry(ui, theme, &theme.say("connect.rpm"), |ui| {
+        text_entry(ui, &mut form.rpm, 96.0, &theme.say("connect.rpm"), "0")
+    });
+    entry(ui, theme, &theme.say("connect.fault"), |ui| {
+        text_entry(ui, &mut form.fault, 200.0, &theme.say("connect.fault"), "drop:0.01");
     });
 }
 
-fn line(ui: &mut Ui, skin: &Skin, form: &mut LinkForm) {
-    entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
+fn line(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
+    entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
         let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
-        choice(ui, &skin.say("settings_card.baud"), &mut form.baud, bauds);
-        parity(ui, skin, &mut form.parity);
+        choice(ui, &theme.say("settings_card.baud"), &mut form.baud, bauds);
+        parity(ui, theme, &mut form.parity);
     });
-    entry(ui, skin, &say(skin, "connect.address"), |ui| {
-        text_entry(ui, &mut form.address, 96.0, &say(skin, "connect.address"), "40");
+    entry(ui, theme, &say(theme, "connect.address"), |ui| {
+        text_entry(ui, &mut form.address, 96.0, &say(theme, "connect.address"), "40");
     });
 }
 
 /// What is rarely needed.
-fn more(ui: &mut Ui, skin: &Skin, form: &mut LinkForm, open: &mut bool) {
-    if !unfolded(ui, skin, open) {
+fn more(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut bool) {
+    if !unfolded(ui, theme, open) {
         return;
     }
-    echo(ui, skin, &mut form.echo);
-    entry(ui, skin, &say(skin, "settings_card.timeout"), |ui| {
+    echo(ui, theme, &mut form.echo);
+    entry(ui, theme, &say(theme, "settings_card.timeout"), |ui| {
         let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
-        let times = times.map(|(long, id)| (long, say(skin, id)));
-        choice(ui, &say(skin, "settings_card.timeout"), &mut form.long_timeout, times);
+        let times = times.map(|(long, id)| (long, say(theme, id)));
+        choice(ui, &say(theme, "settings_card.timeout"), &mut form.long_timeout, times);
     });
-    margin(ui, skin, &mut form.margin);
-    entry(ui, skin, &say(skin, "connect.periods"), |ui| {
-        text_entry(ui, &mut form.periods, 72.0, &say(skin, "connect.periods"), "128");
-        ui.label(skin.label(say(skin, "connect.turns")));
-        text_entry(ui, &mut form.turns, 72.0, &say(skin, "connect.turns"), "4096");
+    margin(ui, theme, &mut form.margin);
+    entry(ui, theme, &say(theme, "connect.periods"), |ui| {
+        text_entry(ui, &mut form.periods, 72.0, &say(theme, "connect.periods"), "128");
+        ui.label(theme.label(say(theme, "connect.turns")));
+        text_entry(ui, &mut form.turns, 72.0, &say(theme, "connect.turns"), "4096");
     });
 }
 
-fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, actions: &mut Vec<Action>) {
+fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, actions: &mut Vec<Action>) {
     let search = dialog.finder::<SearchFinder>().and_then(|finder| finder.search.as_ref());
     let running = search.is_some_and(Search::is_running);
-    skin.card().show(ui, |ui| {
+    theme.card().show(ui, |ui| {
         fill(ui);
-        ui.label(skin.heading(say(skin, "find.title")));
-        paragraph(ui, skin.label(say(skin, "find.words")));
+        ui.label(theme.heading(say(theme, "find.title")));
+        paragraph(ui, theme.label(say(theme, "find.words")));
         ui.add_enabled_ui(!running, |ui| {
-            ui.checkbox(&mut view.one_encoder, say(skin, "find.one_encoder"));
+            ui.checkbox(&mut view.one_encoder, say(theme, "find.one_encoder"));
             ui.add_enabled_ui(view.one_encoder, |ui| {
-                ui.checkbox(&mut view.power_cycle, say(skin, "find.power_cycle"));
+                ui.checkbox(&mut view.power_cycle, say(theme, "find.power_cycle"));
             });
         });
         ui.horizontal(|ui| {
             if running {
-                if button(ui, icons::X, &say(skin, "find.stop")).clicked() {
+                if button(ui, icons::X, &say(theme, "find.stop")).clicked() {
                     actions.push(Action::Connect(Connect::StopSearch));
                 }
-                spinner(ui, skin);
+                spinner(ui, theme);
             } else if allowed_button(
                 ui,
-                skin,
+                theme,
                 &dialog.url().map(drop),
                 icons::MAGNIFYING_GLASS,
-                &say(skin, "find.start"),
+                &say(theme, "find.start"),
             )
             .clicked()
             {
@@ -161,11 +163,11 @@ fn search(ui: &mut Ui, skin: &Skin, dialog: &Dialog, view: &mut SearchView, acti
             if let Some(progress) = search.and_then(Search::progress) {
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
-                ui.label(skin.mono(skin.words(&words::doing(&progress.what))).color(skin.palette.muted));
+                ui.label(theme.mono(theme.words(&words::doing(&progress.what))).color(theme.palette.muted));
             }
         });
         if let Some(search) = search {
-            found(ui, skin, search, actions);
+            found(ui, theme, search, actions);
         }
     });
 }
@@ -174,20 +176,20 @@ fn find(action: SearchAction) -> Action {
     Action::Connect(Connect::find::<SearchFinder>(action))
 }
 
-fn found(ui: &mut Ui, skin: &Skin, search: &Search, actions: &mut Vec<Action>) {
+fn found(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut Vec<Action>) {
     for (at, found) in search.found.iter().enumerate() {
         ui.horizontal(|ui| {
             let word = TEXTS.text("find.choose").with("address", format!("{:02X}h", found.address));
-            if button(ui, icons::PLUGS_CONNECTED, &skin.words(&word)).clicked() {
+            if button(ui, icons::PLUGS_CONNECTED, &theme.words(&word)).clicked() {
                 actions.push(find(SearchAction::Choose(at)));
             }
             let talking = TEXTS.text("find.talking").with("format", found.format);
             let stored = TEXTS.text("find.stored").with_text("settings", words::line_settings(found.label.settings));
-            ui.label(skin.words(&talking));
-            ui.label(skin.label(skin.words(&stored)));
+            ui.label(theme.words(&talking));
+            ui.label(theme.label(theme.words(&stored)));
         });
     }
     if let Some(end) = &search.end {
-        paragraph(ui, skin.words(end));
+        paragraph(ui, theme.words(end));
     }
 }

@@ -8,28 +8,28 @@ use crate::devices::hiperface::state::{self, Action as Hiperface, Encoder};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{enabled_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::panels::live::{LOW, mark};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
-pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let record = &encoder.record;
     let reading = record.last();
     let position = reading.and_then(|reading| reading.position);
-    let number = |value: f64, decimals: usize| skin.number(value, decimals);
+    let number = |value: f64, decimals: usize| theme.number(value, decimals);
     let (main, unit) = match (reading, position) {
         (_, Some(position)) if position.millimetres().is_some() => {
             (number(position.millimetres().unwrap_or_default(), 4), "mm".to_owned())
         }
         (_, Some(position)) => (number(position.degrees().unwrap_or_default(), 3), "°".to_owned()),
-        (Some(reading), None) => (reading.raw.to_string(), say(skin, "live.steps")),
+        (Some(reading), None) => (reading.raw.to_string(), say(theme, "live.steps")),
         (None, None) => ("–".to_owned(), String::new()),
     };
     ui.horizontal(|ui| {
-        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
-        ui.label(skin.label(unit));
+        ui.label(RichText::new(main).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
+        ui.label(theme.label(unit));
         if record.refused() {
-            mark(ui, skin, "live.refused", skin.palette.bad);
+            mark(ui, theme, "live.refused", theme.palette.bad);
         } else if reading.is_some_and(|reading| !reading.valid) {
-            mark(ui, skin, "live.invalid", skin.palette.bad);
+            mark(ui, theme, "live.invalid", theme.palette.bad);
         }
     });
     let Some(reading) = reading else { return };
@@ -38,39 +38,45 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
         // In a low window the plot needs the room.
         let mut words = format!("{:08X}h", reading.raw);
         if let Some((turns, steps)) = place {
-            words = format!("{} {turns} · {} {steps} · {words}", skin.say("live.turns"), skin.say("live.step"));
+            words = format!("{} {turns} · {} {steps} · {words}", theme.say("live.turns"), theme.say("live.step"));
         }
-        ui.add(egui::Label::new(skin.caption(words)).truncate().selectable(true));
+        ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
         return;
     }
     if let Some((turns, steps)) = place {
-        row(ui, skin, &skin.say("live.turns"), skin.mono(turns.to_string()));
-        row(ui, skin, &skin.say("live.step"), skin.mono(steps.to_string()));
+        row(ui, theme, &theme.say("live.turns"), theme.mono(turns.to_string()));
+        row(ui, theme, &theme.say("live.step"), theme.mono(steps.to_string()));
     }
-    row(ui, skin, &skin.say("live.raw"), skin.mono(format!("{:08X}h  {}", reading.raw, reading.raw)));
+    row(ui, theme, &theme.say("live.raw"), theme.mono(format!("{:08X}h  {}", reading.raw, reading.raw)));
 }
 
 /// What is read beside the position.
-pub(crate) fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, channel: &mut String, actions: &mut Vec<Action>) {
-    let word = skin.say("live.watch");
+pub(crate) fn watch_menu(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    channel: &mut String,
+    actions: &mut Vec<Action>,
+) {
+    let word = theme.say("live.watch");
     let watched = encoder.record.watched();
     icon_menu(ui, icons::EYE, &word, |ui| {
         ui.set_max_width(240.0);
-        ui.label(skin.heading(&word));
-        paragraph(ui, skin.caption(say(skin, "live.watch_words")));
+        ui.label(theme.heading(&word));
+        paragraph(ui, theme.caption(say(theme, "live.watch_words")));
         let usual = [Watch::TEMPERATURE, Watch::Counter];
         let more = watched.iter().copied().filter(|own| !usual.contains(own));
         for what in usual.into_iter().chain(more.collect::<Vec<_>>()) {
             let mut on = watched.contains(&what);
-            if ui.checkbox(&mut on, skin.words(&state::watch_name(what))).changed() {
+            if ui.checkbox(&mut on, theme.words(&state::watch_name(what))).changed() {
                 actions.push(Action::device(encoder.session.id, Hiperface::Watch(what, on)));
             }
         }
         ui.horizontal(|ui| {
-            ui.label(skin.label(say(skin, "analogue_card.channel")));
-            text_entry(ui, channel, 48.0, &say(skin, "analogue_card.channel"), "48");
+            ui.label(theme.label(say(theme, "analogue_card.channel")));
+            text_entry(ui, channel, 48.0, &say(theme, "analogue_card.channel"), "48");
             let entered = state::forms::channel(channel);
-            if enabled_button(ui, entered.is_ok(), icons::PLUS, &say(skin, "live.watch_add")).clicked()
+            if enabled_button(ui, entered.is_ok(), icons::PLUS, &say(theme, "live.watch_add")).clicked()
                 && let Ok(channel) = entered
             {
                 actions.push(Action::device(encoder.session.id, Hiperface::Watch(Watch::Analogue(channel), true)));

@@ -15,10 +15,10 @@ use crate::ui::controls::{allowed_button, choice, empty, name, paragraph};
 use crate::ui::widgets::{
     FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, typed_view,
 };
-use crate::ui::{Skin, foot, icons};
+use crate::ui::{Theme, edit_bar, icons};
 
 /// Selection and text buffers of the page.
-pub(super) struct View {
+pub(super) struct MemoryUiState {
     field: u8,
     free: bool,
     hex: HexView,
@@ -27,10 +27,10 @@ pub(super) struct View {
     code_required: bool,
 }
 
-impl Default for View {
+impl Default for MemoryUiState {
     fn default() -> Self {
         let size = FieldSize::all().next();
-        View {
+        MemoryUiState {
             field: 0,
             free: false,
             hex: HexView::default(),
@@ -43,60 +43,60 @@ impl Default for View {
 
 pub(super) fn page_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     (studio, device): (&Studio, &AnyDevice),
     encoder: &Encoder,
-    view: &mut View,
+    view: &mut MemoryUiState,
     actions: &mut Vec<Action>,
 ) {
     let wanted = encoder.staged.wanted();
     let memory = encoder.identity.as_ref().and_then(|identity| identity.memory);
     if encoder.identity.is_none() {
-        let read = (icons::ARROW_CLOCKWISE, skin.say("memory.read"), encoder.session.is_readable());
-        if empty(ui, skin, &say(skin, "memory.nothing"), Some((read.0, &read.1, read.2))) {
+        let read = (icons::ARROW_CLOCKWISE, theme.say("memory.read"), encoder.session.is_readable());
+        if empty(ui, theme, &say(theme, "memory.nothing"), Some((read.0, &read.1, read.2))) {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
         return;
     }
     egui::Panel::bottom("memory_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        foot::foot_ui(ui, skin, (studio, device), foot::Edited::Bytes, actions);
+        edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Bytes, actions);
     });
-    map(ui, skin, encoder, &wanted, memory, view, actions);
-    ui.add_space(skin.space.between);
+    map(ui, theme, encoder, &wanted, memory, view, actions);
+    ui.add_space(theme.space.between);
     let selected = wanted.iter().find(|field| field.number == view.field).filter(|_| !view.free);
     match (selected, memory) {
-        (Some(field), _) => field_ui(ui, skin, encoder, field, memory, view, actions),
-        (None, Some(memory)) => create(ui, skin, encoder, memory, view, actions),
+        (Some(field), _) => field_ui(ui, theme, encoder, field, memory, view, actions),
+        (None, Some(memory)) => create(ui, theme, encoder, memory, view, actions),
         (None, None) => {
-            ui.label(skin.label(say(skin, "memory.no_fields")));
+            ui.label(theme.label(say(theme, "memory.no_fields")));
         }
     }
 }
 
 fn map(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     wanted: &[FieldImage],
     memory: Option<FreeMemory>,
-    view: &mut View,
+    view: &mut MemoryUiState,
     actions: &mut Vec<Action>,
 ) {
     let fields: Vec<MapField> = wanted
         .iter()
         .map(|field| {
-            let status = skin.words(&words::field_status(field.status));
+            let status = theme.words(&words::field_status(field.status));
             let label = TEXTS.text("memory.field").with("number", field.number);
             MapField {
                 number: field.number,
                 blocks: usize::from(field.status.size().blocks()),
-                label: skin.words(&label),
+                label: theme.words(&label),
                 caption: format!("{} B", field.status.size().bytes()),
                 colour: usize::from(field.number),
                 locked: !field.status.is_writable(),
                 unreadable: field.bytes.is_none(),
                 edited: encoder.staged.edits().any(|(number, ..)| number == field.number),
-                tooltip: format!("{}\n{status}", skin.words(&label)),
+                tooltip: format!("{}\n{status}", theme.words(&label)),
             }
         })
         .collect();
@@ -106,7 +106,7 @@ fn map(
     let a_line = (ui.available_width() / 48.0) as usize;
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
     let selected = (!view.free).then_some(view.field);
-    let free = skin.words(&TEXTS.text("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
+    let free = theme.words(&TEXTS.text("memory.free").with("bytes", memory.map_or(0, FreeMemory::bytes)));
     let last = wanted.last().filter(|_| encoder.session.is_ready());
     let resize = last.zip(memory).map(|(last, memory)| {
         let largest = rules::largest(memory, last);
@@ -117,16 +117,16 @@ fn map(
         free_blocks: shown_free,
         selected,
         free_label: &free,
-        free_tooltip: &say(skin, "memory.free_hint"),
+        free_tooltip: &say(theme, "memory.free_hint"),
         block_bytes: FieldSize::BLOCK,
         resize,
     };
-    let event = field_map(ui, skin, &model);
+    let event = field_map(ui, theme, &model);
     let sizes = fields.iter().map(|field| field.blocks * FieldSize::BLOCK).sum::<usize>();
     let id = if fields.len() == 1 { "memory.used_one" } else { "memory.used" };
     let used = TEXTS.text(id).with("fields", fields.len()).with("used", sizes);
-    let words = if memory.is_some() { format!("{} · {free}", skin.words(&used)) } else { skin.words(&used) };
-    ui.label(skin.caption(words));
+    let words = if memory.is_some() { format!("{} · {free}", theme.words(&used)) } else { theme.words(&used) };
+    ui.label(theme.caption(words));
     match event {
         Some(MapEvent::Select(number)) => {
             if number != view.field {
@@ -149,20 +149,20 @@ fn map(
 
 fn field_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     field: &FieldImage,
     memory: Option<FreeMemory>,
-    view: &mut View,
+    view: &mut MemoryUiState,
     actions: &mut Vec<Action>,
 ) {
-    field_head(ui, skin, encoder, field, memory, actions);
+    field_head(ui, theme, encoder, field, memory, actions);
     let Some(bytes) = &field.bytes else {
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::KEY).color(skin.palette.warn));
+            ui.label(RichText::new(icons::KEY).color(theme.palette.warn));
             let why = encoder.why_not_edited(field);
-            paragraph(ui, why.map(|why| skin.words(&why)).unwrap_or_default());
+            paragraph(ui, why.map(|why| theme.words(&why)).unwrap_or_default());
         });
         return;
     };
@@ -177,25 +177,25 @@ fn field_ui(
     let beside = ui.available_width() >= 820.0;
     let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
     let model = HexModel { device: &device, wanted: bytes, marks: &marks, read_only: read_only.as_ref(), lines };
-    let label = skin.words(&TEXTS.text("memory.bytes").with("number", field.number));
+    let label = theme.words(&TEXTS.text("memory.bytes").with("number", field.number));
     let mut edits = Vec::new();
     if beside {
         ui.horizontal_top(|ui| {
-            ui.vertical(|ui| edits = hex_editor(ui, skin, &label, &model, &mut view.hex));
-            ui.add_space(skin.space.between);
-            ui.vertical(|ui| typed_view(ui, skin, view.hex.to_read(bytes)));
+            ui.vertical(|ui| edits = hex_editor(ui, theme, &label, &model, &mut view.hex));
+            ui.add_space(theme.space.between);
+            ui.vertical(|ui| typed_view(ui, theme, view.hex.to_read(bytes)));
         });
     } else {
         egui::ScrollArea::vertical().id_salt("field").auto_shrink(false).show(ui, |ui| {
             // Room for the ring around what has the keyboard.
-            ui.add_space(skin.space.inside);
-            edits = hex_editor(ui, skin, &label, &model, &mut view.hex);
+            ui.add_space(theme.space.inside);
+            edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
             if let [mark, ..] = marks.as_slice() {
                 let text = TEXTS.text("memory.mounting").with("what", mark.words);
-                ui.label(skin.caption(skin.words(&text)));
+                ui.label(theme.caption(theme.words(&text)));
             }
-            ui.add_space(skin.space.between);
-            typed_view(ui, skin, view.hex.to_read(bytes));
+            ui.add_space(theme.space.between);
+            typed_view(ui, theme, view.hex.to_read(bytes));
         });
     }
     // The buttons at the foot undo as well as the keys do.
@@ -217,7 +217,7 @@ fn field_ui(
 /// What the selected field is, and what can be done with it; what cannot says why.
 fn field_head(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     field: &FieldImage,
     memory: Option<FreeMemory>,
@@ -225,8 +225,8 @@ fn field_head(
 ) {
     let mut change = None;
     ui.horizontal(|ui| {
-        ui.label(skin.heading(skin.words(&TEXTS.text("memory.field").with("number", field.number))));
-        ui.label(skin.label(skin.words(&words::field_status(field.status))));
+        ui.label(theme.heading(theme.words(&TEXTS.text("memory.field").with("number", field.number))));
+        ui.label(theme.label(theme.words(&words::field_status(field.status))));
     });
     let Some(memory) = memory else { return };
     ui.horizontal_wrapped(|ui| {
@@ -234,28 +234,28 @@ fn field_head(
         let lock = field.status.is_writable();
         let (icon, word) =
             if lock { (icons::LOCK_SIMPLE, "memory.lock") } else { (icons::LOCK_SIMPLE_OPEN, "memory.unlock") };
-        if allowed_button(ui, skin, &ready().and_then(|()| rules::status(field)), icon, &say(skin, word)).clicked() {
+        if allowed_button(ui, theme, &ready().and_then(|()| rules::status(field)), icon, &say(theme, word)).clicked() {
             change = Some(Change::LockField { number: field.number, lock });
         }
-        code_menu(ui, skin, &ready().and_then(|()| rules::status(field)), field, &mut change);
+        code_menu(ui, theme, &ready().and_then(|()| rules::status(field)), field, &mut change);
         let resizable = ready().and_then(|()| rules::resizable(memory, field));
-        size_menu(ui, skin, &resizable, memory, (field, &encoder.staged), &mut change);
+        size_menu(ui, theme, &resizable, memory, (field, &encoder.staged), &mut change);
         let deletable = ready().and_then(|()| rules::delete(memory, field, &encoder.staged));
-        if allowed_button(ui, skin, &deletable, icons::TRASH, &say(skin, "memory.delete")).clicked() {
+        if allowed_button(ui, theme, &deletable, icons::TRASH, &say(theme, "memory.delete")).clicked() {
             change = Some(Change::DeleteField { number: field.number });
         }
     });
     actions.extend(change.map(|change| Action::device(encoder.session.id, Hiperface::Plan(change))));
 }
 
-fn code_menu(ui: &mut Ui, skin: &Skin, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
-    let word = say(skin, "memory.code");
+fn code_menu(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
+    let word = say(theme, "memory.code");
     ui.add_enabled_ui(allowed.is_ok(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::KEY), |ui| {
             for code in CodeNumber::all() {
                 for required in [true, false] {
                     let id = if required { "memory.code_required" } else { "memory.code_free" };
-                    let words = skin.words(&TEXTS.text(id).with("number", code));
+                    let words = theme.words(&TEXTS.text(id).with("number", code));
                     let is_own = field.status.code() == code && field.status.code_required() == required;
                     if ui.selectable_label(is_own, words).clicked() {
                         let status = field.status.with_code(code, required);
@@ -271,15 +271,15 @@ fn code_menu(ui: &mut Ui, skin: &Skin, allowed: &rules::Allowed, field: &FieldIm
 
 fn size_menu(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     allowed: &rules::Allowed,
     memory: FreeMemory,
     (field, staged): (&FieldImage, &Staged),
     change: &mut Option<Change>,
 ) {
-    let word = say(skin, "memory.resize");
+    let word = say(theme, "memory.resize");
     if allowed.is_err() {
-        allowed_button(ui, skin, allowed, icons::ARROWS_OUT_LINE_HORIZONTAL, &word);
+        allowed_button(ui, theme, allowed, icons::ARROWS_OUT_LINE_HORIZONTAL, &word);
         return;
     }
     let menu = ui.menu_button(format!("{}  {word}", icons::ARROWS_OUT_LINE_HORIZONTAL), |ui| {
@@ -289,7 +289,7 @@ fn size_menu(
             let response = ui.add_enabled(allowed.is_ok(), own);
             let response = match &allowed {
                 Ok(()) => response,
-                Err(why) => response.on_disabled_hover_text(skin.words(why)),
+                Err(why) => response.on_disabled_hover_text(theme.words(why)),
             };
             if response.clicked() {
                 *change = Some(Change::ResizeField { number: field.number, size });
@@ -301,24 +301,31 @@ fn size_menu(
 }
 
 /// A new field in the free memory.
-fn create(ui: &mut Ui, skin: &Skin, encoder: &Encoder, memory: FreeMemory, view: &mut View, actions: &mut Vec<Action>) {
-    ui.label(skin.heading(skin.words(&TEXTS.text("memory.create_title").with("number", memory.fields))));
-    ui.label(skin.label(say(skin, "memory.create_words")));
-    ui.add_space(skin.space.inside);
+fn create(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    memory: FreeMemory,
+    view: &mut MemoryUiState,
+    actions: &mut Vec<Action>,
+) {
+    ui.label(theme.heading(theme.words(&TEXTS.text("memory.create_title").with("number", memory.fields))));
+    ui.label(theme.label(say(theme, "memory.create_words")));
+    ui.add_space(theme.space.inside);
     ui.horizontal_wrapped(|ui| {
-        ui.label(skin.label(say(skin, "memory.size")));
+        ui.label(theme.label(say(theme, "memory.size")));
         let sizes = FieldSize::all().map(|size| (size, format!("{} B", size.bytes())));
-        choice(ui, &say(skin, "memory.size"), &mut view.size, sizes);
-        ui.label(skin.label(say(skin, "memory.code")));
+        choice(ui, &say(theme, "memory.size"), &mut view.size, sizes);
+        ui.label(theme.label(say(theme, "memory.code")));
         let codes = CodeNumber::all().map(|code| (code, code.to_string()));
-        choice(ui, &say(skin, "memory.code"), &mut view.code, codes);
-        ui.checkbox(&mut view.code_required, say(skin, "memory.required"));
+        choice(ui, &say(theme, "memory.code"), &mut view.code, codes);
+        ui.checkbox(&mut view.code_required, say(theme, "memory.required"));
         let allowed = if encoder.session.is_ready() {
             rules::create(memory, view.size, view.code, view.code_required)
         } else {
             Err(Text::new("session.not_ready"))
         };
-        if allowed_button(ui, skin, &allowed, icons::PLUS, &say(skin, "memory.create")).clicked() {
+        if allowed_button(ui, theme, &allowed, icons::PLUS, &say(theme, "memory.create")).clicked() {
             let status = forms::new_field(view.size, view.code, view.code_required);
             let change = Change::CreateField { number: memory.fields, status };
             actions.push(Action::device(encoder.session.id, Hiperface::Plan(change)));

@@ -14,7 +14,7 @@ use egui::Ui;
 use crate::app::{Action, AnyDevice, PendingEdits, Rgb, Studio};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Skin, backups, icons, page};
+use crate::ui::{Theme, backups, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,10 +47,10 @@ impl TabPage for Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(crate) struct View {
-    memory: memory::View,
-    values: values::View,
-    setup: setup::View,
+pub(crate) struct HiperfaceUiState {
+    memory: memory::MemoryUiState,
+    values: values::ValuesUiState,
+    setup: setup::SetupUiState,
     check_restart: bool,
     /// The analogue channel that is typed, to be watched.
     channel: String,
@@ -62,7 +62,7 @@ pub(crate) struct HiperfaceView;
 impl TypedDeviceView for HiperfaceView {
     type Device = Encoder;
     type Page = Page;
-    type Memory = View;
+    type Memory = HiperfaceUiState;
     type ConnectForm = connect_form::HiperfaceConnectForm;
 
     const HAS_UNDO_KEYS: bool = false;
@@ -77,39 +77,45 @@ impl TypedDeviceView for HiperfaceView {
 
     fn page_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         (studio, device): (&Studio, &AnyDevice),
         encoder: &Encoder,
-        (page, view): (Page, &mut View),
+        (page, view): (Page, &mut HiperfaceUiState),
         actions: &mut Vec<Action>,
     ) {
         if page == Page::Memory {
             // The editor scrolls by itself; its buttons stay where they are.
             egui::Frame::NONE
-                .inner_margin(page::around(ui, skin))
-                .show(ui, |ui| memory::page_ui(ui, skin, (studio, device), encoder, &mut view.memory, actions));
+                .inner_margin(page::around(ui, theme))
+                .show(ui, |ui| memory::page_ui(ui, theme, (studio, device), encoder, &mut view.memory, actions));
             return;
         }
-        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| match page {
-            Page::Encoder => encoder::page_ui(ui, skin, encoder, &mut view.check_restart, actions),
-            Page::Values => values::page_ui(ui, skin, encoder, &mut view.values, actions),
-            Page::Setup => setup::page_ui(ui, skin, encoder, &mut view.setup, actions),
-            Page::Commutation => commutation::page_ui(ui, skin, encoder, actions),
-            Page::Backups => backups::page_ui(ui, skin, device, actions),
+        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+            Page::Encoder => encoder::page_ui(ui, theme, encoder, &mut view.check_restart, actions),
+            Page::Values => values::page_ui(ui, theme, encoder, &mut view.values, actions),
+            Page::Setup => setup::page_ui(ui, theme, encoder, &mut view.setup, actions),
+            Page::Commutation => commutation::page_ui(ui, theme, encoder, actions),
+            Page::Backups => backups::page_ui(ui, theme, device, actions),
             Page::Memory => {}
         });
     }
 
-    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
-        live::value_ui(ui, skin, encoder, ink);
+    fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, theme, encoder, ink);
     }
 
-    fn watch_menu(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-        live::watch_menu(ui, skin, encoder, &mut view.channel, actions);
+    fn watch_menu(
+        ui: &mut Ui,
+        theme: &Theme,
+        encoder: &Encoder,
+        view: &mut HiperfaceUiState,
+        actions: &mut Vec<Action>,
+    ) {
+        live::watch_menu(ui, theme, encoder, &mut view.channel, actions);
     }
 }
 
 /// A text of this folder's catalogue, or a common one, in the window's language.
-pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
-    skin.words(&TEXTS.text(id))
+pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+    theme.words(&TEXTS.text(id))
 }

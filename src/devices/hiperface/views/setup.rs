@@ -12,12 +12,12 @@ use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
     card, choice, enabled_button, entry, forget_secret, paragraph, problem, row, secret_entry, text_entry, two_columns,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 use crate::units::{CharacterFormat, Parity};
 
 /// Text buffers of the page.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct SetupUiState {
     position: String,
     exact: bool,
     synchronise: bool,
@@ -43,22 +43,28 @@ struct Chosen {
     bus: bool,
 }
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut SetupUiState,
+    actions: &mut Vec<Action>,
+) {
     two_columns(
         ui,
-        skin,
+        theme,
         (actions, view),
         |ui, (actions, view)| {
-            position(ui, skin, encoder, view, actions);
-            ui.add_space(skin.space.groups);
-            codes(ui, skin, encoder, view, actions);
+            position(ui, theme, encoder, view, actions);
+            ui.add_space(theme.space.groups);
+            codes(ui, theme, encoder, view, actions);
         },
         |ui, (actions, view)| {
-            address(ui, skin, encoder, view, actions);
-            ui.add_space(skin.space.groups);
-            settings(ui, skin, encoder, view, actions);
-            ui.add_space(skin.space.groups);
-            restart(ui, skin, encoder, actions);
+            address(ui, theme, encoder, view, actions);
+            ui.add_space(theme.space.groups);
+            settings(ui, theme, encoder, view, actions);
+            ui.add_space(theme.space.groups);
+            restart(ui, theme, encoder, actions);
         },
     );
 }
@@ -74,27 +80,27 @@ fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Te
     }
 }
 
-fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+fn position(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     let geometry = encoder.identity.as_ref().and_then(|identity| identity.geometry);
     let kit = encoder.identity.as_ref().and_then(|identity| identity.kit);
-    card(ui, skin, TEXTS.text("position_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "position_card.words")));
-        entry(ui, skin, &say(skin, "position_card.wanted"), |ui| {
-            let hint = say(skin, "position_card.hint");
-            text_entry(ui, &mut view.position, 168.0, &say(skin, "position_card.wanted"), &hint);
+    card(ui, theme, TEXTS.text("position_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "position_card.words")));
+        entry(ui, theme, &say(theme, "position_card.wanted"), |ui| {
+            let hint = say(theme, "position_card.hint");
+            text_entry(ui, &mut view.position, 168.0, &say(theme, "position_card.wanted"), &hint);
         });
-        ui.checkbox(&mut view.exact, say(skin, "position_card.exact"))
-            .on_hover_text(say(skin, "position_card.exact_hint"));
-        let hint = say(skin, "position_card.synchronise_hint");
+        ui.checkbox(&mut view.exact, say(theme, "position_card.exact"))
+            .on_hover_text(say(theme, "position_card.exact_hint"));
+        let hint = say(theme, "position_card.synchronise_hint");
         ui.add_enabled_ui(kit != Some(false), |ui| {
-            ui.checkbox(&mut view.synchronise, say(skin, "position_card.synchronise"))
+            ui.checkbox(&mut view.synchronise, say(theme, "position_card.synchronise"))
                 .on_hover_text(&hint)
                 .on_disabled_hover_text(&hint);
         });
         if view.synchronise && kit.is_none() {
-            ui.checkbox(&mut view.kit, say(skin, "position_card.kit"));
+            ui.checkbox(&mut view.kit, say(theme, "position_card.kit"));
         }
-        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &say(skin, "position_card.plan")).clicked()
+        if enabled_button(ui, encoder.session.is_ready(), icons::CROSSHAIR, &say(theme, "position_card.plan")).clicked()
         {
             let wanted = forms::position(&view.position, geometry);
             let (exact, kit) = (view.exact, view.kit);
@@ -102,13 +108,13 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             let change = wanted.map(|wanted| Change::SetPosition { wanted, exact, synchronise, kit });
             plan(encoder, change, &mut view.position_problem, actions);
         }
-        problem(ui, skin, view.position_problem.as_ref());
+        problem(ui, theme, view.position_problem.as_ref());
         if let Some((from, to)) = encoder.position_set {
             let steps = i64::from(from) - i64::from(to);
             let text = TEXTS.text("position_card.last").with("from", from).with("to", to);
             ui.horizontal_wrapped(|ui| {
-                ui.label(skin.label(skin.words(&text)));
-                let undo = say(skin, "position_card.undo");
+                ui.label(theme.label(theme.words(&text)));
+                let undo = say(theme, "position_card.undo");
                 if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &undo).clicked() {
                     actions.push(Action::device(encoder.session.id, Hiperface::Plan(Change::ShiftPosition { steps })));
                 }
@@ -117,18 +123,18 @@ fn position(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
     });
 }
 
-fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("codes_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "codes_card.words")));
-        entry(ui, skin, &say(skin, "codes_card.number"), |ui| {
+fn codes(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("codes_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "codes_card.words")));
+        entry(ui, theme, &say(theme, "codes_card.number"), |ui| {
             let numbers = CodeNumber::all().map(|number| (number, number.to_string()));
-            choice(ui, &say(skin, "codes_card.number"), &mut view.code_number, numbers);
+            choice(ui, &say(theme, "codes_card.number"), &mut view.code_number, numbers);
         });
         let number = view.code_number;
         let ready = encoder.session.is_ready();
-        entry(ui, skin, &say(skin, "codes_card.known"), |ui| {
-            let response = secret_entry(ui, &mut view.code, 64.0, &say(skin, "codes_card.known"));
-            if enabled_button(ui, ready, icons::KEY, &say(skin, "codes_card.use")).clicked() {
+        entry(ui, theme, &say(theme, "codes_card.known"), |ui| {
+            let response = secret_entry(ui, &mut view.code, 64.0, &say(theme, "codes_card.known"));
+            if enabled_button(ui, ready, icons::KEY, &say(theme, "codes_card.use")).clicked() {
                 let code = forms::access_code(&view.code);
                 forget_secret(ui, &response, &mut view.code);
                 match code {
@@ -140,12 +146,12 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                 }
             }
         });
-        let new = entry(ui, skin, &say(skin, "codes_card.new"), |ui| {
-            secret_entry(ui, &mut view.new_code, 64.0, &say(skin, "codes_card.new"))
+        let new = entry(ui, theme, &say(theme, "codes_card.new"), |ui| {
+            secret_entry(ui, &mut view.new_code, 64.0, &say(theme, "codes_card.new"))
         });
-        entry(ui, skin, &say(skin, "codes_card.again"), |ui| {
-            let again = secret_entry(ui, &mut view.new_again, 64.0, &say(skin, "codes_card.again"));
-            if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &say(skin, "codes_card.change")).clicked() {
+        entry(ui, theme, &say(theme, "codes_card.again"), |ui| {
+            let again = secret_entry(ui, &mut view.new_again, 64.0, &say(theme, "codes_card.again"));
+            if enabled_button(ui, ready, icons::PENCIL_SIMPLE, &say(theme, "codes_card.change")).clicked() {
                 let code = forms::new_access_code(&view.new_code, &view.new_again);
                 forget_secret(ui, &new, &mut view.new_code);
                 forget_secret(ui, &again, &mut view.new_again);
@@ -153,70 +159,70 @@ fn codes(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                 plan(encoder, change, &mut view.code_problem, actions);
             }
         });
-        problem(ui, skin, view.code_problem.as_ref());
+        problem(ui, theme, view.code_problem.as_ref());
     });
 }
 
-fn address(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+fn address(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     let now = encoder.identity.as_ref().map_or_else(|| "–".to_owned(), |own| format!("{:02X}h", own.address));
-    card(ui, skin, TEXTS.text("address_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "address_card.words")));
-        entry(ui, skin, &say(skin, "address_card.now"), |ui| ui.label(skin.mono(now)));
-        entry(ui, skin, &say(skin, "address_card.new"), |ui| {
-            text_entry(ui, &mut view.address, 64.0, &say(skin, "address_card.new"), "41");
-            if enabled_button(ui, encoder.session.is_ready(), icons::PENCIL_SIMPLE, &say(skin, "address_card.plan"))
+    card(ui, theme, TEXTS.text("address_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "address_card.words")));
+        entry(ui, theme, &say(theme, "address_card.now"), |ui| ui.label(theme.mono(now)));
+        entry(ui, theme, &say(theme, "address_card.new"), |ui| {
+            text_entry(ui, &mut view.address, 64.0, &say(theme, "address_card.new"), "41");
+            if enabled_button(ui, encoder.session.is_ready(), icons::PENCIL_SIMPLE, &say(theme, "address_card.plan"))
                 .clicked()
             {
                 let change = forms::address(&view.address).map(Change::SetAddress);
                 plan(encoder, change, &mut view.address_problem, actions);
             }
         });
-        problem(ui, skin, view.address_problem.as_ref());
+        problem(ui, theme, view.address_problem.as_ref());
     });
 }
 
-fn settings(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("settings_card.title"), |ui| {
+fn settings(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("settings_card.title"), |ui| {
         let Some(stored) = encoder.identity.as_ref().map(|identity| identity.label.settings) else {
-            ui.label(skin.label(say(skin, "settings_card.nothing")));
+            ui.label(theme.label(say(theme, "settings_card.nothing")));
             return;
         };
-        let stored_words = skin.words(&words::line_settings(stored));
-        row(ui, skin, &say(skin, "settings_card.stored"), stored_words);
+        let stored_words = theme.words(&words::line_settings(stored));
+        row(ui, theme, &say(theme, "settings_card.stored"), stored_words);
         let mut chosen = view.settings.unwrap_or_else(|| chosen_of(stored));
-        entry(ui, skin, &skin.say("settings_card.baud"), |ui| {
+        entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
             let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
-            choice(ui, &skin.say("settings_card.baud"), &mut chosen.format.baud, bauds);
+            choice(ui, &theme.say("settings_card.baud"), &mut chosen.format.baud, bauds);
         });
-        entry(ui, skin, &skin.say("settings_card.parity"), |ui| {
+        entry(ui, theme, &theme.say("settings_card.parity"), |ui| {
             let parities = [Parity::Even, Parity::Odd, Parity::None];
-            let parities = parities.map(|parity| (parity, skin.words(&explain::parity(parity))));
-            choice(ui, &skin.say("settings_card.parity"), &mut chosen.format.parity, parities);
+            let parities = parities.map(|parity| (parity, theme.words(&explain::parity(parity))));
+            choice(ui, &theme.say("settings_card.parity"), &mut chosen.format.parity, parities);
         });
-        entry(ui, skin, &say(skin, "settings_card.timeout"), |ui| {
+        entry(ui, theme, &say(theme, "settings_card.timeout"), |ui| {
             let times = [(true, "settings_card.timeout_long"), (false, "settings_card.timeout_short")];
-            let times = times.map(|(long, id)| (long, say(skin, id)));
-            choice(ui, &say(skin, "settings_card.timeout"), &mut chosen.long_timeout, times);
+            let times = times.map(|(long, id)| (long, say(theme, id)));
+            choice(ui, &say(theme, "settings_card.timeout"), &mut chosen.long_timeout, times);
         });
-        ui.checkbox(&mut chosen.bus, say(skin, "settings_card.bus"));
+        ui.checkbox(&mut chosen.bus, say(theme, "settings_card.bus"));
         view.settings = Some(chosen).filter(|chosen| *chosen != chosen_of(stored));
         let ready = encoder.session.is_ready();
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
             let wanted = || forms::settings(stored, chosen.format, chosen.long_timeout, chosen.bus);
-            let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &say(skin, "settings_card.plan"));
-            if store.on_hover_text(say(skin, "settings_card.plan_hint")).clicked() {
+            let store = enabled_button(ui, ready, icons::FLOPPY_DISK, &say(theme, "settings_card.plan"));
+            if store.on_hover_text(say(theme, "settings_card.plan_hint")).clicked() {
                 plan(encoder, wanted().map(Change::Configure), &mut view.settings_problem, actions);
             }
-            let now = enabled_button(ui, ready, icons::LIGHTNING, &say(skin, "settings_card.now"));
-            if now.on_hover_text(say(skin, "settings_card.now_hint")).clicked() {
+            let now = enabled_button(ui, ready, icons::LIGHTNING, &say(theme, "settings_card.now"));
+            if now.on_hover_text(say(theme, "settings_card.now_hint")).clicked() {
                 match wanted() {
                     Ok(wanted) => actions.push(Action::device(encoder.session.id, Hiperface::ConfigureForNow(wanted))),
                     Err(why) => view.settings_problem = Some(why),
                 }
             }
         });
-        problem(ui, skin, view.settings_problem.as_ref());
+        problem(ui, theme, view.settings_problem.as_ref());
     });
 }
 
@@ -228,10 +234,10 @@ fn chosen_of(stored: LineSettings) -> Chosen {
     }
 }
 
-fn restart(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("restart_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "restart_card.words")));
-        if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &say(skin, "restart_card.run")).clicked() {
+fn restart(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("restart_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "restart_card.words")));
+        if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &say(theme, "restart_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Hiperface::Reset));
         }
     });

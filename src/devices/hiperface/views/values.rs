@@ -7,59 +7,65 @@ use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS, forms};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{card, card_with, enabled_button, entry, paragraph, text_entry, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Text buffers of the page.
-pub(super) struct View {
+pub(super) struct ValuesUiState {
     channel: String,
     problem: Option<Text>,
 }
 
-impl Default for View {
+impl Default for ValuesUiState {
     fn default() -> Self {
-        View { channel: "48".to_owned(), problem: None }
+        ValuesUiState { channel: "48".to_owned(), problem: None }
     }
 }
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut ValuesUiState,
+    actions: &mut Vec<Action>,
+) {
     two_columns(
         ui,
-        skin,
+        theme,
         (actions, view),
-        |ui, (actions, view)| analogue(ui, skin, encoder, view, actions),
-        |ui, (actions, _)| counter(ui, skin, encoder, actions),
+        |ui, (actions, view)| analogue(ui, theme, encoder, view, actions),
+        |ui, (actions, _)| counter(ui, theme, encoder, actions),
     );
 }
 
-fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    let palette = skin.palette;
-    card(ui, skin, TEXTS.text("analogue_card.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "analogue_card.words")));
+fn analogue(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut ValuesUiState, actions: &mut Vec<Action>) {
+    let palette = theme.palette;
+    card(ui, theme, TEXTS.text("analogue_card.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "analogue_card.words")));
         for (channel, value) in &encoder.analogue {
-            entry(ui, skin, &format!("{channel:02X}h"), |ui| match value {
+            entry(ui, theme, &format!("{channel:02X}h"), |ui| match value {
                 Ok((value, limit)) => {
                     let over = limit.is_some_and(|limit| *value > limit);
-                    ui.label(skin.value(value.to_string()).color(if over { palette.bad } else { palette.text }));
+                    ui.label(theme.value(value.to_string()).color(if over { palette.bad } else { palette.text }));
                     if let Some(limit) = limit {
                         let text = TEXTS.text("analogue_card.limit").with("limit", limit);
-                        ui.label(skin.label(skin.words(&text)));
+                        ui.label(theme.label(theme.words(&text)));
                     }
                     if over {
                         ui.label(RichText::new(icons::WARNING).color(palette.bad));
-                        ui.label(RichText::new(say(skin, "analogue_card.over")).color(palette.bad));
+                        ui.label(RichText::new(say(theme, "analogue_card.over")).color(palette.bad));
                     }
                 }
                 Err(why) => {
-                    paragraph(ui, skin.label(skin.words(why)));
+                    paragraph(ui, theme.label(theme.words(why)));
                 }
             });
         }
-        ui.add_space(skin.space.inside);
-        entry(ui, skin, &say(skin, "analogue_card.channel"), |ui| {
-            let label = say(skin, "analogue_card.channel");
+        ui.add_space(theme.space.inside);
+        entry(ui, theme, &say(theme, "analogue_card.channel"), |ui| {
+            let label = say(theme, "analogue_card.channel");
             let response = text_entry(ui, &mut view.channel, 48.0, &label, "48");
             let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            let read = enabled_button(ui, encoder.session.is_ready(), icons::EYE, &say(skin, "analogue_card.read"));
+            let read = enabled_button(ui, encoder.session.is_ready(), icons::EYE, &say(theme, "analogue_card.read"));
             if read.clicked() || (enter && encoder.session.is_ready()) {
                 match forms::channel(&view.channel) {
                     Ok(channel) => {
@@ -71,27 +77,27 @@ fn analogue(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
             }
         });
         if let Some(problem) = &view.problem {
-            ui.label(RichText::new(skin.words(problem)).color(palette.bad));
+            ui.label(RichText::new(theme.words(problem)).color(palette.bad));
         }
     });
 }
 
-fn counter(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn counter(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_ready();
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(skin, "counter_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "counter_card.read")).clicked() {
             actions.push(Action::device(encoder.session.id, Hiperface::ReadCounter));
         }
     };
     let mut change = None;
-    card_with(ui, skin, TEXTS.text("counter_card.title"), read, |ui| {
-        ui.label(skin.value(encoder.counter.map_or_else(|| "–".to_owned(), |counter| counter.to_string())));
-        paragraph(ui, skin.label(say(skin, "counter_card.words")));
+    card_with(ui, theme, TEXTS.text("counter_card.title"), read, |ui| {
+        ui.label(theme.value(encoder.counter.map_or_else(|| "–".to_owned(), |counter| counter.to_string())));
+        paragraph(ui, theme.label(say(theme, "counter_card.words")));
         ui.horizontal(|ui| {
-            if enabled_button(ui, ready, icons::PLUS, &say(skin, "counter_card.increment")).clicked() {
+            if enabled_button(ui, ready, icons::PLUS, &say(theme, "counter_card.increment")).clicked() {
                 change = Some(Change::IncrementCounter);
             }
-            if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "counter_card.clear")).clicked() {
+            if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "counter_card.clear")).clicked() {
                 change = Some(Change::ClearCounter);
             }
         });

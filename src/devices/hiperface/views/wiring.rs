@@ -5,9 +5,9 @@ use egui::Ui;
 
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph};
-use crate::ui::wires::wires_ui;
+use crate::ui::wiring::wires_ui;
 
 /// Width of the column of names.
 const WIRE: f32 = 56.0;
@@ -26,12 +26,12 @@ const WIRES: [(&str, &str); 8] = [
 
 const NOTES: [&str; 4] = ["wiring.termination", "wiring.bus", "wiring.screen", "wiring.pins"];
 
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, "wiring.title", |ui| {
-        wires_ui(ui, skin, &TEXTS, WIRE, &WIRES);
-        ui.add_space(skin.space.inside);
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, "wiring.title", |ui| {
+        wires_ui(ui, theme, &TEXTS, WIRE, &WIRES);
+        ui.add_space(theme.space.inside);
         for note in NOTES {
-            paragraph(ui, skin.caption(say(skin, note)));
+            paragraph(ui, theme.caption(say(theme, note)));
         }
     });
 }
@@ -40,7 +40,7 @@ pub(super) fn card_ui(ui: &mut Ui, skin: &Skin) {
 mod tests {
     use super::{NOTES, WIRES};
     use crate::devices::hiperface::state::TEXTS;
-    use crate::ui::wires::{check_notes, check_wires};
+    use crate::ui::wiring::{check_notes, check_wires};
 
     /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7…12 V, typically 8 V, overall screen, twisted in
     /// pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version: at most 8, no

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value as Json, json};
 
 use super::args::WordOptions;
-use super::meaning::{self, Known, Said};
+use super::meaning::{self, Known, WordMeaning};
 use crate::cli::args::{Decode, Direction};
 use crate::cli::decode::{Explained, show};
 use crate::cli::number::parse_number;
@@ -71,13 +71,13 @@ fn explain(word: Captured, direction: Option<Direction>, known: &Known) -> Expla
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
     if let Ok(said) = &said {
-        more.insert("readings".to_owned(), said.iter().map(Said::json).collect::<Json>());
+        more.insert("readings".to_owned(), said.iter().map(WordMeaning::json).collect::<Json>());
     }
-    let meaning = said.map(|said| said.iter().map(Said::line).collect());
+    let meaning = said.map(|said| said.iter().map(WordMeaning::line).collect());
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-fn long(word: u32, direction: Option<Direction>, known: &Known) -> std::result::Result<Vec<Said>, String> {
+fn long(word: u32, direction: Option<Direction>, known: &Known) -> std::result::Result<Vec<WordMeaning>, String> {
     match direction {
         Some(Direction::In) => Ok(meaning::of_in(word, known)),
         Some(Direction::Out) => meaning::of_out(word, known),

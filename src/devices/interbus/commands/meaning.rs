@@ -14,7 +14,7 @@ pub(super) struct Known {
 }
 
 /// One of the things that a word may say.
-pub(super) struct Said {
+pub(super) struct WordMeaning {
     direction: &'static str,
     /// In which it says that; none where it does in any.
     modes: Vec<Mode>,
@@ -25,7 +25,7 @@ pub(super) struct Said {
     legal: bool,
 }
 
-impl Said {
+impl WordMeaning {
     pub(super) fn line(&self) -> String {
         let modes: Vec<&str> = self.modes.iter().map(|mode| mode.name()).collect();
         match modes.split_last() {
@@ -42,21 +42,21 @@ impl Said {
     }
 }
 
-pub(super) fn of_k1(word: Single) -> Said {
+pub(super) fn of_k1(word: Single) -> WordMeaning {
     let position = word.position().get();
     let words = format!("position {position} of a K1 encoder{}", stray(word.stray(), "above bit 11"));
-    Said { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
+    WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
 /// What an OUT word asks for, or why it must not be sent.
-pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<Said>, String> {
+pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::readings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
         return Err("nothing that an encoder is asked in any mode".to_owned());
     }
     let said = |command: Command, modes: Vec<Mode>| {
         let (words, value) = asked(command);
-        Said { direction: "OUT", modes, words, value, legal: true }
+        WordMeaning { direction: "OUT", modes, words, value, legal: true }
     };
     let legal = |command: Command| Mode::ALL.into_iter().filter(move |mode| command.is_legal_in(*mode));
     match known.mode {
@@ -76,11 +76,11 @@ pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<Said>, String> {
 }
 
 /// An OUT word that an encoder in the known mode must not get, where it means something in another.
-pub(super) fn refused(word: u32, known: &Known) -> Vec<Said> {
+pub(super) fn refused(word: u32, known: &Known) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused
         .filter(|refused| !matches!(refused.command, Command::Unknown(_)))
-        .map(|refused| Said {
+        .map(|refused| WordMeaning {
             direction: "OUT",
             modes: vec![refused.mode],
             words: format!("not legal, {}", elsewhere(refused.command)),
@@ -98,9 +98,9 @@ fn elsewhere(command: Command) -> String {
 }
 
 /// What an IN word says, in the mode that is known or in each in which it may come.
-pub(super) fn of_in(word: u32, known: &Known) -> Vec<Said> {
+pub(super) fn of_in(word: u32, known: &Known) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
-    let said = |modes: &[Mode], words: String, value: Option<u32>| Said {
+    let said = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",
         modes: modes.iter().copied().filter(|mode| known.mode.is_none_or(|known| known == *mode)).collect(),
         words,

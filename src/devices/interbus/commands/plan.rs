@@ -7,7 +7,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{self, Shown, Spent, Step};
+use crate::cli::plan::{self, PlanReport, Step, WriteSummary};
 use crate::cli::runner::unexpected;
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
@@ -41,9 +41,14 @@ fn is_shorter(op: &Op) -> bool {
 }
 
 /// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
-pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, consent: &Consenting) -> Result<Spent> {
+pub(super) fn commit(
+    runner: &mut Runner,
+    output: &Output,
+    prepared: Prepared,
+    consent: &Consenting,
+) -> Result<WriteSummary> {
     if prepared.plan.is_empty() {
-        return Ok(Spent::default());
+        return Ok(WriteSummary::default());
     }
     let wear = prepared.wear();
     check_wear::<Interbus>(consent, &prepared)?;
@@ -63,15 +68,15 @@ pub(super) fn commit(runner: &mut Runner, output: &Output, prepared: Prepared, c
         InterbusOutput::Committed(committed) => *committed,
         other => return Err(unexpected(&other)),
     };
-    Ok(Spent::of(output, committed))
+    Ok(WriteSummary::of(output, committed))
 }
 
 /// The plan for a person and for a script: each item old → new, and what it costs.
-pub(super) fn shown(prepared: &Prepared) -> Shown {
+pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let lines = plan::lines(plan.ops.iter().flat_map(steps));
     let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
-    Shown { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+    PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
 /// The operations as JSON; what is stored together costs nothing by itself.

@@ -5,7 +5,7 @@ use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::runner::{self, Runs, failed, unexpected};
-use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, Remark};
+use crate::devices::interbus::jobs::{DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobStep};
 use crate::devices::interbus::procedures::{Identity, Survey};
 use crate::devices::interbus::protocol::{Program, ProgramNumber, WindowShift};
 use crate::devices::interbus::state::explain as words;
@@ -15,15 +15,15 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Interbus>;
 
 impl Runs for Interbus {
-    type Kept = ();
+    type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;
 
     fn begin(_session: &mut Session<Self>, _given: &Given) {}
 
     /// Steps of the handshake are for the window; a recording has their bytes.
-    fn say(_remark: &Remark) {}
+    fn say(_remark: &DeviceMessage) {}
 
-    fn step(doing: &Doing) -> String {
+    fn step(doing: &JobStep) -> String {
         doing.to_string()
     }
 }

@@ -1,25 +1,28 @@
 //! Carries a plan out.
 
-use super::{ChangeKind, Commit, Committed, Doing, Interbus, JobError, Prepared, Remark, Told, device_key, wear_limit};
+use super::{
+    ChangeKind, Commit, Committed, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key,
+    wear_limit,
+};
 use crate::devices::interbus::procedures::write::EncoderWrite;
 use crate::devices::interbus::profile::{Base, Image, InterbusPlan, InterbusProfile, Op, Recorded};
 use crate::profile::Body;
 use crate::store::DeviceKey;
 use crate::worker::commit::{Planned, backup_of, write_plan};
-use crate::worker::{Desk, Tell};
+use crate::worker::{SessionContext, Tell};
 
 pub(super) fn commit(
     encoder: &mut Interbus,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     commit: &Commit,
-    tell: Told<'_>,
+    tell: ProgressSink<'_>,
 ) -> Result<Committed, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let tell = std::cell::RefCell::new(tell);
-    let master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
+    let master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(DeviceMessage::Handshake(step))));
     let mut write = EncoderWrite { master, identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        (tell.borrow_mut())(Tell::Progress(at.map(|op| Doing::Operation(op.item()))));
+        (tell.borrow_mut())(Tell::Progress(at.map(|op| JobStep::Operation(op.item()))));
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::devices::interbus::procedures::check::Line;
+use crate::devices::interbus::procedures::check::InterbusStepResult;
 use crate::devices::interbus::procedures::write::{Interrupted, Written};
 use crate::devices::interbus::procedures::{Error, Handshake, Identity, Reading, Status, Survey};
 use crate::devices::interbus::profile::{
@@ -173,21 +173,21 @@ impl Prepared {
 }
 
 /// A plan that a person consented to.
-pub type Commit = crate::worker::commit::Agreed<Prepared>;
+pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 /// What a commit did.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// What is said on the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remark {
+pub enum DeviceMessage {
     /// A step of the handshake.
     Handshake(Handshake),
 }
 
 /// The step that a job is at. Its text is the command line's.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Doing {
+pub enum JobStep {
     /// Something is read out.
     ReadOut(ReadOut),
     /// A cam program is read.
@@ -196,15 +196,15 @@ pub enum Doing {
     Operation(String),
 }
 
-impl fmt::Display for Doing {
+impl fmt::Display for JobStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Doing::ReadOut(read_out) => match read_out.row() {
+            JobStep::ReadOut(read_out) => match read_out.row() {
                 Some(row) => f.write_str(row.name),
                 None => write!(f, "read-out 0x{:X}", read_out.number()),
             },
-            Doing::Program(program) => write!(f, "cam program {}", program.get()),
-            Doing::Operation(item) => f.write_str(item),
+            JobStep::Program(program) => write!(f, "cam program {}", program.get()),
+            JobStep::Operation(item) => f.write_str(item),
         }
     }
 }
@@ -218,7 +218,7 @@ pub enum InterbusOutput {
     Programs(Vec<(ProgramNumber, Program)>, WindowShift),
     Identity(Box<Identity>),
     Status(Box<Status>),
-    Check(Vec<Line>),
+    Check(Vec<InterbusStepResult>),
     Position(Reading),
     Item(ItemValue),
     ReadOut(ReadOut, Value),

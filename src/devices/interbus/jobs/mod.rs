@@ -11,8 +11,8 @@ use std::fmt;
 use std::sync::Arc;
 
 pub use job::{
-    Change, ChangeKind, Commit, Committed, Doing, InterbusJob, InterbusOutput, JobError, Prepared, Remark, WEAR_ASK,
-    WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key, wear_limit,
+    Change, ChangeKind, Commit, Committed, DeviceMessage, InterbusJob, InterbusOutput, JobError, JobStep, Prepared,
+    WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WEAR_WARNING, Wear, device_key, wear_limit,
 };
 pub use open::{check, open};
 
@@ -20,14 +20,14 @@ use journal::Notes;
 
 use crate::devices::interbus::procedures::check::{Wear as Limits, check as check_device};
 use crate::devices::interbus::procedures::{
-    Error, Handshake, Identity, Kept, Master, Reading, Station, identify, read_item, read_one, read_programs,
+    Error, Handshake, Identity, Master, Reading, SaveStep, Station, identify, read_item, read_one, read_programs,
     read_status, save, select, survey,
 };
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Desk, Device, Progress, Session, Tell, Watched};
+use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
 
 /// An INTERBUS encoder behind its gateway.
 pub struct Interbus {
@@ -44,11 +44,11 @@ impl fmt::Debug for Interbus {
 }
 
 /// What a job tells on its way.
-type Told<'t> = &'t mut dyn FnMut(Tell<Remark, Doing>);
+type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
 
 impl Interbus {
     /// The host's side of the process data; each step of the handshake is told.
-    fn master<'a>(&'a mut self, desk: &'a mut Desk, told: impl FnMut(Handshake) + 'a) -> Master<'a> {
+    fn master<'a>(&'a mut self, desk: &'a mut SessionContext, told: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(desk.store.clone(), desk.is_virtual);
         Master::new(desk.ctx(&mut *self.wire), &mut self.station).telling(told).noting(notes)
     }
@@ -82,13 +82,18 @@ impl Device for Interbus {
     type Job = InterbusJob;
     type Output = InterbusOutput;
     type Error = JobError;
-    type Remark = Remark;
+    type DeviceMessage = DeviceMessage;
     type Sample = Reading;
     /// Whatever else there is replaces the position.
     type Watch = Infallible;
-    type Doing = Doing;
+    type JobStep = JobStep;
 
-    fn run(&mut self, desk: &mut Desk, job: InterbusJob, tell: Told<'_>) -> Result<InterbusOutput, JobError> {
+    fn run(
+        &mut self,
+        desk: &mut SessionContext,
+        job: InterbusJob,
+        tell: ProgressSink<'_>,
+    ) -> Result<InterbusOutput, JobError> {
         use InterbusOutput as Out;
         match job {
             InterbusJob::Prepare(change) => Ok(Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?))),
@@ -96,11 +101,11 @@ impl Device for Interbus {
             InterbusJob::Hello => self.ask(desk, tell, |master, _| Ok(Out::Hello(master.reading()?))),
             InterbusJob::Position => self.ask(desk, tell, |master, _| Ok(Out::Position(master.reading()?))),
             InterbusJob::Survey => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| steps(done, total, Doing::ReadOut(what));
+                let told = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
                 Ok(Out::Surveyed(Box::new(survey(master, told)?)))
             }),
             InterbusJob::Programs(wanted) => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| steps(done, total, Doing::Program(what));
+                let told = &mut |done, total, what| steps(done, total, JobStep::Program(what));
                 let (programs, shift) = read_programs(master, &wanted, told)?;
                 Ok(Out::Programs(programs, shift))
             }),
@@ -114,7 +119,7 @@ impl Device for Interbus {
                     limit: WEAR_LIMIT,
                 };
                 self.ask(desk, tell, |master, steps| {
-                    let told = &mut |done, total, what| steps(done, total, Doing::ReadOut(what));
+                    let told = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
                     Ok(Out::Check(check_device(master, wear, told)?))
                 })
             }
@@ -125,8 +130,8 @@ impl Device for Interbus {
             InterbusJob::Select(mode) => self.ask(desk, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
             InterbusJob::Save { programs } => self.ask(desk, tell, |master, steps| {
                 let told = &mut |done, total, what| match what {
-                    Kept::ReadOut(what) => steps(done, total, Doing::ReadOut(what)),
-                    Kept::Program(what) => steps(done, total, Doing::Program(what)),
+                    SaveStep::ReadOut(what) => steps(done, total, JobStep::ReadOut(what)),
+                    SaveStep::Program(what) => steps(done, total, JobStep::Program(what)),
                 };
                 Ok(Out::Saved(Box::new(save(master, programs, told)?)))
             }),
@@ -134,11 +139,11 @@ impl Device for Interbus {
         }
     }
 
-    fn sample(&mut self, desk: &mut Desk) -> Result<Reading, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<Reading, JobError> {
         Ok(self.master(desk, |_| {}).reading()?)
     }
 
-    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Reading>, JobError> {
+    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<Reading>, JobError> {
         match *what {}
     }
 
@@ -148,18 +153,18 @@ impl Device for Interbus {
 }
 
 /// What is at the moment, of so much.
-type Steps<'s> = &'s mut dyn FnMut(u64, u64, Doing);
+type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {
     /// What only asks, or leads back. All of it replaces the position for a moment, but for the IN word alone.
     fn ask(
         &mut self,
-        desk: &mut Desk,
-        tell: Told<'_>,
+        desk: &mut SessionContext,
+        tell: ProgressSink<'_>,
         ask: impl FnOnce(&mut Master<'_>, Steps<'_>) -> Result<InterbusOutput, Error>,
     ) -> Result<InterbusOutput, JobError> {
         let tell = std::cell::RefCell::new(tell);
-        let mut master = self.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
+        let mut master = self.master(desk, |step| (tell.borrow_mut())(Tell::Remark(DeviceMessage::Handshake(step))));
         let mut steps = |done, total, what| (tell.borrow_mut())(Tell::Progress(Progress { done, total, what }));
         Ok(ask(&mut master, &mut steps)?)
     }

@@ -1,6 +1,6 @@
 //! From a change that a user wants to a plan. Reads; writes nothing, and leaves the encoder in the mode in which it was.
 
-use super::{Change, Doing, Interbus, JobError, Prepared, Remark, Told, device_key};
+use super::{Change, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::interbus::procedures::{identify, read_state};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, Item, Restore, check_allowed, other_type, plan_default, plan_edits, plan_preset, plan_restore,
@@ -8,19 +8,19 @@ use crate::devices::interbus::profile::{
 };
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Desk, Progress, Tell};
+use crate::worker::{Progress, SessionContext, Tell};
 
 pub(super) fn prepare(
     encoder: &mut Interbus,
-    desk: &mut Desk,
+    desk: &mut SessionContext,
     change: &Change,
-    tell: Told<'_>,
+    tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let tell = std::cell::RefCell::new(tell);
-    let mut master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(Remark::Handshake(step))));
+    let mut master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(DeviceMessage::Handshake(step))));
     let told = &mut |done, total, program| {
-        (tell.borrow_mut())(Tell::Progress(Progress { done, total, what: Doing::Program(program) }));
+        (tell.borrow_mut())(Tell::Progress(Progress { done, total, what: JobStep::Program(program) }));
     };
     let identity = identify(&mut master)?;
     let mut state = |programs: &[ProgramNumber]| read_state(&mut master, &identity, programs, told);

@@ -12,7 +12,7 @@ use crate::devices::interbus::protocol::{ErrorWord, ReadOut, Reply, StartupMode}
 pub use crate::analysis::check::{Verdict, Wear};
 
 /// One line of the check.
-pub type Line = check::Line<Step, Finding>;
+pub type InterbusStepResult = check::StepResult<Step, Finding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,7 +117,7 @@ pub fn check(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> Wear,
     told: &mut dyn FnMut(u64, u64, ReadOut),
-) -> Result<Vec<Line>, Error> {
+) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
     if !is_free {
         // Whatever is asked now disturbs somebody, or goes into the wrong half of a word.
@@ -128,19 +128,22 @@ pub fn check(
         Ok(survey) => {
             let asked = survey.read_outs().count() as u64;
             let each_ms = master.now().since(begun).as_millis() as u64 / asked.max(1);
-            lines.push(Line::of(Step::Handshake, vec![(Verdict::Good, Finding::ReadOuts { asked, each_ms })]));
+            lines.push(InterbusStepResult::of(
+                Step::Handshake,
+                vec![(Verdict::Good, Finding::ReadOuts { asked, each_ms })],
+            ));
             lines.push(identity(&survey));
             lines.push(temperature(survey.temperature_tenths));
             lines.extend(worn(wear(&survey.identity)));
         }
         Err(error) if error.is_lost() || error.is_cancelled() => return Err(error),
-        Err(error) => lines.push(Line::of(Step::Handshake, vec![(Verdict::Bad, Finding::Failed(error))])),
+        Err(error) => lines.push(InterbusStepResult::of(Step::Handshake, vec![(Verdict::Bad, Finding::Failed(error))])),
     }
     Ok(lines)
 }
 
 /// The IN word alone, again and again; whether more can be asked.
-fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
+fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
     let (mut slowest, mut word) = (Duration::ZERO, 0);
     for _ in 0..LOOKS {
         let begun = master.now();
@@ -148,7 +151,8 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
         slowest = slowest.max(master.now().since(begun));
     }
     let slowest_ms = slowest.as_millis() as u64;
-    let answers = Line::of(Step::Gateway, vec![(Verdict::Good, Finding::Replies { asked: LOOKS, slowest_ms })]);
+    let answers =
+        InterbusStepResult::of(Step::Gateway, vec![(Verdict::Good, Finding::Replies { asked: LOOKS, slowest_ms })]);
     let (order, fits) = match master.suspected_order(word)? {
         Some(swapped) => ((Verdict::Bad, Finding::OrderSwapped { input: word, swapped }), false),
         None => ((Verdict::Good, Finding::OrderFits), true),
@@ -162,12 +166,16 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<Line>, bool), Error> {
             ((Verdict::Bad, Finding::Occupied(word)), false)
         }
     };
-    let lines = vec![answers, Line::of(Step::WordOrder, vec![order]), Line::of(Step::InputWord, vec![input])];
+    let lines = vec![
+        answers,
+        InterbusStepResult::of(Step::WordOrder, vec![order]),
+        InterbusStepResult::of(Step::InputWord, vec![input]),
+    ];
     Ok((lines, fits && free))
 }
 
 /// A line with the worst verdict of its findings.
-fn identity(survey: &Survey) -> Line {
+fn identity(survey: &Survey) -> InterbusStepResult {
     let identity = &survey.identity;
     let mut findings = vec![
         (Verdict::Good, Finding::SerialNumber(identity.serial_number.clone())),
@@ -187,15 +195,15 @@ fn identity(survey: &Survey) -> Line {
     if identity.flags.steps_minus_one() {
         findings.push((Verdict::Attention, Finding::StepsMinusOne));
     }
-    Line::of(Step::Identity, findings)
+    InterbusStepResult::of(Step::Identity, findings)
 }
 
-fn temperature(tenths: i32) -> Line {
+fn temperature(tenths: i32) -> InterbusStepResult {
     let verdict = if TEMPERATURES.contains(&tenths) { Verdict::Good } else { Verdict::Attention };
-    Line::of(Step::Temperature, vec![(verdict, Finding::Temperature(tenths))])
+    InterbusStepResult::of(Step::Temperature, vec![(verdict, Finding::Temperature(tenths))])
 }
 
-fn worn(wear: Wear) -> Option<Line> {
+fn worn(wear: Wear) -> Option<InterbusStepResult> {
     let (verdict, seen) = wear.judged()?;
-    Some(Line::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
+    Some(InterbusStepResult::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::Standing;
+use super::LeftState;
 use crate::devices::interbus::protocol::{Command, ErrorWord, GearError, Refused, Reply, StartupMode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
@@ -325,7 +325,7 @@ pub enum Error {
         /// Why it ended; where nothing failed before, why it could not be led back.
         cause: Box<Error>,
         /// In which state it may be.
-        standing: Standing,
+        standing: LeftState,
     },
 }
 

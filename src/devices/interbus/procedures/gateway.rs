@@ -16,7 +16,7 @@ use super::{Error, Known};
 use crate::bits::MaskedBytes;
 use crate::devices::interbus::protocol::WordOrder;
 use crate::link::Ctx;
-use crate::link::line::{Line, LineState};
+use crate::link::line::{LineState, SerialLine};
 use crate::units::Moment;
 
 /// Tries before a gateway counts as gone, where it does not answer; each may take its whole time.
@@ -38,7 +38,7 @@ const REFUSED: u8 = 0x80;
 
 /// A gateway and the encoder at its registers, for one job.
 pub struct Gateway<'a> {
-    line: Line<'a>,
+    line: SerialLine<'a>,
     link: LinkParameters,
     recorded: bool,
     state: State<'a>,
@@ -55,7 +55,7 @@ struct State<'a> {
 }
 
 /// An exchange that gave nothing.
-enum Trouble {
+enum ExchangeError {
     Silence,
     Damage(Damage),
     Exception(Exception),
@@ -72,7 +72,7 @@ impl<'a> Gateway<'a> {
         line.begin_job();
         *silent = false;
         let state = State { line, next, waiting, silent };
-        let gateway = Gateway { line: Line::new(ctx), link, recorded, state, written: None };
+        let gateway = Gateway { line: SerialLine::new(ctx), link, recorded, state, written: None };
         (gateway, known)
     }
 
@@ -90,23 +90,23 @@ impl<'a> Gateway<'a> {
             };
             self.state.line.damaged += 1;
             match trouble {
-                Trouble::Silence => self.state.line.quality.silent += 1,
-                Trouble::Damage(_) => self.state.line.quality.damaged += 1,
-                Trouble::Exception(_) => {}
+                ExchangeError::Silence => self.state.line.quality.silent += 1,
+                ExchangeError::Damage(_) => self.state.line.quality.damaged += 1,
+                ExchangeError::Exception(_) => {}
             }
             match trouble {
-                Trouble::Silence => {
+                ExchangeError::Silence => {
                     if *self.state.silent || tries >= SILENCES {
                         *self.state.silent = true;
                         return Err(Error::NoReply { asked, tries });
                     }
                 }
-                Trouble::Damage(cause) => {
+                ExchangeError::Damage(cause) => {
                     if tries >= TRIES {
                         return Err(Error::Damaged { asked, tries, cause });
                     }
                 }
-                Trouble::Exception(exception) => {
+                ExchangeError::Exception(exception) => {
                     if !exception.passes() || tries >= TRIES {
                         return Err(Error::Exception { asked, exception });
                     }
@@ -116,13 +116,13 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn ask_once(&mut self, asked: Asked) -> Result<Result<Vec<u16>, Trouble>, Error> {
+    fn ask_once(&mut self, asked: Asked) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
         self.line.start()?;
         let number = *self.state.next;
         // Not 0: what answers without looking at the number has it.
         *self.state.next = number.checked_add(1).unwrap_or(1);
         let Some((request, bytes)) = self.request(asked, number) else {
-            return Ok(Err(Trouble::Damage(Damage::Registers)));
+            return Ok(Err(ExchangeError::Damage(Damage::Registers)));
         };
         let sent_at = self.line.now();
         self.state.line.sent(sent_at);
@@ -136,7 +136,7 @@ impl<'a> Gateway<'a> {
                         self.line.show(now, MaskedBytes::clear(&frame));
                         if self.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
                             let judged = judge(&request, asked, frame);
-                            if !matches!(judged, Err(Trouble::Damage(_))) {
+                            if !matches!(judged, Err(ExchangeError::Damage(_))) {
                                 self.state.line.answered();
                                 self.state.line.answer_began(now);
                             }
@@ -147,14 +147,14 @@ impl<'a> Gateway<'a> {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&bytes));
                         self.line.wait_for_silence(self.state.line, QUIET)?;
-                        return Ok(Err(Trouble::Damage(damage)));
+                        return Ok(Err(ExchangeError::Damage(damage)));
                     }
                     None => break,
                 }
             }
             let now = self.line.now();
             if now >= deadline {
-                return Ok(Err(Trouble::Silence));
+                return Ok(Err(ExchangeError::Silence));
             }
             self.line.check_cancel()?;
             self.line.receive((now + SLICE).min(deadline), self.state.waiting)?;
@@ -225,9 +225,9 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     let (number, unit, asked) = asked(sent, order)?;
     let (request, _) = request(asked, unit, number, order)?;
     match judge(&request, asked, received.to_vec()) {
-        Err(Trouble::Damage(damage)) => broken(damage),
-        Err(Trouble::Exception(exception)) => Some(Fault::Refused(exception)),
-        Ok(_) | Err(Trouble::Silence) => None,
+        Err(ExchangeError::Damage(damage)) => broken(damage),
+        Err(ExchangeError::Exception(exception)) => Some(Fault::Refused(exception)),
+        Ok(_) | Err(ExchangeError::Silence) => None,
     }
 }
 
@@ -245,21 +245,21 @@ fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Asked)> {
 }
 
 /// What a reply with the right number says.
-fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Vec<u16>, Trouble> {
-    let [_, _, ..] = frame.as_slice() else { return Err(Trouble::Damage(Damage::Registers)) };
+fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
+    let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(Damage::Registers)) };
     // A recording has the number of its own request.
     frame.splice(..2, request.tr_id.to_be_bytes());
     let (unit, function) = (frame.get(HEADER - 1).copied(), frame.get(HEADER).copied());
-    let (Some(unit), Some(function)) = (unit, function) else { return Err(Trouble::Damage(Damage::Registers)) };
+    let (Some(unit), Some(function)) = (unit, function) else { return Err(ExchangeError::Damage(Damage::Registers)) };
     if unit != request.unit_id {
-        return Err(Trouble::Damage(Damage::Unit { asked: request.unit_id, got: unit }));
+        return Err(ExchangeError::Damage(Damage::Unit { asked: request.unit_id, got: unit }));
     }
     // The crate takes the codes 0Ah and 0Bh for others, and any other function for a refusal.
     if function == asked.function() | REFUSED {
-        return Err(Trouble::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
+        return Err(ExchangeError::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
     }
     if function != asked.function() {
-        return Err(Trouble::Damage(Damage::Function { asked: asked.function(), got: function }));
+        return Err(ExchangeError::Damage(Damage::Function { asked: asked.function(), got: function }));
     }
     let body = frame.get(HEADER + 1..).unwrap_or_default();
     let mut registers: Vec<u16> = Vec::new();
@@ -272,7 +272,7 @@ fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Ve
             body == [high, low, 0, 2] && request.parse_ok(&frame).is_ok()
         }
     };
-    if fits { Ok(registers) } else { Err(Trouble::Damage(Damage::Registers)) }
+    if fits { Ok(registers) } else { Err(ExchangeError::Damage(Damage::Registers)) }
 }
 
 impl ProcessData for Gateway<'_> {

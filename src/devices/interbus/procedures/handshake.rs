@@ -65,7 +65,7 @@ impl Says {
 
 /// In which state an encoder may be that could not be led back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Standing {
+pub struct LeftState {
     /// The OUT word that was sent last; it stays until another one is written.
     pub out: u32,
     /// Parameters or cams were being set: the encoder sends no position until it gets `80000000`.
@@ -76,7 +76,7 @@ pub struct Standing {
     pub is: Option<StartupMode>,
 }
 
-impl fmt::Display for Standing {
+impl fmt::Display for LeftState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "OUT may still be {:08X}", self.out)?;
         if self.parameterising {

@@ -8,12 +8,12 @@ mod notes;
 
 use std::time::Duration;
 
-use held::{Held, LEAST_PATIENCE, Look};
+use held::{CycleResult, Held, LEAST_PATIENCE};
 use notes::Notes;
 
 use super::data::ProcessData;
 use super::error::{Asked, Awaited};
-use super::handshake::{Handshake, Says, Standing, is_echo};
+use super::handshake::{Handshake, LeftState, Says, is_echo};
 use super::reading::{swapped, swapped_unexplained};
 use super::{Error, Gateway, Known, Reading, Station};
 use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
@@ -139,9 +139,9 @@ impl<'a> Master<'a> {
     }
 
     /// In which state the encoder may be.
-    pub(super) fn standing(&self) -> Standing {
+    pub(super) fn standing(&self) -> LeftState {
         let out = self.out.map_or(0, Command::emit);
-        Standing { out, parameterising: self.parameterising, found: self.found, is: self.is }
+        LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
 
     /// Does what leads back to a safe state: in it, a wish to end is not heard.
@@ -166,7 +166,7 @@ impl<'a> Master<'a> {
         self.leave_value()?;
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
-        self.until(command, Awaited::Value, self.patience, |Look { word, same, .. }| match Reply::parse(word) {
+        self.until(command, Awaited::Value, self.patience, |CycleResult { word, same, .. }| match Reply::parse(word) {
             Reply::ReadOut(value) if same.stands() => Some(Ok(value)),
             Reply::UnknownReadOut(_) if same.stands() => Some(Err(Error::UnknownReadOut { command })),
             Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
@@ -209,7 +209,7 @@ impl<'a> Master<'a> {
     fn running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
         self.ensure_legal(command)?;
         let (mut runs, found) = (Held::new(self.recorded), self.found_error);
-        self.until(command, Awaited::Run, patience, |Look { now, word, same }| {
+        self.until(command, Awaited::Run, patience, |CycleResult { now, word, same }| {
             runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
             (runs.stands() || Some(word) == found && same.stays()).then_some(Ok(()))
         })
@@ -224,7 +224,7 @@ impl<'a> Master<'a> {
         self.normal()?;
         self.ensure_legal(Command::Preset)?;
         let (mut sent, mut there) = (Held::new(self.recorded), Held::new(self.recorded));
-        let fired = self.until(Command::Preset, Awaited::Preset, self.patience, |Look { now, word, .. }| {
+        let fired = self.until(Command::Preset, Awaited::Preset, self.patience, |CycleResult { now, word, .. }| {
             sent.go_on(true, now);
             there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
             (sent.stays() && there.stands()).then_some(Ok(()))
@@ -239,7 +239,7 @@ impl<'a> Master<'a> {
         command: Command,
         awaited: Awaited,
         patience: Duration,
-        mut judge: impl FnMut(Look) -> Option<Result<T, Error>>,
+        mut judge: impl FnMut(CycleResult) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
         let least = held::least_cycles(self.recorded);
@@ -256,7 +256,7 @@ impl<'a> Master<'a> {
             last = Some(word);
             at_work.go_on(matches!(Reply::parse(word), Reply::Busy { .. }) && !is_echo(command, word), now);
             self.known.processing = self.known.processing.max(at_work.lasted());
-            if let Some(ended) = judge(Look { now, word, same }) {
+            if let Some(ended) = judge(CycleResult { now, word, same }) {
                 return ended;
             }
             if cycles >= least && now.since(begun) >= patience {

@@ -22,12 +22,12 @@ pub mod write;
 pub use data::ProcessData;
 pub use error::{Asked, Awaited, Damage, Error, Exception, Implausible};
 pub use gateway::{Carried, Fault, Gateway, carried, fault};
-pub use handshake::{Handshake, Says, Standing};
+pub use handshake::{Handshake, LeftState, Says};
 pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, read_status, select, survey};
 pub use journal::{Excursion, Journal};
 pub use master::Master;
-pub use reading::{Place, Reading};
-pub use save::{Kept, read_item, read_state, save};
+pub use reading::{Reading, TurnPosition};
+pub use save::{SaveStep, read_item, read_state, save};
 pub use station::{LinkParameters, Station};
 
 use station::Known;

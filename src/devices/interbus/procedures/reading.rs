@@ -20,7 +20,7 @@ pub struct Reading {
 
 /// A place within the programmed turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct TurnPosition {
     /// Whole turns, from 0.
     pub turns: u32,
     /// Steps within the turn, from 0.
@@ -83,7 +83,7 @@ impl Reading {
     }
 
     /// The position within the programmed turns; `None` without a position or a gear, and beyond the measuring range.
-    pub fn place(&self) -> Option<Place> {
+    pub fn place(&self) -> Option<TurnPosition> {
         let (position, gear) = (u64::from(self.position()?), self.gear?);
         let (all, turns) = (u64::from(gear.steps()), u64::from(gear.turns()));
         if position >= all {
@@ -93,7 +93,7 @@ impl Reading {
         let first = (turn * all).div_ceil(turns);
         let degrees = (position * turns % all) as f64 * 360.0 / all as f64;
         // Less than the turns and the steps of the gear.
-        Some(Place { turns: turn as u32, steps: (position - first) as u32, degrees })
+        Some(TurnPosition { turns: turn as u32, steps: (position - first) as u32, degrees })
     }
 }
 

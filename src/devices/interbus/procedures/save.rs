@@ -35,12 +35,12 @@ impl Survey {
 pub fn save(
     master: &mut Master<'_>,
     with_programs: bool,
-    told: &mut dyn FnMut(u64, u64, Kept),
+    told: &mut dyn FnMut(u64, u64, SaveStep),
 ) -> Result<InterbusProfile, Error> {
     master.guarded(|master| {
-        let survey = read_survey(master, &mut |done, total, read_out| told(done, total, Kept::ReadOut(read_out)))?;
+        let survey = read_survey(master, &mut |done, total, read_out| told(done, total, SaveStep::ReadOut(read_out)))?;
         let wanted: Vec<ProgramNumber> = if with_programs { ProgramNumber::all().collect() } else { Vec::new() };
-        let of_program = &mut |done, total, program| told(done, total, Kept::Program(program));
+        let of_program = &mut |done, total, program| told(done, total, SaveStep::Program(program));
         let image = read_image(master, survey.parameters, &wanted, of_program)?;
         Ok(InterbusProfile::of(survey.identity.profile(), image, survey.recorded()))
     })
@@ -48,7 +48,7 @@ pub fn save(
 
 /// What is read at the moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kept {
+pub enum SaveStep {
     /// Something that is read out.
     ReadOut(ReadOut),
     /// A cam program.

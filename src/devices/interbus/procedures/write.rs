@@ -6,7 +6,7 @@ use std::time::Duration;
 pub use crate::profile::Written;
 
 use super::error::Implausible;
-use super::handshake::Standing;
+use super::handshake::LeftState;
 use super::identify::{direction_of, programs, read_cam, read_parameters, read_program, read_shift, refresh_gear};
 use super::{Error, Identity, Master};
 use crate::devices::interbus::profile::{
@@ -26,7 +26,7 @@ pub enum Left {
     /// In the mode in which it was found, running.
     AsFound,
     /// It could not be led back: what is known of it.
-    Unknown(Standing),
+    Unknown(LeftState),
 }
 
 /// So long a shaft is watched before a preset.

@@ -22,7 +22,7 @@ pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};
 pub use note::Step;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
-pub use record::{InterbusProfile, Kept, MountingMark, Names, ProfileIdentity, Recorded};
+pub use record::{InterbusProfile, MountingMark, Names, ProfileIdentity, Recorded, UnknownEntries};
 pub use restore::{
     DeviceState, Restore, RestoreOptions, check_allowed, check_device, other_type, plan_restore, programs_needed,
 };

@@ -21,7 +21,7 @@ pub struct InterbusProfile {
     /// Values that change by themselves or cannot be written: recorded, neither compared nor restored.
     pub recorded: Recorded,
     /// Entries that this program does not know.
-    pub unknown: Kept,
+    pub unknown: UnknownEntries,
 }
 
 /// Who an encoder is.
@@ -64,7 +64,7 @@ pub struct Names {
 
 /// Entries that this program does not know, by the structure in which they stand.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Kept {
+pub struct UnknownEntries {
     pub(super) parameters: Unknown,
     pub(super) programs: BTreeMap<ProgramNumber, Unknown>,
     pub(super) cams: BTreeMap<(ProgramNumber, CamNumber), Unknown>,
@@ -79,7 +79,7 @@ impl InterbusProfile {
             names: Names::default(),
             mounting: Vec::new(),
             recorded,
-            unknown: Kept::default(),
+            unknown: UnknownEntries::default(),
         };
         profile.mark_mounting();
         profile

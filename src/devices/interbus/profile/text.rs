@@ -1,8 +1,8 @@
 //! The text of an INTERBUS profile: written for people, read from their hands. What is wrong names its entry.
 
 use super::{
-    Direction, EntryError, Image, InterbusProfile, Item, ItemError, Kept, MountingMark, Names, Parameters,
-    ProfileIdentity, Recorded,
+    Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Names, Parameters, ProfileIdentity,
+    Recorded, UnknownEntries,
 };
 use crate::devices::interbus::protocol::{
     self, Cam, CamNumber, Flags, Program, ProgramNumber, StartupMode, Value, WindowShift,
@@ -24,7 +24,7 @@ impl Profile for InterbusProfile {
             Some(entries) => read_identity(entries)?,
             None => ProfileIdentity::default(),
         };
-        let mut unknown = Kept::default();
+        let mut unknown = UnknownEntries::default();
         let mut image = Image::of(read_parameters(entries.structure("parameters")?, &mut unknown)?);
         image.shift = entries.optional("shift", SHIFT)?.map(|shift| window_shift(entries, shift)).transpose()?;
         let mut names = Names::default();
@@ -168,7 +168,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
     Ok(ProfileIdentity { serial_number, flags, unknown: entries.rest()? })
 }
 
-fn read_parameters(mut entries: Entries, unknown: &mut Kept) -> Result<Parameters, ProfileError> {
+fn read_parameters(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Parameters, ProfileError> {
     let steps = value(&mut entries, "steps")?.get();
     let revolutions = value(&mut entries, "revolutions")?.get();
     let path = entries.path_of("direction");
@@ -183,7 +183,7 @@ fn read_parameters(mut entries: Entries, unknown: &mut Kept) -> Result<Parameter
 fn read_program(
     mut entries: Entries,
     names: &mut Names,
-    unknown: &mut Kept,
+    unknown: &mut UnknownEntries,
 ) -> Result<(ProgramNumber, Program), ProfileError> {
     let path = entries.path_of("program");
     let number: u32 = entries.required("program", Expected::Whole)?;

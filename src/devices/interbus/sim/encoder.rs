@@ -35,7 +35,7 @@ pub struct Encoder {
     /// Steps of the disc between the shaft's place and the position's zero.
     offset: i64,
     mode: StartupMode,
-    doing: Doing,
+    doing: Activity,
     /// What is set; a store keeps it.
     memory: Memory,
     eeprom: Eeprom,
@@ -65,7 +65,7 @@ struct Identity {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Doing {
+enum Activity {
     Running,
     /// A parameter or a cam word was the last: position and cam outputs do not count.
     Setting,
@@ -138,7 +138,7 @@ impl Encoder {
             shaft: Shaft::new(config.position, config.rpm),
             offset: 0,
             mode: config.mode,
-            doing: Doing::Running,
+            doing: Activity::Running,
             eeprom: Eeprom::new(memory.clone(), config.stores, config.faults.die_in_store()),
             memory,
             unstored: None,
@@ -188,10 +188,10 @@ impl Encoder {
     pub const fn mode(&self) -> Mode {
         match (self.mode, self.doing) {
             (StartupMode::Cams(_), _) => Mode::Cam,
-            (_, Doing::Setting) => Mode::Parameterisation,
-            (_, Doing::ReadingOut) => Mode::ReadOut,
-            (StartupMode::Velocity, Doing::Running) => Mode::Velocity,
-            (_, Doing::Running) => Mode::Position,
+            (_, Activity::Setting) => Mode::Parameterisation,
+            (_, Activity::ReadingOut) => Mode::ReadOut,
+            (StartupMode::Velocity, Activity::Running) => Mode::Velocity,
+            (_, Activity::Running) => Mode::Position,
         }
     }
 
@@ -219,7 +219,7 @@ impl Encoder {
     pub fn disconnect(&mut self) {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
-        (self.doing, self.unstored) = (Doing::Running, None);
+        (self.doing, self.unstored) = (Activity::Running, None);
         (self.says, self.old) = (Says::Live, Old::default());
     }
 
@@ -259,7 +259,7 @@ impl Encoder {
 
     fn obey(&mut self, now: Moment, command: Command, before: u32) {
         match command {
-            Command::Normal if self.doing == Doing::ReadingOut => self.end_read_out(),
+            Command::Normal if self.doing == Activity::ReadingOut => self.end_read_out(),
             // What is not an edge of bit 31 changes nothing.
             Command::Run if before >> 31 == 0 => self.run(),
             Command::Normal | Command::Run | Command::Unknown(_) => {}
@@ -312,7 +312,7 @@ impl Encoder {
             Err(fault) => fault.word(),
         };
         self.unstored = taken.ok().or(self.unstored);
-        self.turn_to(Doing::Setting, Says::Word(says));
+        self.turn_to(Activity::Setting, Says::Word(says));
         self.busy_until = now + self.busy;
     }
 
@@ -339,7 +339,7 @@ impl Encoder {
     /// The edge of run: back to position, speed or cam output.
     fn run(&mut self) {
         self.store();
-        self.turn_to(Doing::Running, Says::Live);
+        self.turn_to(Activity::Running, Says::Live);
     }
 
     /// Keeps what was set, if anything was.
@@ -364,7 +364,7 @@ impl Encoder {
     }
 
     /// From now on, without busy words.
-    const fn turn_to(&mut self, doing: Doing, says: Says) {
+    const fn turn_to(&mut self, doing: Activity, says: Says) {
         (self.doing, self.says, self.busy_until) = (doing, says, Moment::START);
     }
 
@@ -383,10 +383,10 @@ impl Encoder {
         }
         self.mode = program.map_or(StartupMode::K3, StartupMode::Cams);
         if program.is_some() && self.acknowledges_selection {
-            self.turn_to(Doing::Setting, Says::Word(self.out | ECHO));
+            self.turn_to(Activity::Setting, Says::Word(self.out | ECHO));
             self.busy_until = now + self.busy;
         } else {
-            self.turn_to(Doing::Running, Says::Live);
+            self.turn_to(Activity::Running, Says::Live);
         }
     }
 }

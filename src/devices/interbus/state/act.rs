@@ -4,7 +4,7 @@ use super::action::Action;
 use super::encoder::Encoder;
 use super::staged::Edit;
 use crate::app::services::Services;
-use crate::app::session::{OnLine, Phase, Saved, WithMemory};
+use crate::app::session::{Phase, Saved, SessionEvents, WithMemory};
 use crate::app::{DeviceFile, FileQuestion, Text};
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::profile::InterbusProfile;

@@ -60,7 +60,7 @@ pub struct Stretch {
 
 /// The part of the measuring range that is to be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct VisibleRange {
     first: f64,
     span: f64,
 }
@@ -169,10 +169,10 @@ impl Lamp {
     }
 }
 
-impl View {
+impl VisibleRange {
     /// The whole measuring range.
     pub fn whole(range: u32) -> Self {
-        View { first: 0.0, span: f64::from(range.max(1)) }
+        VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }
 
     /// The first position that is to be seen, with its fraction.
@@ -207,13 +207,13 @@ impl View {
         let span = if times.is_finite() && times > 0.0 { self.span / times } else { self.span };
         let span = span.clamp(LEAST_SPAN.min(most), most);
         let part = self.part(around);
-        View { first: around - part * span, span }.within(range)
+        VisibleRange { first: around - part * span, span }.within(range)
     }
 
     /// Further along by so many positions.
     #[must_use]
     pub fn panned(&self, by: f64, range: u32) -> Self {
-        View { first: self.first + by, ..*self }.within(range)
+        VisibleRange { first: self.first + by, ..*self }.within(range)
     }
 
     /// The same for another range, which may be shorter by now.
@@ -221,7 +221,7 @@ impl View {
     pub fn within(&self, range: u32) -> Self {
         let most = f64::from(range.max(1));
         let span = self.span.min(most);
-        View { first: self.first.clamp(0.0, most - span), span }
+        VisibleRange { first: self.first.clamp(0.0, most - span), span }
     }
 }
 

@@ -1,17 +1,17 @@
 //! Edits of an encoder's parameters and cams, kept over a crash.
 
 use super::encoder::Encoder;
-use super::staged::Kept;
+use super::staged::SavedEdit;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, OnDesk, ProfileFile, Saved, Session};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Saved, Session};
 use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::profile::Document;
 
 /// What is edited, each with its place.
-pub(crate) type Edits = Vec<Kept>;
+pub(crate) type Edits = Vec<SavedEdit>;
 
-impl OnDesk for Encoder {
+impl HasSession for Encoder {
     type Device = Interbus;
 
     fn session(&self) -> &Session<Interbus> {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::preview::Preview;
 use super::record::Record;
-use super::staged::{Mark, Place, Staged, Wanted};
+use super::staged::{Mark, Staged, ValueId, Wanted};
 use super::table::Import;
 use super::trace::Meaning;
 use super::{cams, words};
@@ -196,12 +196,12 @@ impl Encoder {
 
     /// Some parameter is edited.
     pub fn edits_parameters(&self) -> bool {
-        self.staged.differences().iter().any(|own| matches!(own.place, Place::Parameter(_)))
+        self.staged.differences().iter().any(|own| matches!(own.place, ValueId::Parameter(_)))
     }
 
     /// Something about cams is edited.
     pub fn edits_cams(&self) -> bool {
-        self.staged.differences().iter().any(|own| !matches!(own.place, Place::Parameter(_)))
+        self.staged.differences().iter().any(|own| !matches!(own.place, ValueId::Parameter(_)))
     }
 
     /// There are edits that are not written.

@@ -17,8 +17,8 @@ pub use write::{change, op, other_type, plan, wear, weight, written};
 
 use crate::app::Text;
 use crate::app::explain::{link, plain};
-use crate::devices::interbus::jobs::{Doing, JobError};
-use crate::devices::interbus::procedures::{Awaited, Error, Implausible, Standing};
+use crate::devices::interbus::jobs::{JobError, JobStep};
+use crate::devices::interbus::procedures::{Awaited, Error, Implausible, LeftState};
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
@@ -148,7 +148,7 @@ pub fn implausible(why: Implausible) -> Text {
 }
 
 /// In which state an encoder may be that could not be led back; the part of a sentence.
-fn standing(standing: &Standing) -> Text {
+fn standing(standing: &LeftState) -> Text {
     let id = if standing.parameterising { "ib_standing.set" } else { "ib_standing.out" };
     let state = TEXTS.text(id).with("out", word(standing.out));
     match (standing.found, standing.is) {
@@ -165,11 +165,11 @@ fn standing(standing: &Standing) -> Text {
 }
 
 /// What a job does at the moment.
-pub fn doing(doing: &Doing) -> Text {
+pub fn doing(doing: &JobStep) -> Text {
     match doing {
-        Doing::ReadOut(read_out) => item::read_out(*read_out),
-        Doing::Program(program) => TEXTS.text("ib_startup.program").with("program", program.get()),
-        Doing::Operation(item) => plain(item),
+        JobStep::ReadOut(read_out) => item::read_out(*read_out),
+        JobStep::Program(program) => TEXTS.text("ib_startup.program").with("program", program.get()),
+        JobStep::Operation(item) => plain(item),
     }
 }
 

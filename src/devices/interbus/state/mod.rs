@@ -7,12 +7,12 @@ pub mod cams;
 mod connect_form;
 mod drafts;
 mod encoder;
+mod events;
 pub mod explain;
 pub mod forms;
 mod job;
 mod kind;
 mod model;
-mod news;
 mod preview;
 pub mod reader;
 mod record;
@@ -39,7 +39,7 @@ use std::path::PathBuf;
 
 use crate::store::FileError;
 
-pub use staged::{Edit, EditError, Mark, Place, Staged, Wanted};
+pub use staged::{Edit, EditError, Mark, Staged, ValueId, Wanted};
 pub use table::Import;
 
 /// What tasks come back with.

@@ -4,7 +4,7 @@ use super::trace::Meaning;
 use super::{Action, Done, Encoder, TEXTS};
 use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{OnLine, Saved};
+use crate::app::session::{Saved, SessionEvents};
 use crate::app::{ActContext, DeviceMemory, DeviceModel, EditStep, Recording, Severity, Tab, Text, explain};
 use crate::devices::interbus::jobs::{Interbus, InterbusJob};
 

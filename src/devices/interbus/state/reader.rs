@@ -67,7 +67,7 @@ impl Default for Reading {
 
 /// A word and what it says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Line {
+pub struct DecodedWord {
     /// As it was typed.
     pub word: String,
     /// What it says, or why it is no word.
@@ -78,18 +78,18 @@ pub struct Line {
 
 impl Reading {
     /// Reads words that stand between blanks and commas, each with `0x` or `h` where it has one.
-    pub fn lines(&self, text: &str) -> Vec<Line> {
+    pub fn lines(&self, text: &str) -> Vec<DecodedWord> {
         let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
         words.map(|word| self.line(word)).collect()
     }
 
-    fn line(&self, typed: &str) -> Line {
+    fn line(&self, typed: &str) -> DecodedWord {
         let bare = typed.trim_start_matches("0x").trim_start_matches("0X").trim_end_matches(['h', 'H']);
         let digits = self.way.digits();
         let number = Some(bare).filter(|own| own.len() == digits).and_then(|own| u32::from_str_radix(own, 16).ok());
         let Some(number) = number else {
             let why = TEXTS.text("ib_reader.no_word").with("word", typed).with("digits", digits);
-            return Line { word: typed.to_owned(), says: Err(why), warning: None };
+            return DecodedWord { word: typed.to_owned(), says: Err(why), warning: None };
         };
         let single = |own: Single| {
             let position = TEXTS.text("ib_word.position").with("position", own.position().get());
@@ -104,7 +104,7 @@ impl Reading {
             Way::K1 => single(Single::parse_k1(number as u16)),
             Way::K2 => single(Single::parse_k2(number)),
         };
-        Line { word: bare.to_ascii_uppercase(), says: Ok(says), warning }
+        DecodedWord { word: bare.to_ascii_uppercase(), says: Ok(says), warning }
     }
 }
 

@@ -6,8 +6,8 @@ use crate::devices::interbus::state::TEXTS;
 use jiff::Zoned;
 
 use crate::analysis::history::Value;
-use crate::app::recorder::{GroupId, Line, Scale};
-use crate::app::track::{Meaning, Sighting, Track, Watchable, Watching};
+use crate::app::recorder::{GroupId, Scale, Series};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
@@ -72,7 +72,7 @@ impl Record {
         let position = reading.position();
         if is_sent && (position.is_some() || !reading.is_valid()) {
             let is_beyond = reading.gear.zip(position).is_some_and(|(gear, own)| own >= gear.steps());
-            let sighting = Sighting {
+            let sighting = PositionSample {
                 at,
                 position: position.map(i64::from),
                 is_bad: position.is_none(),
@@ -112,15 +112,15 @@ impl Watchable for Beside {
         true
     }
 
-    fn line(&self, group: GroupId) -> Line {
+    fn line(&self, group: GroupId) -> Series {
         match self {
             Beside::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 0)];
-                Line::of(group, 0, TEXTS.text("ib_live.speed"), "encoder speed".to_owned(), scales)
+                Series::of(group, 0, TEXTS.text("ib_live.speed"), "encoder speed".to_owned(), scales)
             }
             Beside::Cam(cam) => {
                 let name = TEXTS.text("ib_live.cam").with("cam", cam.get());
-                Line::of(group, 0, name, format!("cam {}", cam.get()), vec![Scale::new("unit.counts", 1.0, 0)])
+                Series::of(group, 0, name, format!("cam {}", cam.get()), vec![Scale::new("unit.counts", 1.0, 0)])
             }
         }
     }

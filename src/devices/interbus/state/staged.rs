@@ -16,8 +16,8 @@ mod merge;
 #[cfg(test)]
 mod tests;
 
-pub use difference::{Differs, Place};
-pub use draft::Kept;
+pub use difference::{Differs, ValueId};
+pub use draft::SavedEdit;
 pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
@@ -55,7 +55,7 @@ pub struct Staged {
     wanted: Option<Wanted>,
     history: History<Wanted>,
     /// Edits of an earlier time whose place was not read yet.
-    waiting: Vec<Kept>,
+    waiting: Vec<SavedEdit>,
 }
 
 impl Wanted {

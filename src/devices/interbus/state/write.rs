@@ -4,7 +4,7 @@ use super::cams::words;
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{Agreed, Known, Saved, WithMemory, some, without_edits};
+use crate::app::session::{ApprovedPlanOf, Known, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, Prepared, device_key};
 use crate::devices::interbus::profile::{
@@ -62,7 +62,7 @@ impl WithMemory for Encoder {
         InterbusJob::Prepare(change)
     }
 
-    fn commit(&mut self, agreed: Agreed<Interbus>) -> InterbusJob {
+    fn commit(&mut self, agreed: ApprovedPlanOf<Interbus>) -> InterbusJob {
         InterbusJob::Commit(Box::new(agreed))
     }
 

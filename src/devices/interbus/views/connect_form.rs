@@ -6,7 +6,7 @@ use crate::app::Action;
 use crate::app::connect::Connect as Dialog;
 use crate::devices::interbus::state::{InterbusForm, InterbusWay};
 use crate::devices::interbus::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{place, recording, segments, typed, unfolded};
@@ -20,7 +20,7 @@ impl TypedConnectForm for InterbusConnectForm {
 
     fn form_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         _dialog: &Dialog,
         form: &mut InterbusForm,
         ((), more): (&mut (), &mut bool),
@@ -31,49 +31,49 @@ impl TypedConnectForm for InterbusConnectForm {
             (InterbusWay::Gateway, "connect.gateway"),
             (InterbusWay::Replay, "connect.replay"),
         ];
-        segments(ui, skin, &mut form.way, ways);
+        segments(ui, theme, &mut form.way, ways);
         if form.way == InterbusWay::Gateway {
-            paragraph(ui, skin.caption(say(skin, "connect.gateway_words")));
+            paragraph(ui, theme.caption(say(theme, "connect.gateway_words")));
         }
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
         match form.way {
-            InterbusWay::Virtual => typed(ui, skin, say, InterbusForm::of_the_virtual(), &mut form.typed),
+            InterbusWay::Virtual => typed(ui, theme, say, InterbusForm::of_the_virtual(), &mut form.typed),
             InterbusWay::Gateway => {
                 place(
                     ui,
-                    skin,
+                    theme,
                     "connect.device_address",
                     (&mut form.host, "192.168.1.10"),
                     (&mut form.tcp_port, "502"),
                 );
-                registers(ui, skin, form);
+                registers(ui, theme, form);
             }
             InterbusWay::Replay => {
-                recording(ui, skin, &mut form.file, actions);
-                order(ui, skin, form);
+                recording(ui, theme, &mut form.file, actions);
+                order(ui, theme, form);
             }
         }
-        if form.way != InterbusWay::Replay && unfolded(ui, skin, more) {
+        if form.way != InterbusWay::Replay && unfolded(ui, theme, more) {
             if form.way == InterbusWay::Virtual {
-                registers(ui, skin, form);
+                registers(ui, theme, form);
             }
             let (_, rest) = InterbusForm::of_the_link();
-            typed(ui, skin, say, rest, &mut form.typed);
+            typed(ui, theme, say, rest, &mut form.typed);
         }
     }
 }
 
 /// Where the words stand in the gateway.
-fn registers(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
+fn registers(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let (registers, _) = InterbusForm::of_the_link();
-    typed(ui, skin, say, registers, &mut form.typed);
-    order(ui, skin, form);
+    typed(ui, theme, say, registers, &mut form.typed);
+    order(ui, theme, form);
 }
 
-fn order(ui: &mut Ui, skin: &Skin, form: &mut InterbusForm) {
-    let word = say(skin, "connect.word_order");
-    entry(ui, skin, &word, |ui| {
+fn order(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
+    let word = say(theme, "connect.word_order");
+    entry(ui, theme, &word, |ui| {
         let orders = [(false, "connect.high_first"), (true, "connect.low_first")];
-        choice(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, say(skin, id))));
+        choice(ui, &word, &mut form.low_first, orders.map(|(order, id)| (order, say(theme, id))));
     });
 }

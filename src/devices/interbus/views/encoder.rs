@@ -8,144 +8,144 @@ use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, explai
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, paragraph, row, two_columns};
-use crate::ui::{Skin, icons, motor};
+use crate::ui::{Theme, icons, motor};
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let is_profile = encoder.profile().is_some();
     two_columns(
         ui,
-        skin,
+        theme,
         &mut *actions,
         |ui, actions| {
-            identity(ui, skin, encoder, actions);
+            identity(ui, theme, encoder, actions);
             if !is_profile {
-                ui.add_space(skin.space.groups);
-                check(ui, skin, encoder, actions);
+                ui.add_space(theme.space.groups);
+                check(ui, theme, encoder, actions);
             }
         },
         |ui, actions| {
             if is_profile {
-                wiring(ui, skin);
+                wiring(ui, theme);
                 return;
             }
-            sends(ui, skin, encoder, actions);
+            sends(ui, theme, encoder, actions);
             if let Some(motor) = &encoder.motor {
-                ui.add_space(skin.space.groups);
-                motor::card_ui(ui, skin, motor.rpm(), |rpm| {
+                ui.add_space(theme.space.groups);
+                motor::card_ui(ui, theme, motor.rpm(), |rpm| {
                     actions.push(Action::device(encoder.session.id, Interbus::Turn(rpm)))
                 });
             }
         },
     );
     if !is_profile {
-        ui.add_space(skin.space.groups);
-        wiring(ui, skin);
+        ui.add_space(theme.space.groups);
+        wiring(ui, theme);
     }
 }
 
-fn identity(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let ready = encoder.session.is_readable() && (encoder.is_stopped() || encoder.profile().is_some());
     let read = |ui: &mut Ui| {
-        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &skin.say("encoder_card.read")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("encoder_card.read")).clicked() {
             actions.push(Action::Command(encoder.session.id, DeviceCommand::Read));
         }
     };
-    card_with(ui, skin, "encoder_card.title", read, |ui| {
-        let serial = skin.say("encoder_card.serial");
+    card_with(ui, theme, "encoder_card.title", read, |ui| {
+        let serial = theme.say("encoder_card.serial");
         if let Some(survey) = &encoder.survey {
             let identity = &survey.identity;
-            ui.label(skin.value(say(skin, "ib_card.class")));
-            ui.add_space(skin.space.inside);
-            row(ui, skin, &serial, skin.mono(&identity.serial_number));
-            row(ui, skin, &say(skin, "ib_card.version"), skin.mono(identity.software_version.to_string()));
-            row(ui, skin, &say(skin, "ib_card.flags"), skin.words(&words::flags(identity.flags)));
-            row(ui, skin, &say(skin, "ib_card.mode"), skin.words(&explain::startup(identity.mode)));
+            ui.label(theme.value(say(theme, "ib_card.class")));
+            ui.add_space(theme.space.inside);
+            row(ui, theme, &serial, theme.mono(&identity.serial_number));
+            row(ui, theme, &say(theme, "ib_card.version"), theme.mono(identity.software_version.to_string()));
+            row(ui, theme, &say(theme, "ib_card.flags"), theme.words(&words::flags(identity.flags)));
+            row(ui, theme, &say(theme, "ib_card.mode"), theme.words(&explain::startup(identity.mode)));
             let range = words::range(identity.steps, identity.revolutions);
-            row(ui, skin, &say(skin, "ib_card.range"), skin.words(&range));
+            row(ui, theme, &say(theme, "ib_card.range"), theme.words(&range));
             let time = words::read_out_value(ReadOutValue::Minutes(survey.operating_minutes));
-            row(ui, skin, &say(skin, "ib_card.time"), skin.words(&time));
+            row(ui, theme, &say(theme, "ib_card.time"), theme.words(&time));
             let celsius = words::celsius(survey.temperature_tenths);
-            row(ui, skin, &say(skin, "ib_card.temperature"), skin.words(&celsius));
+            row(ui, theme, &say(theme, "ib_card.temperature"), theme.words(&celsius));
         } else if let Some(profile) = encoder.profile() {
-            ui.label(skin.value(say(skin, "ib_card.class")));
-            ui.add_space(skin.space.inside);
-            row(ui, skin, &serial, skin.mono(&profile.identity.serial_number));
+            ui.label(theme.value(say(theme, "ib_card.class")));
+            ui.add_space(theme.space.inside);
+            row(ui, theme, &serial, theme.mono(&profile.identity.serial_number));
             let parameters = &profile.image.parameters;
             let range = words::range(parameters.steps, parameters.revolutions);
-            row(ui, skin, &say(skin, "ib_card.range"), skin.words(&range));
+            row(ui, theme, &say(theme, "ib_card.range"), theme.words(&range));
             let programs = profile.image.known().count();
-            row(ui, skin, &say(skin, "ib_card.programs"), programs.to_string());
+            row(ui, theme, &say(theme, "ib_card.programs"), programs.to_string());
         } else {
-            empty(ui, skin, &say(skin, "ib_card.nothing"), None);
+            empty(ui, theme, &say(theme, "ib_card.nothing"), None);
         }
     });
 }
 
-fn check(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready() && encoder.is_stopped();
-        if enabled_button(ui, ready, icons::LIST_CHECKS, &skin.say("check_card.run")).clicked() {
+        if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Interbus::Check));
         }
     };
-    card_with(ui, skin, "check_card.title", run, |ui| {
-        lines_ui(ui, skin, encoder.check.as_deref(), TEXTS.text("ib_check.nothing"));
+    card_with(ui, theme, "check_card.title", run, |ui| {
+        lines_ui(ui, theme, encoder.check.as_deref(), TEXTS.text("ib_check.nothing"));
     });
 }
 
 /// The word that comes, and what comes: position, speed, or the outputs of a program.
-fn sends(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("ib_sends.title"), |ui| {
+fn sends(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
             None => {
-                empty(ui, skin, &say(skin, "ib_sends.nothing"), None);
+                empty(ui, theme, &say(theme, "ib_sends.nothing"), None);
             }
             Some(reading) => {
-                row(ui, skin, &say(skin, "ib_sends.word"), skin.mono(format!("0x{:08X}", reading.word)));
+                row(ui, theme, &say(theme, "ib_sends.word"), theme.mono(format!("0x{:08X}", reading.word)));
                 let says = said::told(reading.word, &encoder.known());
-                row(ui, skin, &say(skin, "ib_sends.says"), skin.words(&says));
+                row(ui, theme, &say(theme, "ib_sends.says"), theme.words(&says));
                 if let Some(warning) = said::stray(reading.word) {
-                    paragraph(ui, RichText::new(skin.words(&warning)).color(skin.palette.warn));
-                    paragraph(ui, skin.caption(say(skin, "ib_sends.swapped")));
+                    paragraph(ui, RichText::new(theme.words(&warning)).color(theme.palette.warn));
+                    paragraph(ui, theme.caption(say(theme, "ib_sends.swapped")));
                 }
             }
         }
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         if encoder.record.last().is_some_and(|own| matches!(own.reply(), Reply::Echo { .. } | Reply::Busy { .. })) {
-            paragraph(ui, RichText::new(say(skin, "ib_sends.left")).color(skin.palette.warn));
+            paragraph(ui, RichText::new(say(theme, "ib_sends.left")).color(theme.palette.warn));
         }
-        if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &skin.say("lead_back_card.button")).clicked() {
+        if enabled_button(ui, ready, icons::ARROW_U_UP_LEFT, &theme.say("lead_back_card.button")).clicked() {
             actions.push(Action::device(encoder.session.id, Interbus::LeadBack));
         }
         let Some(own) = encoder.mode() else {
-            paragraph(ui, skin.caption(say(skin, "ib_sends.mode_unknown")));
+            paragraph(ui, theme.caption(say(theme, "ib_sends.mode_unknown")));
             return;
         };
-        let word = say(skin, "ib_sends.mode");
+        let word = say(theme, "ib_sends.mode");
         let mut wanted = own;
         let programs = ProgramNumber::all().map(StartupMode::Cams);
         let usual = if own == StartupMode::K2 { StartupMode::K2 } else { StartupMode::K3 };
         let modes = [usual, StartupMode::Velocity].into_iter().chain(programs);
         ui.add_enabled_ui(ready, |ui| {
-            entry(ui, skin, &word, |ui| {
-                choice(ui, &word, &mut wanted, modes.map(|mode| (mode, skin.words(&explain::startup(mode)))));
+            entry(ui, theme, &word, |ui| {
+                choice(ui, &word, &mut wanted, modes.map(|mode| (mode, theme.words(&explain::startup(mode)))));
             });
         });
         if wanted != own {
             actions.push(Action::device(encoder.session.id, Interbus::Select(wanted)));
         }
-        paragraph(ui, skin.caption(say(skin, "ib_sends.mode_words")));
+        paragraph(ui, theme.caption(say(theme, "ib_sends.mode_words")));
     });
 }
 
 const WIRING: [&str; 5] =
     ["ib_wiring.bus", "ib_wiring.supply", "ib_wiring.place", "ib_wiring.gateway", "ib_wiring.manual"];
 
-fn wiring(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, "wiring.title", |ui| {
+fn wiring(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
-            paragraph(ui, skin.label(say(skin, note)));
+            paragraph(ui, theme.label(say(theme, note)));
         }
     });
 }
@@ -154,7 +154,7 @@ fn wiring(ui: &mut Ui, skin: &Skin) {
 mod tests {
     use super::WIRING;
     use crate::devices::interbus::state::TEXTS;
-    use crate::ui::wires::check_notes;
+    use crate::ui::wiring::check_notes;
 
     /// Issue 22.23: INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, in: male, out: female; no addresses; shield to
     /// the housing, Loop: housing to PE), 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2 MBaud).

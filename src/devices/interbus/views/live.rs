@@ -7,7 +7,7 @@ use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::StartupMode;
 use crate::devices::interbus::state::{Encoder, TEXTS};
 use crate::devices::interbus::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{dot, row};
 use crate::ui::panels::live::{LOW, mark};
 
@@ -16,21 +16,21 @@ const LAMPS: f32 = 280.0;
 /// Height of a row of them.
 const LAMP: f32 = 16.0;
 
-pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
+pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let last = encoder.record.last();
     let (main, unit) = match (last.and_then(Reading::rpm), encoder.position()) {
-        (Some(rpm), _) => (rpm.to_string(), skin.say("unit.revolutions_per_minute")),
-        (None, Some(position)) => (position.to_string(), skin.say("unit.steps")),
+        (Some(rpm), _) => (rpm.to_string(), theme.say("unit.revolutions_per_minute")),
+        (None, Some(position)) => (position.to_string(), theme.say("unit.steps")),
         (None, None) => ("–".to_owned(), String::new()),
     };
-    let palette = skin.palette;
+    let palette = theme.palette;
     ui.horizontal(|ui| {
-        ui.label(RichText::new(main).font(egui::FontId::monospace(skin.sizes.live)).color(ink));
-        ui.label(skin.label(unit));
+        ui.label(RichText::new(main).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
+        ui.label(theme.label(unit));
         if last.is_some_and(|reading| !reading.is_valid()) {
-            mark(ui, skin, "live.invalid", palette.bad);
+            mark(ui, theme, "live.invalid", palette.bad);
         } else if last.is_some_and(|reading| reading.stray() != 0) {
-            mark(ui, skin, "live.warning", palette.warn);
+            mark(ui, theme, "live.warning", palette.warn);
         }
     });
     let Some(reading) = last else { return };
@@ -38,23 +38,23 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
     let place = reading.place();
     if ui.available_height() < LOW {
         // In a low window the plot needs the room.
-        let place =
-            place.map(|own| format!("{} {} · {}° · ", skin.say("live.turns"), own.turns, skin.number(own.degrees, 2)));
+        let place = place
+            .map(|own| format!("{} {} · {}° · ", theme.say("live.turns"), own.turns, theme.number(own.degrees, 2)));
         let words = format!("{}{word}", place.unwrap_or_default());
-        ui.add(egui::Label::new(skin.caption(words)).truncate().selectable(true));
+        ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));
     } else {
         if let Some(place) = place {
-            row(ui, skin, &skin.say("live.turns"), skin.mono(place.turns.to_string()));
-            row(ui, skin, &skin.say("live.step"), skin.mono(place.steps.to_string()));
-            row(ui, skin, &say(skin, "ib_live.angle"), skin.mono(format!("{} °", skin.number(place.degrees, 3))));
+            row(ui, theme, &theme.say("live.turns"), theme.mono(place.turns.to_string()));
+            row(ui, theme, &theme.say("live.step"), theme.mono(place.steps.to_string()));
+            row(ui, theme, &say(theme, "ib_live.angle"), theme.mono(format!("{} °", theme.number(place.degrees, 3))));
         }
-        row(ui, skin, &skin.say("live.raw"), skin.mono(word));
+        row(ui, theme, &theme.say("live.raw"), theme.mono(word));
     }
     if let Some(StartupMode::Cams(program)) = reading.mode
         && let Some(output) = reading.cams()
     {
         let text = TEXTS.text("ib_startup.program").with("program", program.get());
-        ui.label(skin.caption(skin.words(&text)));
+        ui.label(theme.caption(theme.words(&text)));
         let beside = if ui.available_width() < LAMPS { 4 } else { 8 };
         ui.scope(|ui| {
             // Lamps are read, not touched.
@@ -64,7 +64,7 @@ pub(crate) fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
                     for cam in first..first + beside {
                         let on = output.outputs >> cam & 1 == 1;
                         dot(ui, on, if on { palette.good } else { palette.muted });
-                        ui.label(skin.caption(cam.to_string()));
+                        ui.label(theme.caption(cam.to_string()));
                     }
                 });
             }

@@ -6,18 +6,18 @@ use egui::{RichText, Ui};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::Encoder;
 use crate::ui::controls::paragraph;
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Draws it, but for the program that is shown with its own.
-pub(super) fn marks_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: Option<ProgramNumber>) {
+pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
     let marks = encoder.marks_beside(shown);
     for mark in &marks {
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-            paragraph(ui, skin.words(mark));
+            ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+            paragraph(ui, theme.words(mark));
         });
     }
     if !marks.is_empty() {
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
     }
 }

@@ -3,7 +3,7 @@
 mod cams;
 mod connect_form;
 mod encoder;
-mod lamps;
+mod leds;
 mod live;
 mod marks;
 mod parameters;
@@ -17,7 +17,7 @@ use egui::Ui;
 use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::interbus::state::{Encoder, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Skin, backups, foot, icons, page};
+use crate::ui::{Theme, backups, edit_bar, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,11 +54,11 @@ impl Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(crate) struct View {
-    parameters: parameters::View,
-    cams: cams::View,
-    reader: reader::View,
-    lamps: lamps::View,
+pub(crate) struct InterbusUiState {
+    parameters: parameters::EncoderParametersUiState,
+    cams: cams::CamsUiState,
+    reader: reader::WordReaderUiState,
+    lamps: leds::LedsUiState,
 }
 
 /// The view of INTERBUS encoders.
@@ -67,7 +67,7 @@ pub(crate) struct InterbusView;
 impl TypedDeviceView for InterbusView {
     type Device = Encoder;
     type Page = Page;
-    type Memory = View;
+    type Memory = InterbusUiState;
     type ConnectForm = connect_form::InterbusConnectForm;
 
     const HAS_UNDO_KEYS: bool = true;
@@ -86,49 +86,49 @@ impl TypedDeviceView for InterbusView {
 
     fn page_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         (studio, device): (&Studio, &AnyDevice),
         encoder: &Encoder,
-        (page, view): (Page, &mut View),
+        (page, view): (Page, &mut InterbusUiState),
         actions: &mut Vec<Action>,
     ) {
         if page.has_foot() {
             // Stays where it is while the rest scrolls.
-            let around = page::sides(ui, skin);
+            let around = page::sides(ui, theme);
             let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
                 .frame(egui::Frame::NONE.inner_margin(margin))
                 .show_separator_line(false)
-                .show(ui, |ui| foot::foot_ui(ui, skin, (studio, device), foot::Edited::Values, actions));
+                .show(ui, |ui| edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
         }
-        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| {
+        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| {
             if page != Page::Backups {
-                standstill::bar_ui(ui, skin, encoder, actions);
+                standstill::bar_ui(ui, theme, encoder, actions);
             }
             let shown = (page == Page::Cams).then(|| view.cams.shown());
-            marks::marks_ui(ui, skin, encoder, shown);
+            marks::marks_ui(ui, theme, encoder, shown);
             match page {
-                Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
-                Page::Parameters => parameters::page_ui(ui, skin, encoder, &mut view.parameters, actions),
-                Page::Cams => cams::page_ui(ui, skin, encoder, &mut view.cams, actions),
+                Page::Encoder => encoder::page_ui(ui, theme, encoder, actions),
+                Page::Parameters => parameters::page_ui(ui, theme, encoder, &mut view.parameters, actions),
+                Page::Cams => cams::page_ui(ui, theme, encoder, &mut view.cams, actions),
                 Page::Diagnosis => {
-                    read_outs::cards_ui(ui, skin, encoder, actions);
-                    ui.add_space(skin.space.groups);
-                    reader::card_ui(ui, skin, &mut view.reader);
-                    ui.add_space(skin.space.groups);
-                    lamps::cards_ui(ui, skin, &mut view.lamps);
+                    read_outs::cards_ui(ui, theme, encoder, actions);
+                    ui.add_space(theme.space.groups);
+                    reader::card_ui(ui, theme, &mut view.reader);
+                    ui.add_space(theme.space.groups);
+                    leds::cards_ui(ui, theme, &mut view.lamps);
                 }
-                Page::Backups => backups::page_ui(ui, skin, device, actions),
+                Page::Backups => backups::page_ui(ui, theme, device, actions),
             }
         });
     }
 
-    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
-        live::value_ui(ui, skin, encoder, ink);
+    fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, theme, encoder, ink);
     }
 }
 
 /// A text of this folder's catalogue, or a common one, in the window's language.
-pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
-    skin.words(&TEXTS.text(id))
+pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+    theme.words(&TEXTS.text(id))
 }

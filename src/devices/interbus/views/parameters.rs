@@ -16,11 +16,11 @@ use crate::devices::interbus::state::{Action as Interbus, Encoder, cams, explain
 use crate::ui::controls::{
     card, choice, empty, enabled_button, entry, paragraph, problem, row, settled_entry, two_columns,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed and does not count yet.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct EncoderParametersUiState {
     drafts: BTreeMap<&'static str, Option<(String, Option<Text>)>>,
     preset: String,
     preset_problem: Option<Text>,
@@ -31,34 +31,46 @@ const NUMBER: f32 = 112.0;
 /// Height of the list of words.
 const WORDS: f32 = 240.0;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut EncoderParametersUiState,
+    actions: &mut Vec<Action>,
+) {
     let is_profile = encoder.profile().is_some();
     two_columns(
         ui,
-        skin,
+        theme,
         (actions, view),
         |ui, (actions, view)| {
-            table(ui, skin, encoder, view, actions);
+            table(ui, theme, encoder, view, actions);
         },
         |ui, (actions, view)| {
             if is_profile {
                 return;
             }
-            preset(ui, skin, encoder, view, actions);
-            ui.add_space(skin.space.groups);
-            wear(ui, skin, encoder);
+            preset(ui, theme, encoder, view, actions);
+            ui.add_space(theme.space.groups);
+            wear(ui, theme, encoder);
         },
     );
     if !is_profile {
-        ui.add_space(skin.space.groups);
-        handshake(ui, skin, encoder);
+        ui.add_space(theme.space.groups);
+        handshake(ui, theme, encoder);
     }
 }
 
-fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("ib_set.title"), |ui| {
+fn table(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut EncoderParametersUiState,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, theme, TEXTS.text("ib_set.title"), |ui| {
         let (Some(device), Some(wanted)) = (encoder.staged.device(), encoder.staged.wanted()) else {
-            empty(ui, skin, &say(skin, "ib_set.nothing"), None);
+            empty(ui, theme, &say(theme, "ib_set.nothing"), None);
             return;
         };
         let id = encoder.session.id;
@@ -66,13 +78,13 @@ fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
         for parameter in
             [Parameter::Turns, Parameter::Steps, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift]
         {
-            let word = skin.words(&words::parameter(parameter));
+            let word = theme.words(&words::parameter(parameter));
             let (Some(before), Some(now)) = (old.value(parameter), new.value(parameter)) else { continue };
-            entry(ui, skin, &word, |ui| {
+            entry(ui, theme, &word, |ui| {
                 if parameter == Parameter::Direction {
                     let mut direction = new.direction;
                     let both = [Direction::Clockwise, Direction::Counterclockwise];
-                    let both = both.map(|own| (own, skin.words(&explain::direction(own))));
+                    let both = both.map(|own| (own, theme.words(&explain::direction(own))));
                     if choice(ui, &word, &mut direction, both) {
                         actions.push(Action::device(id, Interbus::Edit(Box::new(Edit::Direction(direction)))));
                     }
@@ -86,20 +98,20 @@ fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                 }
                 if before != now {
                     let was = TEXTS.text("ib_set.was").with_text("value", words::setting(parameter, before));
-                    ui.add(egui::Label::new(RichText::new(skin.words(&was)).color(skin.palette.staged)).truncate());
+                    ui.add(egui::Label::new(RichText::new(theme.words(&was)).color(theme.palette.staged)).truncate());
                 } else if let Ok(gear) = new.gear()
                     && parameter != Parameter::Direction
                 {
                     let range = parameter.range(gear);
-                    let range = skin.caption(format!("{} … {}", range.start(), range.end()));
+                    let range = theme.caption(format!("{} … {}", range.start(), range.end()));
                     ui.add(egui::Label::new(range).truncate());
                 }
             });
             let refused = view.drafts.get(parameter.name()).and_then(|draft| draft.as_ref()?.1.as_ref());
-            problem(ui, skin, refused);
+            problem(ui, theme, refused);
         }
-        problem(ui, skin, encoder.refusal.as_ref());
-        ui.add_space(skin.space.inside);
+        problem(ui, theme, encoder.refusal.as_ref());
+        ui.add_space(theme.space.inside);
         match new.gear() {
             Ok(gear) => {
                 let per_turn = f64::from(gear.steps()) / f64::from(gear.turns());
@@ -107,33 +119,39 @@ fn table(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: 
                     .text("ib_set.gear")
                     .with_number("steps", per_turn, if gear.steps() % gear.turns() == 0 { 0 } else { 4 })
                     .with_number("degrees", 360.0 / per_turn, 5);
-                paragraph(ui, skin.label(skin.words(&text)));
+                paragraph(ui, theme.label(theme.words(&text)));
                 if gear.steps() % gear.turns() != 0 {
-                    paragraph(ui, skin.caption(say(skin, "ib_set.uneven")));
+                    paragraph(ui, theme.caption(say(theme, "ib_set.uneven")));
                 }
             }
             Err(error) => {
-                problem(ui, skin, Some(&cams::words::gear(&error)));
+                problem(ui, theme, Some(&cams::words::gear(&error)));
             }
         }
         if encoder.identity().is_some_and(|own| own.flags.steps_minus_one()) {
-            paragraph(ui, skin.caption(say(skin, "ib_set.steps_minus_one")));
+            paragraph(ui, theme.caption(say(theme, "ib_set.steps_minus_one")));
         }
-        paragraph(ui, skin.caption(say(skin, "ib_set.mounting")));
+        paragraph(ui, theme.caption(say(theme, "ib_set.mounting")));
     });
 }
 
-fn preset(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("ib_preset.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "ib_preset.words")));
+fn preset(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut EncoderParametersUiState,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, theme, TEXTS.text("ib_preset.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "ib_preset.words")));
         let id = encoder.session.id;
         let Some(parameters) = encoder.staged.device().map(|image| image.parameters) else { return };
         let ready = encoder.session.is_ready() && encoder.is_stopped();
-        let word = say(skin, "ib_preset.value");
-        entry(ui, skin, &word, |ui| {
+        let word = say(theme, "ib_preset.value");
+        entry(ui, theme, &word, |ui| {
             let hint = parameters.preset.to_string();
             crate::ui::controls::text_entry(ui, &mut view.preset, NUMBER, &word, &hint);
-            if enabled_button(ui, ready, icons::TARGET, &say(skin, "ib_preset.set")).clicked() {
+            if enabled_button(ui, ready, icons::TARGET, &say(theme, "ib_preset.set")).clicked() {
                 match forms::preset(&view.preset, &parameters) {
                     Ok(value) => {
                         view.preset_problem = None;
@@ -143,57 +161,57 @@ fn preset(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
                 }
             }
         });
-        problem(ui, skin, view.preset_problem.as_ref());
+        problem(ui, theme, view.preset_problem.as_ref());
         if let Some(position) = encoder.position() {
-            row(ui, skin, &say(skin, "ib_preset.now"), skin.mono(position.to_string()));
+            row(ui, theme, &say(theme, "ib_preset.now"), theme.mono(position.to_string()));
         }
-        ui.add_space(skin.space.inside);
-        if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "ib_preset.default")).clicked() {
+        ui.add_space(theme.space.inside);
+        if enabled_button(ui, ready, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ib_preset.default")).clicked() {
             actions.push(Action::device(id, Interbus::Plan(Box::new(Change::Default))));
         }
-        paragraph(ui, skin.caption(say(skin, "ib_preset.default_words")));
+        paragraph(ui, theme.caption(say(theme, "ib_preset.default_words")));
     });
 }
 
 /// How often the memory has stored, as far as this computer has seen it.
-fn wear(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, TEXTS.text("ib_wear.title"), |ui| {
+fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+    card(ui, theme, TEXTS.text("ib_wear.title"), |ui| {
         let Some(stores) = encoder.stores() else {
-            paragraph(ui, skin.label(say(skin, "ib_wear.unknown")));
+            paragraph(ui, theme.label(say(theme, "ib_wear.unknown")));
             return;
         };
-        let palette = skin.palette;
+        let palette = theme.palette;
         let ink = match Wear::of(stores) {
             Some(Wear::Worn(_) | Wear::Unknown) => palette.bad,
             Some(Wear::Known(_) | Wear::Ask(_)) => palette.warn,
             None => palette.accent,
         };
         let text = TEXTS.text("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
-        ui.label(skin.words(&text));
+        ui.label(theme.words(&text));
         let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
         let text =
             TEXTS.text("ib_wear.words").with("warning", WEAR_WARNING).with("ask", WEAR_ASK).with("limit", WEAR_LIMIT);
-        paragraph(ui, skin.caption(skin.words(&text)));
+        paragraph(ui, theme.caption(theme.words(&text)));
     });
 }
 
 /// The words of the last handshakes.
-fn handshake(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, TEXTS.text("ib_handshake.title"), |ui| {
+fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+    card(ui, theme, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {
-            paragraph(ui, skin.label(say(skin, "ib_handshake.nothing")));
+            paragraph(ui, theme.label(say(theme, "ib_handshake.nothing")));
             return;
         }
         let list = egui::ScrollArea::vertical().id_salt("handshake").max_height(WORDS).stick_to_bottom(true);
         list.auto_shrink([false, true]).show(ui, |ui| {
             egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
                 for step in &encoder.handshake {
-                    ui.label(skin.mono(format!("0x{:08X}", step.out)));
-                    ui.label(skin.label(skin.words(&said::asked(step.command))));
-                    ui.label(skin.mono(format!("0x{:08X}", step.input)));
+                    ui.label(theme.mono(format!("0x{:08X}", step.out)));
+                    ui.label(theme.label(theme.words(&said::asked(step.command))));
+                    ui.label(theme.mono(format!("0x{:08X}", step.input)));
                     let known = said::Known::of(step.command, encoder.shift());
-                    ui.add(egui::Label::new(skin.label(skin.words(&said::told(step.input, &known)))).truncate());
+                    ui.add(egui::Label::new(theme.label(theme.words(&said::told(step.input, &known)))).truncate());
                     ui.end_row();
                 }
             });

@@ -7,51 +7,51 @@ use crate::devices::interbus::protocol::{READ_OUTS, ReadOut};
 use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, explain, words};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, icon_button, paragraph};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Width of the column of names.
 const NAMES: f32 = 168.0;
 /// Width of a register of the chip.
 const REGISTER: f32 = 132.0;
 
-pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     if encoder.profile().is_some() {
         return;
     }
     let ready = encoder.session.is_ready() && encoder.is_stopped();
     let id = encoder.session.id;
-    card(ui, skin, TEXTS.text("ib_values.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "ib_values.words")));
+    card(ui, theme, TEXTS.text("ib_values.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "ib_values.words")));
         let wide = ui.available_width() > 640.0;
         let columns = if wide { 2 } else { 1 };
         egui::Grid::new("read_outs").num_columns(columns * 3).spacing([12.0, 4.0]).show(ui, |ui| {
             for (at, row) in READ_OUTS.iter().enumerate() {
-                let name = skin.words(&explain::read_out(row.read_out));
+                let name = theme.words(&explain::read_out(row.read_out));
                 if icon_button(ui, ready, icons::ARROW_CLOCKWISE, &name).clicked() {
                     actions.push(Action::device(id, Interbus::ReadOut(row.read_out)));
                 }
                 ui.horizontal(|ui| {
                     ui.set_min_width(NAMES);
-                    ui.label(skin.label(&name));
+                    ui.label(theme.label(&name));
                 });
                 let value = encoder.read_out(row.read_out);
-                let value = value.map(|value| skin.words(&words::read_value(row.read_out, value)));
-                ui.add(egui::Label::new(skin.mono(value.unwrap_or_else(|| "–".to_owned()))).selectable(true));
+                let value = value.map(|value| theme.words(&words::read_value(row.read_out, value)));
+                ui.add(egui::Label::new(theme.mono(value.unwrap_or_else(|| "–".to_owned()))).selectable(true));
                 if at % columns == columns - 1 {
                     ui.end_row();
                 }
             }
         });
-        ui.add_space(skin.space.between);
-        ui.label(skin.heading(say(skin, "ib_values.chip")));
-        paragraph(ui, skin.caption(say(skin, "ib_values.chip_words")));
+        ui.add_space(theme.space.between);
+        ui.label(theme.heading(say(theme, "ib_values.chip")));
+        paragraph(ui, theme.caption(say(theme, "ib_values.chip_words")));
         ui.horizontal_wrapped(|ui| {
             for what in (0..16).filter_map(ReadOut::chip_register) {
-                let name = skin.words(&explain::read_out(what));
+                let name = theme.words(&explain::read_out(what));
                 let number = what.register().unwrap_or_default();
                 let value = encoder.read_out(what).map_or_else(|| "–".to_owned(), |own| format!("0x{:X}", own.get()));
                 let button =
-                    egui::Button::new(skin.mono(format!("{number:X}  {value}"))).min_size([REGISTER, 28.0].into());
+                    egui::Button::new(theme.mono(format!("{number:X}  {value}"))).min_size([REGISTER, 28.0].into());
                 if crate::ui::controls::name(ui.add_enabled(ready, button), ready, &name).clicked() {
                     actions.push(Action::device(id, Interbus::ReadOut(what)));
                 }

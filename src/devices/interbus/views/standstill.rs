@@ -6,32 +6,32 @@ use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::state::{Action as Interbus, Encoder};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{enabled_button, paragraph};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Asks for it, and offers what it opens.
-pub(super) fn bar_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, actions: &mut Vec<Action>) {
+pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     if !encoder.asks_for_standstill() {
         return;
     }
     let id = encoder.session.id;
     let mut stopped = encoder.is_stopped();
-    skin.sunken().show(ui, |ui| {
+    theme.sunken().show(ui, |ui| {
         ui.set_width(ui.available_width().max(0.0));
         ui.horizontal_wrapped(|ui| {
-            let ink = if stopped { skin.palette.good } else { skin.palette.warn };
+            let ink = if stopped { theme.palette.good } else { theme.palette.warn };
             ui.label(RichText::new(if stopped { icons::CHECK_CIRCLE } else { icons::WARNING }).color(ink));
-            if ui.checkbox(&mut stopped, say(skin, "ib_stop.stands")).changed() {
+            if ui.checkbox(&mut stopped, say(theme, "ib_stop.stands")).changed() {
                 actions.push(Action::device(id, Interbus::Stopped(stopped)));
             }
             if encoder.survey.is_none() {
                 let ready = encoder.is_stopped() && encoder.session.is_ready();
-                let word = say(skin, "ib_stop.read");
+                let word = say(theme, "ib_stop.read");
                 if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &word).clicked() {
                     actions.push(Action::Command(id, DeviceCommand::Read));
                 }
             }
         });
-        paragraph(ui, skin.caption(say(skin, "ib_stop.words")));
+        paragraph(ui, theme.caption(say(theme, "ib_stop.words")));
     });
-    ui.add_space(skin.space.groups);
+    ui.add_space(theme.space.groups);
 }

@@ -8,7 +8,7 @@ use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::protocol::{
-    Finding, Flags, FrameTextError, Layout, Meaning, Place, Reading, Role, frame_bits, parse_frame,
+    Finding, Flags, FrameTextError, Layout, Location, Meaning, Reading, Role, frame_bits, parse_frame,
 };
 use crate::devices::ssi::state::explain as words;
 
@@ -17,7 +17,7 @@ pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDe
     // All are looked at before any is told.
     let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
     for frame in frames {
-        let told = Told::new(&layout, frame);
+        let told = DecodedFrame::new(&layout, frame);
         output.show(&told.json(), &told.text())?;
     }
     Ok(Done::Well)
@@ -32,15 +32,15 @@ fn frame(layout: &Layout, text: &str) -> Result<u64> {
 }
 
 /// A frame with what it says.
-pub(super) struct Told<'a> {
+pub(super) struct DecodedFrame<'a> {
     pub(super) layout: &'a Layout,
     pub(super) frame: u64,
     pub(super) reading: Reading,
 }
 
-impl<'a> Told<'a> {
+impl<'a> DecodedFrame<'a> {
     pub(super) fn new(layout: &'a Layout, frame: u64) -> Self {
-        Told { layout, frame, reading: layout.decode(frame) }
+        DecodedFrame { layout, frame, reading: layout.decode(frame) }
     }
 
     pub(super) fn is_valid(&self) -> bool {
@@ -48,7 +48,7 @@ impl<'a> Told<'a> {
     }
 
     /// The position, if the bits are one, and what it is.
-    pub(super) fn place(&self) -> Option<(u64, Place)> {
+    pub(super) fn place(&self) -> Option<(u64, Location)> {
         let range = self.layout.descriptor().range;
         let is_none = self.reading.flags.has(Flags::CODE);
         (!is_none).then(|| (self.reading.position, range.place(self.reading.position)))
@@ -69,11 +69,11 @@ impl<'a> Told<'a> {
         json.insert("raw_bits".to_owned(), json!(self.bits()));
         json.insert("position".to_owned(), json!(place.map(|(position, _)| position)));
         let (turns, steps, degrees) = match place {
-            Some((_, Place::Shaft { turns, steps, degrees })) => (json!(turns), json!(steps), json!(degrees)),
+            Some((_, Location::Shaft { turns, steps, degrees })) => (json!(turns), json!(steps), json!(degrees)),
             _ => (Json::Null, Json::Null, Json::Null),
         };
         json.extend([("turns".to_owned(), turns), ("steps".to_owned(), steps), ("degrees".to_owned(), degrees)]);
-        if let Some((_, Place::Length { millimetres })) = place {
+        if let Some((_, Location::Length { millimetres })) = place {
             json.insert("millimetres".to_owned(), json!(millimetres));
         }
         json.insert("valid".to_owned(), json!(self.is_valid()));
@@ -86,11 +86,11 @@ impl<'a> Told<'a> {
         let mut lines = Lines::default();
         lines.add("frame", fields(self.layout, self.frame));
         match self.place() {
-            Some((position, Place::Shaft { turns, steps, degrees })) => {
+            Some((position, Location::Shaft { turns, steps, degrees })) => {
                 lines.add("position", position);
                 lines.add("turns", turns).add("steps", steps).add("degrees", format!("{degrees:.4}"));
             }
-            Some((position, Place::Length { millimetres })) => {
+            Some((position, Location::Length { millimetres })) => {
                 lines.add("position", position).add("millimetres", format!("{millimetres:.4}"));
             }
             None => {
@@ -173,10 +173,10 @@ fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
     let named = position.as_deref().map(|text| number("position", text, last)).transpose()?;
     let of_shaft = turns.is_some() || steps.is_some();
     match (named, range.place(named.unwrap_or(last))) {
-        (_, Place::Length { .. }) if of_shaft => {
+        (_, Location::Length { .. }) if of_shaft => {
             Err(Failure::Usage("a length has no turns and steps; give --position".to_owned()))
         }
-        (Some(position), Place::Shaft { turns: own_turns, steps: own_steps, .. }) => {
+        (Some(position), Location::Shaft { turns: own_turns, steps: own_steps, .. }) => {
             for (what, text, own) in [("turns", turns, own_turns), ("steps", steps, own_steps)] {
                 let Some(text) = text else { continue };
                 if number(what, text, u64::MAX)? != own {
@@ -187,9 +187,9 @@ fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
             }
             Ok(position)
         }
-        (Some(position), Place::Length { .. }) => Ok(position),
-        (None, Place::Length { .. }) => Err(Failure::Usage("give --position".to_owned())),
-        (None, Place::Shaft { turns: most, .. }) => {
+        (Some(position), Location::Length { .. }) => Ok(position),
+        (None, Location::Length { .. }) => Err(Failure::Usage("give --position".to_owned())),
+        (None, Location::Shaft { turns: most, .. }) => {
             let turns = turns.as_deref().map_or(Ok(0), |text| number("turns", text, most))?;
             // The last step of this turn: one before the next turn begins, or the last position of all.
             let begins = range.position(turns, 0).unwrap_or(0);

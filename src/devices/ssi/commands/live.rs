@@ -3,7 +3,7 @@
 use serde_json::{Value as Json, json};
 
 use super::args::{LayoutOption, SsiLayout};
-use super::frames::{Told, name};
+use super::frames::{DecodedFrame, name};
 use super::layout::{Chosen, choose};
 use super::run::{begin, words};
 use crate::analysis::Time;
@@ -13,7 +13,7 @@ use crate::cli::positions::readings;
 use crate::cli::runner::Ended;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::jobs::{Ssi, SsiJob};
-use crate::devices::ssi::protocol::{Finding, Layout, Meaning, Place, Tally};
+use crate::devices::ssi::protocol::{Finding, Layout, Location, Meaning, Tally};
 use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
@@ -41,7 +41,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         |_, came| {
             let came = came.map_err(|error| Ended::<Ssi>::Job(error).into_failure())?;
             for (at, word) in words(came)?.timed() {
-                let told = Told::new(&chosen.layout, word);
+                let told = DecodedFrame::new(&chosen.layout, word);
                 let first = *first.get_or_insert(Time::from(at));
                 let begun = tally.note(&chosen.layout, told.reading, at.into());
                 for finding in begun.iter().filter(|one| is_told(one, first == at.into())) {
@@ -81,13 +81,13 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(told: &Told<'_>) -> Self {
+    fn of(told: &DecodedFrame<'_>) -> Self {
         let none = Columns { turns: None, steps: None, degrees: None, millimetres: None };
         match told.place() {
-            Some((_, Place::Shaft { turns, steps, degrees })) => {
+            Some((_, Location::Shaft { turns, steps, degrees })) => {
                 Columns { turns: Some(turns), steps: Some(steps), degrees: Some(degrees), ..none }
             }
-            Some((position, Place::Length { millimetres })) => {
+            Some((position, Location::Length { millimetres })) => {
                 Columns { steps: Some(position), millimetres: Some(millimetres), ..none }
             }
             None => none,
@@ -95,7 +95,7 @@ impl Columns {
     }
 }
 
-fn show(output: &Output, at: Moment, told: &Told<'_>) -> Result<()> {
+fn show(output: &Output, at: Moment, told: &DecodedFrame<'_>) -> Result<()> {
     let t = at.since_start().as_secs_f64();
     let Columns { turns, steps, degrees, millimetres } = Columns::of(told);
     let mut json = json!({
@@ -116,15 +116,15 @@ fn show(output: &Output, at: Moment, told: &Told<'_>) -> Result<()> {
     output.show(&json, &format!("{t:10.3} s  0x{:0digits$X}  {}{valid}\n", told.frame, place(told)))
 }
 
-fn place(told: &Told<'_>) -> String {
+fn place(told: &DecodedFrame<'_>) -> String {
     match told.place() {
-        Some((_, Place::Shaft { turns, steps, degrees })) => format!("turn {turns}, step {steps}, {degrees:.6}°"),
-        Some((position, Place::Length { millimetres })) => format!("step {position}, {millimetres:.6} mm"),
+        Some((_, Location::Shaft { turns, steps, degrees })) => format!("turn {turns}, step {steps}, {degrees:.6}°"),
+        Some((position, Location::Length { millimetres })) => format!("step {position}, {millimetres:.6} mm"),
         None => "no position".to_owned(),
     }
 }
 
-fn row(at: Moment, told: &Told<'_>) -> String {
+fn row(at: Moment, told: &DecodedFrame<'_>) -> String {
     fn cell<T: ToString>(value: Option<T>) -> String {
         value.map_or_else(String::new, |value| value.to_string())
     }
@@ -148,7 +148,7 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
     let Some((_, word)) = words.timed().next() else {
         return Err(Failure::Failed(vec!["The adapter gave no word. Try again.".to_owned()]));
     };
-    let told = Told::new(&chosen.layout, word);
+    let told = DecodedFrame::new(&chosen.layout, word);
     let findings = chosen.layout.findings(told.reading);
     let of = |meaning| findings.iter().filter(move |finding| finding.meaning() == meaning);
     let list = |meaning| of(meaning).map(|finding| item(&chosen.layout, finding)).collect::<Vec<_>>();

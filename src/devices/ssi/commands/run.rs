@@ -10,7 +10,7 @@ use crate::cli::args::Common;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::Output;
 use crate::cli::runner::{self, Runs, unexpected};
-use crate::devices::ssi::jobs::{Doing, Ssi, SsiJob, SsiOutput};
+use crate::devices::ssi::jobs::{JobStep, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{Asking, Words};
 use crate::devices::ssi::protocol::Reads;
 use crate::devices::ssi::state::explain as words;
@@ -21,7 +21,7 @@ pub(super) type Runner = runner::Runner<Ssi>;
 
 impl Runs for Ssi {
     /// How words are taken where nothing else says so: as the link does.
-    type Kept = Asking;
+    type Context = Asking;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
     fn begin(session: &mut Session<Self>, _given: &Given) -> Asking {
@@ -32,7 +32,7 @@ impl Runs for Ssi {
         match *remark {}
     }
 
-    fn step(_: &Doing) -> String {
+    fn step(_: &JobStep) -> String {
         "words".to_owned()
     }
 }

@@ -17,7 +17,7 @@ use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::{Desk, Device, EndedEarly, Progress, Session, Tell, Watched};
+use crate::worker::{Device, EndedEarly, Progress, Session, SessionContext, Tell, Watched};
 
 /// An SSI encoder behind its adapter.
 pub struct Ssi {
@@ -52,12 +52,12 @@ pub enum SsiOutput {
     /// The word, a run of one.
     Read(Words),
     /// What the device check found.
-    Check(Vec<check::Line>),
+    Check(Vec<check::SsiStepResult>),
 }
 
 /// The step that is told of a job: words are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Doing;
+pub struct JobStep;
 
 /// Why a job ended early.
 pub type JobError = Error;
@@ -79,7 +79,7 @@ impl fmt::Debug for Ssi {
 
 impl Ssi {
     /// The host's side of the line.
-    fn master<'a>(&'a mut self, desk: &'a mut Desk) -> Master<'a> {
+    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }
 }
@@ -118,17 +118,17 @@ impl Device for Ssi {
     type Output = SsiOutput;
     type Error = JobError;
     /// Whatever there is to say stands in the words.
-    type Remark = Infallible;
+    type DeviceMessage = Infallible;
     type Sample = Words;
     /// There is nothing but words.
     type Watch = Infallible;
-    type Doing = Doing;
+    type JobStep = JobStep;
 
     fn run(
         &mut self,
-        desk: &mut Desk,
+        desk: &mut SessionContext,
         job: SsiJob,
-        tell: &mut dyn FnMut(Tell<Infallible, Doing>),
+        tell: &mut dyn FnMut(Tell<Infallible, JobStep>),
     ) -> Result<SsiOutput, JobError> {
         let mut master = self.master(desk);
         Ok(match job {
@@ -136,13 +136,13 @@ impl Device for Ssi {
             SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
             SsiJob::Read => SsiOutput::Read(master.word()?),
             SsiJob::Check(layout) => {
-                let progress = &mut |done, total| tell(Tell::Progress(Progress { done, total, what: Doing }));
+                let progress = &mut |done, total| tell(Tell::Progress(Progress { done, total, what: JobStep }));
                 SsiOutput::Check(check::check(&mut master, &layout, progress)?)
             }
         })
     }
 
-    fn pace(&mut self, desk: &mut Desk, interval: Option<Duration>) {
+    fn pace(&mut self, desk: &mut SessionContext, interval: Option<Duration>) {
         let streamed = interval.filter(|interval| *interval <= STREAMED);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
@@ -156,14 +156,14 @@ impl Device for Ssi {
         }
     }
 
-    fn sample(&mut self, desk: &mut Desk) -> Result<Words, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<Words, JobError> {
         match self.streamed_us {
             Some(period_us) => self.master(desk).words(period_us),
             None => self.master(desk).next_word(),
         }
     }
 
-    fn watch(&mut self, _desk: &mut Desk, what: &Infallible) -> Result<Watched<Words>, JobError> {
+    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<Words>, JobError> {
         match *what {}
     }
 
@@ -171,7 +171,7 @@ impl Device for Ssi {
         self.wire.check()
     }
 
-    fn leave(&mut self, desk: &mut Desk) {
+    fn leave(&mut self, desk: &mut SessionContext) {
         if let Err(error) = self.master(desk).leave_supply() {
             tracing::warn!("the encoder's supply could not be switched off: {error}");
         }

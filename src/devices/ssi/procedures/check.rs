@@ -15,7 +15,7 @@ pub const WORDS: u64 = 50;
 const TREMBLES: u64 = 4;
 
 /// One line of the check.
-pub type Line = check::Line<Step, Finding>;
+pub type SsiStepResult = check::StepResult<Step, Finding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,7 +93,11 @@ pub enum Finding {
 ///
 /// # Errors
 /// Why no words come.
-pub fn check(master: &mut Master<'_>, layout: &Layout, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Line>, Error> {
+pub fn check(
+    master: &mut Master<'_>,
+    layout: &Layout,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<SsiStepResult>, Error> {
     let identity = master.hello()?;
     let mut words = Vec::new();
     for done in 0..WORDS {
@@ -104,7 +108,7 @@ pub fn check(master: &mut Master<'_>, layout: &Layout, progress: &mut dyn FnMut(
 }
 
 /// What there is to say of an adapter and of words that were taken one after the other.
-fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<Line> {
+fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
     let mut said: Vec<(Said, u64)> = Vec::new();
     let mut positions = Vec::new();
     for word in words {
@@ -142,13 +146,17 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<Line> {
     vec![
         adapter(identity),
         supply(identity),
-        Line {
+        SsiStepResult {
             step: Step::Line,
             verdict: verdict(is_stuck),
             findings: std::iter::once(taken).chain(among(is_stuck)).collect(),
         },
-        Line { step: Step::Layout, verdict: form, findings: or(among(is_of_the_form).collect(), Finding::Fits) },
-        Line {
+        SsiStepResult {
+            step: Step::Layout,
+            verdict: form,
+            findings: or(among(is_of_the_form).collect(), Finding::Fits),
+        },
+        SsiStepResult {
             step: Step::Errors,
             verdict: verdict(is_error),
             findings: or(among(is_error).collect(), Finding::Silent),
@@ -157,18 +165,18 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<Line> {
     ]
 }
 
-fn adapter(identity: &Identity) -> Line {
+fn adapter(identity: &Identity) -> SsiStepResult {
     let Identity { hello, asking, clock_hz, .. } = identity;
     let verdict = if *clock_hz == asking.clock_hz { Verdict::Good } else { Verdict::Attention };
     let who = Finding::Adapter(hello.name.clone(), hello.firmware.clone());
-    Line {
+    SsiStepResult {
         step: Step::Adapter,
         verdict,
         findings: vec![who, Finding::Clock { asked: asking.clock_hz, got: *clock_hz }],
     }
 }
 
-fn supply(identity: &Identity) -> Line {
+fn supply(identity: &Identity) -> SsiStepResult {
     let supplied = identity.supply.and_then(|supply| Some((supply.millivolt, supply.measured?)));
     let (verdict, finding) = match supplied {
         Some((wished, (measured, milliampere))) => {
@@ -179,11 +187,11 @@ fn supply(identity: &Identity) -> Line {
         }
         None => (Verdict::Good, Finding::SuppliedElsewhere),
     };
-    Line { step: Step::Supply, verdict, findings: vec![finding] }
+    SsiStepResult { step: Step::Supply, verdict, findings: vec![finding] }
 }
 
 /// How the position goes from word to word, the short way round.
-fn motion(layout: &Layout, positions: &[u64]) -> Line {
+fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.coding().last()) + 1;
     let apart = |one: u64, other: u64| {
         let apart = u128::from(one.abs_diff(other));
@@ -195,13 +203,13 @@ fn motion(layout: &Layout, positions: &[u64]) -> Line {
         .first()
         .map_or(0, |first| positions.iter().map(|position| apart(*first, *position)).max().unwrap_or(0));
     let (verdict, finding) = match positions.last() {
-        None => return Line { step: Step::Motion, verdict: Verdict::Bad, findings: Vec::new() },
+        None => return SsiStepResult { step: Step::Motion, verdict: Verdict::Bad, findings: Vec::new() },
         Some(position) if spread <= TREMBLES => (Verdict::Good, Finding::Stands { position: *position, steps: spread }),
         // From a word to the next by more than a quarter of all positions: no shaft turns like that.
         Some(_) if u128::from(most) * 4 > all => (Verdict::Attention, Finding::Turns { most }),
         Some(_) => (Verdict::Good, Finding::Turns { most }),
     };
-    Line { step: Step::Motion, verdict, findings: vec![finding] }
+    SsiStepResult { step: Step::Motion, verdict, findings: vec![finding] }
 }
 
 #[cfg(test)]
@@ -228,7 +236,7 @@ mod tests {
         Identity { hello, asking: Asking::default(), clock_hz, supply }
     }
 
-    fn verdicts(lines: &[Line]) -> Vec<Verdict> {
+    fn verdicts(lines: &[SsiStepResult]) -> Vec<Verdict> {
         lines.iter().map(|line| line.verdict).collect()
     }
 

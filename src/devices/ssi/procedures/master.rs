@@ -12,7 +12,7 @@ use crate::buses::bridge::procedures::flow::{Flow, Streamed};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
 use crate::buses::bridge::protocol::{Capabilities, Data, ErrorCode, REPEAT_AFTER, Reply, Request, SsiFlags};
 use crate::link::Ctx;
-use crate::link::line::Line;
+use crate::link::line::SerialLine;
 use crate::units::Moment;
 
 /// A wish to end is heard so often.
@@ -20,7 +20,7 @@ const SLICE: Duration = Duration::from_millis(20);
 
 /// The host's side of an adapter before an SSI encoder.
 pub struct Master<'a> {
-    line: Line<'a>,
+    line: SerialLine<'a>,
     station: &'a mut Station,
 }
 
@@ -28,7 +28,7 @@ impl<'a> Master<'a> {
     /// A master on this line, for one job: it has its patience before it.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
-        Master { line: Line::new(ctx), station }
+        Master { line: SerialLine::new(ctx), station }
     }
 
     /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets how words are taken; what

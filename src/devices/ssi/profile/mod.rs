@@ -7,4 +7,4 @@ mod record;
 mod text;
 
 pub use entry_error::EntryError;
-pub use record::{Kept, ReadingSettings, SsiProfile};
+pub use record::{ReadingSettings, SsiProfile, UnknownEntries};

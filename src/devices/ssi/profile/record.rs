@@ -21,7 +21,7 @@ pub struct SsiProfile {
     /// How it is read.
     pub reading: ReadingSettings,
     /// Entries that this program does not know.
-    pub unknown: Kept,
+    pub unknown: UnknownEntries,
 }
 
 /// How an encoder is read.
@@ -39,7 +39,7 @@ pub struct ReadingSettings {
 
 /// Entries that this program does not know, by the structure in which they stand.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Kept {
+pub struct UnknownEntries {
     pub(super) frame: Unknown,
     pub(super) reading: Unknown,
     pub(super) parity: Unknown,
@@ -68,7 +68,7 @@ impl SsiProfile {
             direction: Direction::default(),
             preset: 0,
             reading: ReadingSettings::default(),
-            unknown: Kept::default(),
+            unknown: UnknownEntries::default(),
         }
     }
 

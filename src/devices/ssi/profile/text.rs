@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use ron::Value;
 
-use super::{EntryError, Kept, ReadingSettings, SsiProfile};
+use super::{EntryError, ReadingSettings, SsiProfile, UnknownEntries};
 use crate::devices::ssi::protocol::{
     self, Code, Coded, Coding, Descriptor, Direction, ErrorBit, Fraction, Layout, Parity, Pattern, Range, Repeat, Word,
 };
@@ -29,7 +29,7 @@ impl Profile for SsiProfile {
         let name = entries.optional("name", Expected::Text)?.unwrap_or_default();
         // Keys have small letters; a person may write the type's name.
         let family = entries.optional("family", Expected::Text)?.map(|key: String| key.to_ascii_lowercase());
-        let mut unknown = Kept::default();
+        let mut unknown = UnknownEntries::default();
         let path = entries.path_of("frame");
         let descriptor = read_frame(entries.structure("frame")?, &mut unknown)?;
         let refused = |error| ProfileError::refused(path, EntryError::Layout(error));
@@ -208,7 +208,7 @@ fn usual_area(frame: &Descriptor) -> u8 {
     bits.saturating_add(frame.lead).saturating_add(frame.between)
 }
 
-fn read_frame(mut entries: Entries, unknown: &mut Kept) -> Result<Descriptor, ProfileError> {
+fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Descriptor, ProfileError> {
     let mut frame = Descriptor {
         clocks: entries.required("clocks", SMALL)?,
         range: read_range(&mut entries)?,
@@ -333,7 +333,7 @@ fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError
     Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
 }
 
-fn read_reading(mut entries: Entries, unknown: &mut Kept) -> Result<ReadingSettings, ProfileError> {
+fn read_reading(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<ReadingSettings, ProfileError> {
     let usual = ReadingSettings::default();
     let clock_hz = entries.optional("clock_hz", CLOCK_HZ)?.unwrap_or(usual.clock_hz);
     if !(1_000..=20_000_000).contains(&clock_hz) {

@@ -36,7 +36,7 @@ pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
 pub use layout::{AsAWhole, Flags, Layout, LayoutError, Reading, Several, Taker};
-pub use range::{Direction, Fraction, Place, Range, RangeError};
+pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
 pub use tally::{Noted, Tally};
 pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};

@@ -81,7 +81,7 @@ pub enum RangeError {
 
 /// What a position is on the shaft or scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum Location {
     /// On a shaft.
     Shaft {
         /// Whole turns.
@@ -134,31 +134,31 @@ impl Range {
     }
 
     /// What a position is. It may be behind the last one: nothing wraps here.
-    pub fn place(&self, position: u64) -> Place {
+    pub fn place(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {
                 let steps = position & ones(singleturn);
                 let turns = position.checked_shr(u32::from(singleturn)).unwrap_or(0);
-                Place::Shaft { turns, steps, degrees: angle(steps, power_of_two(singleturn)) }
+                Location::Shaft { turns, steps, degrees: angle(steps, power_of_two(singleturn)) }
             }
             Range::Steps { per_turn, .. } => {
                 let per_turn = u64::from(per_turn.max(1));
                 let steps = position % per_turn;
-                Place::Shaft { turns: position / per_turn, steps, degrees: angle(steps, per_turn as f64) }
+                Location::Shaft { turns: position / per_turn, steps, degrees: angle(steps, per_turn as f64) }
             }
             Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
                 let around = u128::from(position) * u128::from(numerator);
                 let turn = (u128::from(steps) * u128::from(denominator)).max(1);
                 let turns = around / turn;
                 let first = (turns * turn).div_ceil(u128::from(numerator).max(1));
-                Place::Shaft {
+                Location::Shaft {
                     turns: turns as u64,
                     steps: u128::from(position).saturating_sub(first) as u64,
                     degrees: (around % turn) as f64 * 360.0 / turn as f64,
                 }
             }
             Range::Length { step_nanometres, .. } => {
-                Place::Length { millimetres: position as f64 * f64::from(step_nanometres) * 1e-6 }
+                Location::Length { millimetres: position as f64 * f64::from(step_nanometres) * 1e-6 }
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The SSI encoder behind a virtual adapter, as the query of a `sim:` link gives it.
 
 use super::encoder::{Encoder, Sending};
-use super::trouble::Trouble;
+use super::injected_fault::InjectedFault;
 use crate::buses::bridge::sim::{Attachable, Attached};
 use crate::expected::Expected;
 use crate::parameter::{ANY, Checked, Maybe, Parameters, Refused};
@@ -55,11 +55,11 @@ impl Attachable for AtAdapter {
     }
 }
 
-fn read_troubles(value: &str, encoder: &Encoder) -> Result<Vec<Trouble>, Refused> {
-    let allowed = || match Trouble::names(&encoder.layout) {
+fn read_troubles(value: &str, encoder: &Encoder) -> Result<Vec<InjectedFault>, Refused> {
+    let allowed = || match InjectedFault::names(&encoder.layout) {
         own if own.is_empty() => Expected::NoErrorBits,
         own => Expected::ErrorBits(own),
     };
-    let troubles = Trouble::read(value, &encoder.layout);
+    let troubles = InjectedFault::read(value, &encoder.layout);
     troubles.ok_or_else(|| Refused::new("ssi-error", value, allowed()))
 }

@@ -1,6 +1,6 @@
 //! A frame with the encoder's position in it.
 
-use super::trouble::Trouble;
+use super::injected_fault::InjectedFault;
 use crate::buses::bridge::sim::SsiDevice;
 use crate::devices::ssi::protocol::{Direction, Families, Flags, Layout, Settings};
 use crate::units::Moment;
@@ -31,7 +31,7 @@ impl Encoder {
 pub(super) struct Sending {
     pub(super) encoder: Encoder,
     /// What its frames say of it beside the position.
-    pub(super) troubles: Vec<Trouble>,
+    pub(super) troubles: Vec<InjectedFault>,
     /// The last word.
     pub(super) transferred: Option<Moment>,
 }
@@ -40,7 +40,7 @@ impl Sending {
     fn frame(&self, (raw, per_turn): (u64, u64), at: Moment) -> u64 {
         let Encoder { layout, direction, preset } = &self.encoder;
         let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
-        if let Some(word) = happening().find_map(Trouble::word) {
+        if let Some(word) = happening().find_map(InjectedFault::word) {
             return word;
         }
         let flags = happening().fold(Flags::NONE, |flags, trouble| flags.with(trouble.flag()));

@@ -9,9 +9,9 @@
 
 mod at_adapter;
 mod encoder;
+mod injected_fault;
 #[cfg(test)]
 mod tests;
-mod trouble;
 
 pub use at_adapter::{AtAdapter, DELIVERED, Settings};
 pub use encoder::Encoder;

@@ -11,7 +11,7 @@ use super::search::{Frames, Hunt, MOST, Origin, read_frames};
 use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone};
 use crate::app::services::Services;
-use crate::app::session::{Drafted, OnLine, Source};
+use crate::app::session::{Drafted, SessionEvents, Source};
 use crate::app::{ActContext, DeviceCommand, DeviceFile, DeviceModel, FileQuestion, Text};
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{find, frame_bits};

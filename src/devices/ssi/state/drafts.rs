@@ -2,7 +2,7 @@
 
 use super::design::Edit;
 use super::encoder::Encoder;
-use crate::app::session::{Drafted, OnDesk, ProfileFile, Session, Source};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Session, Source};
 use crate::app::{DeviceModel, PendingEdits};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::profile::SsiProfile;
@@ -13,7 +13,7 @@ use crate::profile::{Body, Change, Document, Profile};
 /// text of a profile.
 pub(crate) type Drafts = Vec<String>;
 
-impl OnDesk for Encoder {
+impl HasSession for Encoder {
     type Device = Ssi;
 
     fn session(&self) -> &Session<Ssi> {

@@ -7,13 +7,13 @@ mod connect_form;
 mod design;
 mod drafts;
 mod encoder;
+mod events;
 pub mod explain;
 mod export;
 mod families;
 mod form;
 mod kind;
 mod model;
-mod news;
 mod record;
 #[cfg(test)]
 mod recorded;

@@ -7,7 +7,7 @@ use super::{Action, Done, Encoder, Hunt, TEXTS};
 use crate::app::action::Opened;
 use crate::app::documents::{document_of, only_looked_at};
 use crate::app::services::{JobEnd, Services, World};
-use crate::app::session::{Drafted, OnLine, Source};
+use crate::app::session::{Drafted, SessionEvents, Source};
 use crate::app::{
     ActContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, Prepare, Recording, Severity, Tab, Text, explain,
 };

@@ -11,7 +11,7 @@ use super::trial::Decoded;
 use crate::analysis::Time;
 use crate::app::Recording;
 use crate::app::recorder::Recorder;
-use crate::app::track::{Meaning, Sighting, Track};
+use crate::app::track::{Meaning, PositionSample, Track};
 use crate::devices::ssi::procedures::Words;
 use crate::devices::ssi::protocol::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
 use crate::units::Moment;
@@ -123,7 +123,7 @@ impl Record {
         let mut sightings = Vec::with_capacity(run.words.len());
         for (at, word) in run.timed() {
             if !fits {
-                sightings.push(Sighting { at, position: None, is_bad: true, is_warned: false });
+                sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 continue;
             }
             let reading = self.layout.decode(word);
@@ -135,7 +135,7 @@ impl Record {
             let position = i64::try_from(reading.position).ok();
             // Nothing is said in most words, and then nothing has to be looked for.
             let is_warned = reading.flags != Flags::NONE && warned();
-            sightings.push(Sighting { at, position, is_bad, is_warned });
+            sightings.push(PositionSample { at, position, is_bad, is_warned });
         }
         self.track.add(&sightings, &self.meaning);
         if let Some((at, word)) = run.timed().last() {

@@ -100,7 +100,7 @@ pub enum Handle {
 
 /// How a cell of a frame looks that has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shown {
+pub struct CellState {
     /// Its bit.
     pub bit: bool,
     /// What it tells of the position: an error bit that speaks, a bit that has to be 0 and is not.
@@ -198,7 +198,7 @@ impl Strip {
     }
 
     /// What each cell of a frame looks like.
-    pub fn shown(&self, frame: u64) -> Vec<Shown> {
+    pub fn shown(&self, frame: u64) -> Vec<CellState> {
         let descriptor = self.layout.descriptor();
         let flags = self.layout.decode(frame).flags;
         let cells = self.layout.cells(frame).into_iter();
@@ -216,7 +216,7 @@ impl Strip {
                     Role::Again(clock) if self.bit(frame, clock) != cell.bit => Some(Meaning::Invalid),
                     _ => None,
                 };
-                Shown { bit: cell.bit, tells }
+                CellState { bit: cell.bit, tells }
             })
             .collect()
     }

@@ -1,7 +1,7 @@
 //! A frame to try a layout with: a position and its bits, from the one to the other and back.
 
 use crate::app::Text;
-use crate::devices::ssi::protocol::{Cell, Finding, Flags, Layout, Place, Reading, parse_frame};
+use crate::devices::ssi::protocol::{Cell, Finding, Flags, Layout, Location, Reading, parse_frame};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
@@ -20,7 +20,7 @@ pub struct Decoded {
     /// Its position and flags.
     pub reading: Reading,
     /// The position, if the bits are one, and what it is on the shaft or scale.
-    pub place: Option<(u64, Place)>,
+    pub place: Option<(u64, Location)>,
     /// What there is to say of it.
     pub findings: Vec<Finding>,
     /// The position may be used.

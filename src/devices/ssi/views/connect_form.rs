@@ -7,7 +7,7 @@ use crate::app::connect::Connect as Dialog;
 use crate::devices::ssi::state::{SsiForm, SsiWay};
 use crate::devices::ssi::views::say;
 use crate::parameter::Entry;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::paragraph;
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{leave_supply, network, recording, segments, serial, typed, unfolded};
@@ -21,7 +21,7 @@ impl TypedConnectForm for SsiConnectForm {
 
     fn form_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         dialog: &Dialog,
         form: &mut SsiForm,
         ((), more): (&mut (), &mut bool),
@@ -32,30 +32,30 @@ impl TypedConnectForm for SsiConnectForm {
             (SsiWay::Adapter, "connect.adapter"),
             (SsiWay::Replay, "connect.replay"),
         ];
-        segments(ui, skin, &mut form.way, ways);
+        segments(ui, theme, &mut form.way, ways);
         if form.way == SsiWay::Adapter {
-            paragraph(ui, skin.caption(say(skin, "connect.ssi_words")));
+            paragraph(ui, theme.caption(say(theme, "connect.ssi_words")));
         }
-        ui.add_space(skin.space.between);
+        ui.add_space(theme.space.between);
         match form.way {
-            SsiWay::Virtual => typed(ui, skin, say, SsiForm::of_the_virtual(), &mut form.typed),
+            SsiWay::Virtual => typed(ui, theme, say, SsiForm::of_the_virtual(), &mut form.typed),
             SsiWay::Adapter => {
-                segments(ui, skin, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
+                segments(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
-                    network(ui, skin, &mut form.host, &mut form.tcp_port);
+                    network(ui, theme, &mut form.host, &mut form.tcp_port);
                 } else {
-                    serial(ui, skin, dialog, &mut form.port, actions);
+                    serial(ui, theme, dialog, &mut form.port, actions);
                 }
             }
-            SsiWay::Replay => recording(ui, skin, &mut form.file, actions),
+            SsiWay::Replay => recording(ui, theme, &mut form.file, actions),
         }
-        if form.way != SsiWay::Replay && unfolded(ui, skin, more) {
+        if form.way != SsiWay::Replay && unfolded(ui, theme, more) {
             let (supply, rest) = SsiForm::of_the_link();
-            let none = say(skin, "connect.voltage_none");
-            typed(ui, skin, say, supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }), &mut form.typed);
-            paragraph(ui, skin.caption(say(skin, "connect.voltage_words")));
-            leave_supply(ui, skin, &mut form.leave_supply);
-            typed(ui, skin, say, rest, &mut form.typed);
+            let none = say(theme, "connect.voltage_none");
+            typed(ui, theme, say, supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }), &mut form.typed);
+            paragraph(ui, theme.caption(say(theme, "connect.voltage_words")));
+            leave_supply(ui, theme, &mut form.leave_supply);
+            typed(ui, theme, say, rest, &mut form.typed);
         }
     }
 }

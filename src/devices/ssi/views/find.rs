@@ -11,11 +11,11 @@ use crate::devices::ssi::views::say;
 use crate::ui::controls::{
     card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed and does not count yet.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct FindUiState {
     clocks: Option<(String, Option<Text>)>,
     /// Classes whose other members are shown.
     unfolded: Option<usize>,
@@ -26,64 +26,70 @@ const CLASSES: usize = 6;
 /// Members of a class that are shown at first.
 const MEMBERS: usize = 4;
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    frames(ui, skin, encoder, view, actions);
-    ui.add_space(skin.space.groups);
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut FindUiState,
+    actions: &mut Vec<Action>,
+) {
+    frames(ui, theme, encoder, view, actions);
+    ui.add_space(theme.space.groups);
     match &encoder.hunt {
         Hunt::Nothing => {}
         Hunt::Running(_) => {
             ui.horizontal(|ui| {
-                spinner(ui, skin);
-                ui.label(say(skin, "ssi_find.running"));
+                spinner(ui, theme);
+                ui.label(say(theme, "ssi_find.running"));
             });
         }
         Hunt::Failed(why) => {
             ui.horizontal_top(|ui| {
-                ui.label(RichText::new(icons::X_CIRCLE).color(skin.palette.bad));
-                paragraph(ui, skin.words(why));
+                ui.label(RichText::new(icons::X_CIRCLE).color(theme.palette.bad));
+                paragraph(ui, theme.words(why));
             });
         }
-        Hunt::Found { origin, clocks, search } => found(ui, skin, encoder, view, (origin, *clocks, search), actions),
+        Hunt::Found { origin, clocks, search } => found(ui, theme, encoder, view, (origin, *clocks, search), actions),
     }
 }
 
 /// Which frames are looked into.
-fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+fn frames(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let mut ask = |action| actions.push(Action::device(id, action));
-    card(ui, skin, TEXTS.text("ssi_find.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "ssi_find.words")));
-        ui.add_space(skin.space.inside);
-        let word = say(skin, "ssi_find.clocks");
-        entry(ui, skin, &word, |ui| {
+    card(ui, theme, TEXTS.text("ssi_find.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "ssi_find.words")));
+        ui.add_space(theme.space.inside);
+        let word = say(theme, "ssi_find.clocks");
+        entry(ui, theme, &word, |ui| {
             settled_entry(ui, &mut view.clocks, &encoder.clocks().to_string(), 56.0, &word, |text| {
                 ask(Ssi::SetClocks(Some(read_clocks(text)?)));
                 Ok(())
             });
             if encoder.has_own_clocks()
-                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "ssi_find.own_clocks")).clicked()
+                && icon_button(ui, true, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_find.own_clocks")).clicked()
             {
                 view.clocks = None;
                 ask(Ssi::SetClocks(None));
             }
         });
-        problem(ui, skin, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
+        problem(ui, theme, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
         let words = encoder.record.count(encoder.clocks());
-        row(ui, skin, &say(skin, "ssi_find.read"), skin.mono(words.to_string()));
+        row(ui, theme, &say(theme, "ssi_find.read"), theme.mono(words.to_string()));
         if !encoder.is_profile() && words == 0 {
-            paragraph(ui, skin.caption(say(skin, "ssi_find.poll")));
+            paragraph(ui, theme.caption(say(theme, "ssi_find.poll")));
         }
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, true, icons::FOLDER_OPEN, &say(skin, "ssi_find.file")).clicked() {
+            if enabled_button(ui, true, icons::FOLDER_OPEN, &say(theme, "ssi_find.file")).clicked() {
                 ask(Ssi::AskFrames);
             }
-            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &say(skin, "ssi_find.save")).clicked() {
+            if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &say(theme, "ssi_find.save")).clicked() {
                 ask(Ssi::AskSaveFrames);
             }
             let running = matches!(encoder.hunt, Hunt::Running(_));
-            let find = primary(ui, skin, words > 0 && !running, icons::MAGNIFYING_GLASS, &say(skin, "ssi_find.find"));
-            if find.on_disabled_hover_text(say(skin, "ssi_find.poll")).clicked() {
+            let find = primary(ui, theme, words > 0 && !running, icons::MAGNIFYING_GLASS, &say(theme, "ssi_find.find"));
+            if find.on_disabled_hover_text(say(theme, "ssi_find.poll")).clicked() {
                 ask(Ssi::Find);
             }
         });
@@ -92,9 +98,9 @@ fn frames(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
 
 fn found(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
-    view: &mut View,
+    view: &mut FindUiState,
     (origin, clocks, search): (&Origin, u8, &Search),
     actions: &mut Vec<Action>,
 ) {
@@ -108,76 +114,76 @@ fn found(
         .with("clocks", clocks)
         .with("different", search.different)
         .with_text("source", source);
-    paragraph(ui, skin.label(skin.words(&text)));
+    paragraph(ui, theme.label(theme.words(&text)));
     let (icon, colour) = match search.doubt {
-        None => (icons::CHECK_CIRCLE, skin.palette.good),
-        Some(Doubt::Open) => (icons::QUESTION, skin.palette.accent),
-        Some(Doubt::Stuck { .. }) => (icons::X_CIRCLE, skin.palette.bad),
-        Some(Doubt::Standing | Doubt::Nothing | Doubt::Close) => (icons::WARNING, skin.palette.warn),
+        None => (icons::CHECK_CIRCLE, theme.palette.good),
+        Some(Doubt::Open) => (icons::QUESTION, theme.palette.accent),
+        Some(Doubt::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
+        Some(Doubt::Standing | Doubt::Nothing | Doubt::Close) => (icons::WARNING, theme.palette.warn),
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, skin.words(&words::doubt(search.doubt)));
+        paragraph(ui, theme.words(&words::doubt(search.doubt)));
     });
     for (number, class) in search.classes.iter().take(CLASSES).enumerate() {
-        ui.add_space(skin.space.between);
-        ui.push_id(number, |ui| class_ui(ui, skin, encoder, (number, class), view, actions));
+        ui.add_space(theme.space.between);
+        ui.push_id(number, |ui| class_ui(ui, theme, encoder, (number, class), view, actions));
     }
 }
 
 /// Layouts that these frames cannot tell apart.
 fn class_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     (number, class): (usize, &Class),
-    view: &mut View,
+    view: &mut FindUiState,
     actions: &mut Vec<Action>,
 ) {
     let id = encoder.session.id;
     let evidence = &class.evidence;
     let rank = TEXTS.text("ssi_find.rank").with("number", number + 1).with_number("bits", evidence.bits_a_frame, 2);
     let aside = |ui: &mut Ui| {
-        ui.label(skin.caption(skin.words(&rank)));
+        ui.label(theme.caption(theme.words(&rank)));
     };
-    card_with(ui, skin, TEXTS.text(if number == 0 { "ssi_find.best" } else { "ssi_find.other" }), aside, |ui| {
+    card_with(ui, theme, TEXTS.text(if number == 0 { "ssi_find.best" } else { "ssi_find.other" }), aside, |ui| {
         let all = view.unfolded == Some(number);
         let shown = if all { class.members.len() } else { MEMBERS };
         for (place, proposal) in class.members.iter().take(shown).enumerate() {
             ui.horizontal(|ui| {
-                let word = say(skin, "ssi_find.take");
+                let word = say(theme, "ssi_find.take");
                 let take = enabled_button(ui, true, icons::CHECK, &word);
                 if take.clicked() {
                     actions.push(Action::device(id, Ssi::Take(number, place)));
                 }
                 ui.vertical(|ui| {
-                    ui.spacing_mut().item_spacing.y = skin.space.inside;
-                    title(ui, skin, encoder, proposal);
-                    ui.add(egui::Label::new(skin.caption(skin.words(&words::frame(&proposal.layout)))).wrap());
+                    ui.spacing_mut().item_spacing.y = theme.space.inside;
+                    title(ui, theme, encoder, proposal);
+                    ui.add(egui::Label::new(theme.caption(theme.words(&words::frame(&proposal.layout)))).wrap());
                 });
             });
         }
         let more = class.members.len().saturating_sub(shown);
         if more > 0 {
             let text = TEXTS.text("ssi_find.more").with("count", more);
-            if ui.link(skin.words(&text)).clicked() {
+            if ui.link(theme.words(&text)).clicked() {
                 view.unfolded = Some(number);
             }
         }
         for open in &class.open {
             ui.horizontal_top(|ui| {
-                ui.label(RichText::new(icons::QUESTION).color(skin.palette.accent));
-                paragraph(ui, skin.words(&words::open(*open)));
+                ui.label(RichText::new(icons::QUESTION).color(theme.palette.accent));
+                paragraph(ui, theme.words(&words::open(*open)));
             });
         }
-        paragraph(ui, skin.caption(skin.words(&words::evidence(evidence))));
+        paragraph(ui, theme.caption(theme.words(&words::evidence(evidence))));
     });
 }
 
 /// The family, and how it is set.
-fn title(ui: &mut Ui, skin: &Skin, encoder: &Encoder, proposal: &Proposal) {
+fn title(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) {
     let Some((key, settings)) = &proposal.family else {
-        ui.label(say(skin, "ssi_find.any"));
+        ui.label(say(theme, "ssi_find.any"));
         return;
     };
     let family = encoder.designer.families().named(key);
@@ -186,7 +192,7 @@ fn title(ui: &mut Ui, skin: &Skin, encoder: &Encoder, proposal: &Proposal) {
     let fewest = family.and_then(|family| family.settings_of(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());
     ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new(name).font(skin.strong(skin.sizes.body)));
-        ui.label(skin.mono(fewest.as_ref().unwrap_or(settings).emit(key)));
+        ui.label(RichText::new(name).font(theme.strong(theme.sizes.body)));
+        ui.label(theme.mono(fewest.as_ref().unwrap_or(settings).emit(key)));
     });
 }

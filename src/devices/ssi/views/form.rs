@@ -8,12 +8,12 @@ use egui::{Key, Ui};
 
 use crate::app::{Action, Text};
 use crate::devices::ssi::state::{Action as Ssi, Encoder, Entry, Field, Input, Row, whole};
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{LABELS, choice, entry, problem, settled_entry};
 
 /// What is typed and does not count yet.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct LayoutFormUiState {
     drafts: BTreeMap<Field, Option<(String, Option<Text>)>>,
 }
 
@@ -24,14 +24,14 @@ const NAME: f32 = 160.0;
 /// Draws rows.
 pub(super) fn rows_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     rows: &[Row],
-    view: &mut View,
+    view: &mut LayoutFormUiState,
     actions: &mut Vec<Action>,
 ) {
     for row in rows {
-        let word = skin.words(&row.name);
+        let word = theme.words(&row.name);
         let mut put = |input| actions.push(Action::device(encoder.session.id, Ssi::Enter(row.field, input)));
         let response = match &row.entry {
             Entry::Switch(is_on) => {
@@ -48,9 +48,9 @@ pub(super) fn rows_ui(
             }
             Entry::Choice { options, chosen } => {
                 let mut own = *chosen;
-                let all = options.iter().enumerate().map(|(at, text)| (at, skin.words(text)));
+                let all = options.iter().enumerate().map(|(at, text)| (at, theme.words(text)));
                 let inner = ui.scope(|ui| {
-                    entry(ui, skin, &word, |ui| {
+                    entry(ui, theme, &word, |ui| {
                         if choice(ui, &word, &mut own, all) {
                             put(Input::Choice(own));
                         }
@@ -60,7 +60,7 @@ pub(super) fn rows_ui(
             }
             Entry::Number { value, unit } => {
                 let draft = view.drafts.entry(row.field).or_default();
-                entry(ui, skin, &word, |ui| {
+                entry(ui, theme, &word, |ui| {
                     let response = settled_entry(ui, draft, &value.to_string(), NUMBER, &word, |text| {
                         put(Input::Number(whole(text)?));
                         Ok(())
@@ -75,14 +75,14 @@ pub(super) fn rows_ui(
                         }
                     }
                     if let Some(unit) = unit {
-                        ui.label(skin.label(skin.words(unit)));
+                        ui.label(theme.label(theme.words(unit)));
                     }
                     response
                 })
             }
             Entry::Words(words) => {
                 let draft = view.drafts.entry(row.field).or_default();
-                entry(ui, skin, &word, |ui| {
+                entry(ui, theme, &word, |ui| {
                     settled_entry(ui, draft, words, NAME, &word, |text| {
                         put(Input::Words(text.to_owned()));
                         Ok(())
@@ -91,9 +91,9 @@ pub(super) fn rows_ui(
             }
         };
         if let Some(hint) = row.hint {
-            response.on_hover_text(say(skin, hint));
+            response.on_hover_text(say(theme, hint));
         }
         let refused = view.drafts.get(&row.field).and_then(|draft| draft.as_ref()?.1.as_ref());
-        problem(ui, skin, refused);
+        problem(ui, theme, refused);
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use super::View as Tab;
+use super::SsiUiState as Tab;
 use super::form::rows_ui;
 use super::trial;
 use crate::app::{Action, AnyDevice, DeviceCommand, DeviceModel, PendingEdits, Studio, Text};
@@ -16,11 +16,11 @@ use crate::ui::controls::{
     button, card_with, choice, enabled_button, icon_button, name, paragraph, primary, problem, settled_entry,
     two_columns,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What the page remembers.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct FrameUiState {
     /// The cell that is looked at, by its clock.
     selected: Option<u8>,
     format: String,
@@ -29,38 +29,38 @@ pub(super) struct View {
 
 pub(super) fn page_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     (studio, device): (&Studio, &AnyDevice),
     encoder: &Encoder,
     view: &mut Tab,
     actions: &mut Vec<Action>,
 ) {
-    layout(ui, skin, encoder, &mut view.frame, actions);
-    ui.add_space(skin.space.groups);
+    layout(ui, theme, encoder, &mut view.frame, actions);
+    ui.add_space(theme.space.groups);
     let form = encoder.designer.form();
     let (left, right) = columns(&form);
     two_columns(
         ui,
-        skin,
+        theme,
         (view, &mut *actions),
         |ui, (view, actions)| {
-            trial::card_ui(ui, skin, encoder, &mut view.trial, actions);
+            trial::card_ui(ui, theme, encoder, &mut view.trial, actions);
             for group in right {
-                ui.add_space(skin.space.groups);
-                group_ui(ui, skin, encoder, group, view, actions);
+                ui.add_space(theme.space.groups);
+                group_ui(ui, theme, encoder, group, view, actions);
             }
         },
         |ui, (view, actions)| {
             for (number, group) in left.iter().enumerate() {
                 if number > 0 {
-                    ui.add_space(skin.space.groups);
+                    ui.add_space(theme.space.groups);
                 }
-                group_ui(ui, skin, encoder, group, view, actions);
+                group_ui(ui, theme, encoder, group, view, actions);
             }
         },
     );
-    ui.add_space(skin.space.groups);
-    foot(ui, skin, studio, device, encoder, actions);
+    ui.add_space(theme.space.groups);
+    foot(ui, theme, studio, device, encoder, actions);
 }
 
 /// What stands beside the frame to try with, and what below it: direction and preset, and error bits.
@@ -69,46 +69,46 @@ fn columns(form: &[Group]) -> (&[Group], &[Group]) {
 }
 
 /// Family, strip, and what there is to say of both.
-fn layout(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
     let designer = &encoder.designer;
     let id = encoder.session.id;
     let aside = |ui: &mut Ui| {
-        if icon_button(ui, encoder.designer.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
+        if icon_button(ui, encoder.designer.can_redo(), icons::ARROW_U_UP_RIGHT, &theme.say("memory.redo")).clicked() {
             actions.push(Action::Command(id, DeviceCommand::Redo));
         }
-        if icon_button(ui, encoder.designer.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
+        if icon_button(ui, encoder.designer.can_undo(), icons::ARROW_U_UP_LEFT, &theme.say("memory.undo")).clicked() {
             actions.push(Action::Command(id, DeviceCommand::Undo));
         }
     };
     let mut asked = Vec::new();
-    card_with(ui, skin, TEXTS.text("ssi_layout.title"), aside, |ui| {
-        family(ui, skin, encoder, view, &mut asked);
-        ui.add_space(skin.space.between);
-        strip_ui(ui, skin, encoder, view, &mut asked);
+    card_with(ui, theme, TEXTS.text("ssi_layout.title"), aside, |ui| {
+        family(ui, theme, encoder, view, &mut asked);
+        ui.add_space(theme.space.between);
+        strip_ui(ui, theme, encoder, view, &mut asked);
         if encoder.link_to_send().is_some() {
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(icons::INFO).color(skin.palette.accent));
-                ui.label(say(skin, "ssi_layout.sends_other"));
-                if button(ui, icons::PLAY, &say(skin, "ssi_layout.send")).clicked() {
+                ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
+                ui.label(say(theme, "ssi_layout.sends_other"));
+                if button(ui, icons::PLAY, &say(theme, "ssi_layout.send")).clicked() {
                     asked.push(Action::device(id, Ssi::SendLayout));
                 }
             });
         }
-        problem(ui, skin, designer.problem());
+        problem(ui, theme, designer.problem());
         for advice in &designer.design().advice {
             ui.horizontal_top(|ui| {
-                ui.label(RichText::new(icons::INFO).color(skin.palette.accent));
-                paragraph(ui, skin.caption(skin.words(&words::advice(advice))));
+                ui.label(RichText::new(icons::INFO).color(theme.palette.accent));
+                paragraph(ui, theme.caption(theme.words(&words::advice(advice))));
             });
         }
         if designer.layout().loses_lowest_bit() {
-            paragraph(ui, RichText::new(say(skin, "ssi_layout.loses")).color(skin.palette.warn));
+            paragraph(ui, RichText::new(say(theme, "ssi_layout.loses")).color(theme.palette.warn));
         }
     });
     actions.append(&mut asked);
 }
 
-fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
     let designer = &encoder.designer;
     let id = encoder.session.id;
     let edit = |edit| Action::device(id, Ssi::Edit(Box::new(edit)));
@@ -116,37 +116,38 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
     let own = designer.family().and_then(|own| families.iter().position(|family| family.key == own.key));
     let mut chosen = own;
     ui.horizontal_wrapped(|ui| {
-        let word = say(skin, "ssi_layout.family");
-        ui.label(skin.label(&word));
+        let word = say(theme, "ssi_layout.family");
+        ui.label(theme.label(&word));
         let all = families.iter().enumerate().map(|(at, family)| (Some(at), family.name.clone()));
-        let free = std::iter::once((None, say(skin, "ssi_layout.free")));
+        let free = std::iter::once((None, say(theme, "ssi_layout.free")));
         if choice(ui, &word, &mut chosen, free.chain(all)) {
             let key = chosen.and_then(|at| families.get(at)).map(|family| family.key.clone());
             actions.push(edit(key.map_or(Edit::Free, Edit::Family)));
         }
-        let word = say(skin, "ssi_layout.name");
+        let word = say(theme, "ssi_layout.name");
         let profile = &designer.design().profile;
-        ui.label(skin.label(&word));
+        ui.label(theme.label(&word));
         settled_entry(ui, &mut view.named, &profile.name, 160.0, &word, |text| {
             actions.push(edit(Edit::Name(text.trim().to_owned())));
             Ok(())
         });
-        ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, say(skin, "ssi_layout.import")), |ui| {
+        ui.menu_button(format!("{}  {}", icons::DOWNLOAD_SIMPLE, say(theme, "ssi_layout.import")), |ui| {
             ui.set_width(320.0);
-            paragraph(ui, skin.caption(say(skin, "ssi_layout.import_words")));
-            if button(ui, icons::PLUS, &say(skin, "ssi.new_layout")).clicked() {
+            paragraph(ui, theme.caption(say(theme, "ssi_layout.import_words")));
+            if button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
                 actions.push(Action::New(Encoder::TAB));
                 ui.close();
             }
-            if button(ui, icons::FOLDER_OPEN, &skin.say("profile_card.open")).clicked() {
+            if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
                 ui.close();
             }
             ui.separator();
-            let word = say(skin, "ssi_layout.linuxcnc");
-            ui.label(skin.label(&word));
-            crate::ui::controls::mono_entry(ui, skin, &mut view.format, 300.0, &word, "error%1bposition%24ge");
-            if enabled_button(ui, !view.format.trim().is_empty(), icons::CHECK, &say(skin, "ssi_layout.take")).clicked()
+            let word = say(theme, "ssi_layout.linuxcnc");
+            ui.label(theme.label(&word));
+            crate::ui::controls::mono_entry(ui, theme, &mut view.format, 300.0, &word, "error%1bposition%24ge");
+            if enabled_button(ui, !view.format.trim().is_empty(), icons::CHECK, &say(theme, "ssi_layout.take"))
+                .clicked()
             {
                 actions.push(edit(Edit::LinuxCnc(view.format.trim().to_owned())));
                 ui.close();
@@ -157,25 +158,25 @@ fn family(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions:
         Some(family) if designer.design().settings.is_none() => {
             ui.horizontal_wrapped(|ui| {
                 let text = TEXTS.text("ssi_layout.by_hand").with("family", &family.name);
-                ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-                ui.label(skin.words(&text));
-                if button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(skin, "ssi_layout.delivered")).clicked() {
+                ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+                ui.label(theme.words(&text));
+                if button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "ssi_layout.delivered")).clicked() {
                     actions.push(edit(Edit::Family(family.key.clone())));
                 }
             });
         }
         Some(family) => {
-            paragraph(ui, skin.caption(skin.words(&words::note(family, &family.source))));
+            paragraph(ui, theme.caption(theme.words(&words::note(family, &family.source))));
         }
-        None => paragraph(ui, skin.caption(say(skin, "ssi_layout.free_words"))),
+        None => paragraph(ui, theme.caption(say(theme, "ssi_layout.free_words"))),
     }
 }
 
-fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
     let layout = encoder.designer.layout();
     let id = encoder.session.id;
     let strip = Strip::of(layout);
-    let label = say(skin, "ssi_layout.title");
+    let label = say(theme, "ssi_layout.title");
     let selected = view.selected.filter(|clock| *clock <= layout.clocks());
     let model = BitStrip {
         label: &label,
@@ -186,7 +187,7 @@ fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         movable: true,
         following: encoder.designer.errors_follow(),
     };
-    match bit_strip(ui, skin, &model) {
+    match bit_strip(ui, theme, &model) {
         Some(StripEvent::Moved(handle, to)) => actions.push(Action::device(id, Ssi::Move(handle, to))),
         Some(StripEvent::Selected(clock)) => view.selected = Some(clock),
         Some(StripEvent::Toggled(clock)) => {
@@ -197,32 +198,32 @@ fn strip_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, action
         Some(StripEvent::Preview(..)) | None => {}
     }
     let words = match selected {
-        Some(clock) => skin.words(&strip::cell(&strip, clock)),
-        None => say(skin, "ssi_layout.hint"),
+        Some(clock) => theme.words(&strip::cell(&strip, clock)),
+        None => say(theme, "ssi_layout.hint"),
     };
-    paragraph(ui, skin.caption(words));
+    paragraph(ui, theme.caption(words));
 }
 
-fn group_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, group: &Group, view: &mut Tab, actions: &mut Vec<Action>) {
+fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: &mut Tab, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let error = group.error();
     let mut asked = None;
     let aside = |ui: &mut Ui| {
         if let Some(index) = error
-            && icon_button(ui, true, icons::TRASH, &say(skin, "ssi_form.remove_error")).clicked()
+            && icon_button(ui, true, icons::TRASH, &say(theme, "ssi_form.remove_error")).clicked()
         {
             asked = Some(Ssi::RemoveErrorBit(index));
         }
     };
     ui.push_id(error, |ui| {
-        card_with(ui, skin, TEXTS.text(group.title), aside, |ui| {
-            rows_ui(ui, skin, encoder, &group.rows, &mut view.form, actions);
+        card_with(ui, theme, TEXTS.text(group.title), aside, |ui| {
+            rows_ui(ui, theme, encoder, &group.rows, &mut view.form, actions);
             if group.takes_error_bits()
                 && enabled_button(
                     ui,
                     encoder.designer.with_error_bit().is_some(),
                     icons::PLUS,
-                    &say(skin, "ssi_form.add_error"),
+                    &say(theme, "ssi_form.add_error"),
                 )
                 .clicked()
             {
@@ -234,19 +235,19 @@ fn group_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, group: &Group, view: &m
 }
 
 /// Taking changes back, saving, and taking the layout for an encoder that is connected.
-fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn foot(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, encoder: &Encoder, actions: &mut Vec<Action>) {
     let is_dirty = encoder.is_dirty();
     ui.horizontal(|ui| {
-        if enabled_button(ui, is_dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
+        if enabled_button(ui, is_dirty, icons::ARROW_COUNTER_CLOCKWISE, &theme.say("memory.revert")).clicked() {
             actions.push(device.command(DeviceCommand::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if primary(ui, skin, true, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+            if primary(ui, theme, true, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                 actions.push(Action::Save(device.id()));
             }
-            take_for(ui, skin, studio, device, actions);
+            take_for(ui, theme, studio, device, actions);
             if is_dirty {
-                let words = RichText::new(say(skin, "ssi_layout.unsaved")).color(skin.palette.staged);
+                let words = RichText::new(say(theme, "ssi_layout.unsaved")).color(theme.palette.staged);
                 ui.add(egui::Label::new(words).truncate());
             }
         });
@@ -254,13 +255,13 @@ fn foot(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, encoder: 
 }
 
 /// The layout for an encoder that is connected: which one is chosen here.
-fn take_for(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn take_for(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && other.is_connected() && other.id() != device.id();
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
     if targets.is_empty() {
         return;
     }
-    let word = say(skin, "ssi_layout.take_for");
+    let word = say(theme, "ssi_layout.take_for");
     let menu = ui.menu_button(format!("{}  {word}", icons::PLUGS_CONNECTED), |ui| {
         for target in targets {
             if ui.button(format!("{} · {}", target.name(), target.place())).clicked() {
@@ -269,5 +270,5 @@ fn take_for(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actio
             }
         }
     });
-    name(menu.response, true, &word).on_hover_text(say(skin, "ssi_layout.take_for_hint"));
+    name(menu.response, true, &word).on_hover_text(say(theme, "ssi_layout.take_for_hint"));
 }

@@ -18,7 +18,7 @@ use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio};
 use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::ui::controls::button;
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Skin, icons, page};
+use crate::ui::{Theme, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,12 +48,12 @@ impl TabPage for Page {
 
 /// What the tab remembers of one session while the window is open: text buffers and selections.
 #[derive(Default)]
-pub(crate) struct View {
-    form: form::View,
-    frame: frame::View,
-    trial: trial::View,
-    export: export::View,
-    find: find::View,
+pub(crate) struct SsiUiState {
+    form: form::LayoutFormUiState,
+    frame: frame::FrameUiState,
+    trial: trial::TrialUiState,
+    export: export::ExportUiState,
+    find: find::FindUiState,
 }
 
 /// The view of SSI encoders.
@@ -62,7 +62,7 @@ pub(crate) struct SsiView;
 impl TypedDeviceView for SsiView {
     type Device = Encoder;
     type Page = Page;
-    type Memory = View;
+    type Memory = SsiUiState;
     type ConnectForm = connect_form::SsiConnectForm;
 
     const HAS_UNDO_KEYS: bool = true;
@@ -73,37 +73,37 @@ impl TypedDeviceView for SsiView {
 
     fn page_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         (studio, device): (&Studio, &AnyDevice),
         encoder: &Encoder,
-        (page, view): (Page, &mut View),
+        (page, view): (Page, &mut SsiUiState),
         actions: &mut Vec<Action>,
     ) {
-        page::scrolling(ui, skin, (encoder.session.id, page.place()), |ui| match page {
-            Page::Frame => frame::page_ui(ui, skin, (studio, device), encoder, view, actions),
-            Page::Timing => timing::page_ui(ui, skin, encoder, &mut view.form, actions),
-            Page::Find => find::page_ui(ui, skin, encoder, &mut view.find, actions),
-            Page::Export => export::page_ui(ui, skin, encoder, &mut view.export, actions),
-            Page::Encoder => encoder::page_ui(ui, skin, encoder, actions),
+        page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| match page {
+            Page::Frame => frame::page_ui(ui, theme, (studio, device), encoder, view, actions),
+            Page::Timing => timing::page_ui(ui, theme, encoder, &mut view.form, actions),
+            Page::Find => find::page_ui(ui, theme, encoder, &mut view.find, actions),
+            Page::Export => export::page_ui(ui, theme, encoder, &mut view.export, actions),
+            Page::Encoder => encoder::page_ui(ui, theme, encoder, actions),
         });
     }
 
     /// A transfer is over at once.
-    fn running_ui(_: &mut Ui, _: &Skin, _: &AnyDevice, _: &Encoder, _: Page, _: &mut Vec<Action>) {}
+    fn running_ui(_: &mut Ui, _: &Theme, _: &AnyDevice, _: &Encoder, _: Page, _: &mut Vec<Action>) {}
 
-    fn empty_ui(ui: &mut Ui, skin: &Skin, actions: &mut Vec<Action>) {
+    fn empty_ui(ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         // A layout needs no device.
-        if button(ui, icons::PLUS, &say(skin, "ssi.new_layout")).clicked() {
+        if button(ui, icons::PLUS, &say(theme, "ssi.new_layout")).clicked() {
             actions.push(Action::New(Encoder::TAB));
         }
     }
 
-    fn value_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, ink: Rgb) {
-        live::value_ui(ui, skin, encoder, ink);
+    fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
+        live::value_ui(ui, theme, encoder, ink);
     }
 }
 
 /// A text of this folder's catalogue, or a common one, in the window's language.
-pub(crate) fn say(skin: &Skin, id: &'static str) -> String {
-    skin.words(&TEXTS.text(id))
+pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
+    theme.words(&TEXTS.text(id))
 }

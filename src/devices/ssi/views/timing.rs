@@ -3,7 +3,7 @@
 
 use egui::{RichText, Ui};
 
-use super::form::{View, rows_ui};
+use super::form::{LayoutFormUiState, rows_ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::Timing;
 use crate::devices::ssi::state::explain as words;
@@ -12,55 +12,61 @@ use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
 use crate::ui::controls::{card, paragraph, row, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
-pub(super) fn page_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn page_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut LayoutFormUiState,
+    actions: &mut Vec<Action>,
+) {
     let designer = &encoder.designer;
     let rows = designer.reading_form();
     let Some(times) = designer.times() else {
-        card(ui, skin, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
-        ui.add_space(skin.space.groups);
-        card(ui, skin, TEXTS.text("ssi_timing.title"), |ui| {
-            paragraph(ui, skin.label(say(skin, "ssi_timing.no_family")))
+        card(ui, theme, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, theme, encoder, &rows, view, actions));
+        ui.add_space(theme.space.groups);
+        card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
+            paragraph(ui, theme.label(say(theme, "ssi_timing.no_family")))
         });
         return;
     };
     let reads = designer.reads();
     let timing = times.reckon(&reads);
-    card(ui, skin, TEXTS.text("ssi_timing.title"), |ui| {
+    card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
         let diagram = Diagram::of(designer.layout(), times, &reads);
-        let label = say(skin, "ssi_timing.title");
+        let label = say(theme, "ssi_timing.title");
         let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
-        timing_diagram(ui, skin, &model);
+        timing_diagram(ui, theme, &model);
     });
-    ui.add_space(skin.space.groups);
+    ui.add_space(theme.space.groups);
     two_columns(
         ui,
-        skin,
+        theme,
         (view, actions),
         |ui, (view, actions)| {
-            card(ui, skin, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, skin, encoder, &rows, view, actions));
+            card(ui, theme, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, theme, encoder, &rows, view, actions));
         },
-        |ui, _| card(ui, skin, TEXTS.text("ssi_timing.result"), |ui| result(ui, skin, &timing)),
+        |ui, _| card(ui, theme, TEXTS.text("ssi_timing.result"), |ui| result(ui, theme, &timing)),
     );
 }
 
-fn result(ui: &mut Ui, skin: &Skin, timing: &Timing) {
-    let micros = |time: std::time::Duration| skin.number(time.as_secs_f64() * 1e6, 2);
-    let mut told = |id: &'static str, words: String| row(ui, skin, &say(skin, id), skin.mono(words));
+fn result(ui: &mut Ui, theme: &Theme, timing: &Timing) {
+    let micros = |time: std::time::Duration| theme.number(time.as_secs_f64() * 1e6, 2);
+    let mut told = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.mono(words));
     told("ssi_timing.period", format!("{} µs", micros(timing.period)));
     told("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
     told(
         "ssi_timing.cycle",
-        format!("{} µs · {} Hz", micros(timing.cycle), skin.number(1.0 / timing.cycle.as_secs_f64().max(1e-9), 1)),
+        format!("{} µs · {} Hz", micros(timing.cycle), theme.number(1.0 / timing.cycle.as_secs_f64().max(1e-9), 1)),
     );
     let (least, most) = timing.monoflop;
     let monoflop = if least == most { micros(most) } else { format!("{} … {}", micros(least), micros(most)) };
     told("ssi_timing.monoflop", format!("{monoflop} µs"));
     told("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
-    told("ssi_timing.most_reads", format!("{} Hz", skin.number(timing.most_reads_hz, 0)));
+    told("ssi_timing.most_reads", format!("{} Hz", theme.number(timing.most_reads_hz, 0)));
     let age = timing.age.map_or_else(
-        || say(skin, "ssi_timing.age_unknown"),
+        || say(theme, "ssi_timing.age_unknown"),
         |(least, most)| {
             if least == most {
                 format!("{} µs", micros(most))
@@ -72,20 +78,20 @@ fn result(ui: &mut Ui, skin: &Skin, timing: &Timing) {
     told("ssi_timing.age", age);
     let cable = timing
         .cable_hz
-        .map_or_else(|| say(skin, "ssi_timing.cable_unknown"), |hz| format!("{} Hz", skin.number(f64::from(hz), 0)));
+        .map_or_else(|| say(theme, "ssi_timing.cable_unknown"), |hz| format!("{} Hz", theme.number(f64::from(hz), 0)));
     told("ssi_timing.most_clock", cable);
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
     if timing.warnings.is_empty() {
-        said(ui, skin, (icons::CHECK_CIRCLE, skin.palette.good), &TEXTS.text("ssi_timing.fits"));
+        said(ui, theme, (icons::CHECK_CIRCLE, theme.palette.good), &TEXTS.text("ssi_timing.fits"));
     }
     for warning in &timing.warnings {
-        said(ui, skin, (icons::WARNING, skin.palette.warn), &words::timing(warning));
+        said(ui, theme, (icons::WARNING, theme.palette.warn), &words::timing(warning));
     }
 }
 
-fn said(ui: &mut Ui, skin: &Skin, (icon, colour): (&str, crate::app::Rgb), words: &Text) {
+fn said(ui: &mut Ui, theme: &Theme, (icon, colour): (&str, crate::app::Rgb), words: &Text) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
-        paragraph(ui, skin.words(words));
+        paragraph(ui, theme.words(words));
     });
 }

@@ -4,16 +4,16 @@
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
-use crate::devices::ssi::protocol::{Meaning, Place, frame_bits};
+use crate::devices::ssi::protocol::{Location, Meaning, frame_bits};
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Action as Ssi, Decoded, Encoder, TEXTS, Try, whole};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{card_with, entry, icon_button, mono_entry, name, paragraph, problem, row, settled_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed and does not count yet.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct TrialUiState {
     position: Option<(String, Option<Text>)>,
     turns: Option<(String, Option<Text>)>,
     steps: Option<(String, Option<Text>)>,
@@ -22,7 +22,7 @@ pub(super) struct View {
     held: Option<Decoded>,
 }
 
-impl View {
+impl TrialUiState {
     /// Something is being typed; what was refused only stands there.
     fn is_typed_in(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
@@ -33,92 +33,112 @@ impl View {
 const NUMBER: f32 = 128.0;
 
 /// Draws the card.
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut TrialUiState,
+    actions: &mut Vec<Action>,
+) {
     let shown = view.held.take().filter(|_| view.is_typed_in()).unwrap_or_else(|| encoder.shown());
     let is_live = encoder.is_following();
     let id = encoder.session.id;
     let mut wish = None;
     let live = |ui: &mut Ui| {
         if encoder.last().is_some_and(|seen| seen.decoded.is_some()) {
-            let word = say(skin, "ssi_trial.live");
+            let word = say(theme, "ssi_trial.live");
             let response =
-                ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(say(skin, "ssi_trial.live_hint"));
+                ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(say(theme, "ssi_trial.live_hint"));
             if name(response, true, &word).clicked() && !is_live {
                 wish = Some(Try::Live);
             }
         }
     };
-    card_with(ui, skin, TEXTS.text("ssi_trial.title"), live, |ui| {
-        numbers(ui, skin, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
-        bits(ui, skin, encoder, &shown, view, actions);
-        problem(ui, skin, encoder.trial.problem());
-        findings(ui, skin, &shown);
+    card_with(ui, theme, TEXTS.text("ssi_trial.title"), live, |ui| {
+        numbers(ui, theme, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
+        bits(ui, theme, encoder, &shown, view, actions);
+        problem(ui, theme, encoder.trial.problem());
+        findings(ui, theme, &shown);
     });
     actions.extend(wish.map(|with| Action::device(id, Ssi::Try(with))));
     view.held = view.is_typed_in().then_some(shown);
 }
 
-fn numbers(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut View, put: &mut dyn FnMut(Try)) {
+fn numbers(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    shown: &Decoded,
+    view: &mut TrialUiState,
+    put: &mut dyn FnMut(Try),
+) {
     let position = shown.place.map_or_else(|| "–".to_owned(), |(position, _)| position.to_string());
     let most = TEXTS.text("ssi_trial.most").with("most", encoder.designer.layout().coding().last());
-    paragraph(ui, skin.caption(skin.words(&most)));
-    let word = say(skin, "ssi_trial.position");
-    entry(ui, skin, &word, |ui| {
+    paragraph(ui, theme.caption(theme.words(&most)));
+    let word = say(theme, "ssi_trial.position");
+    entry(ui, theme, &word, |ui| {
         settled_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
             put(Try::Position(whole(text)?));
             Ok(())
         });
     });
-    refused(ui, skin, view.position.as_ref());
+    refused(ui, theme, view.position.as_ref());
     match shown.place {
-        Some((_, Place::Shaft { turns, steps, degrees })) => {
-            let (own_turns, own_steps) = (skin.say("live.turns"), skin.say("live.step"));
-            entry(ui, skin, &own_turns, |ui| {
+        Some((_, Location::Shaft { turns, steps, degrees })) => {
+            let (own_turns, own_steps) = (theme.say("live.turns"), theme.say("live.step"));
+            entry(ui, theme, &own_turns, |ui| {
                 settled_entry(ui, &mut view.turns, &turns.to_string(), NUMBER, &own_turns, |text| {
                     put(Try::Place(whole(text)?, steps));
                     Ok(())
                 });
             });
-            refused(ui, skin, view.turns.as_ref());
-            entry(ui, skin, &own_steps, |ui| {
+            refused(ui, theme, view.turns.as_ref());
+            entry(ui, theme, &own_steps, |ui| {
                 settled_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
                     put(Try::Place(turns, whole(text)?));
                     Ok(())
                 });
             });
-            refused(ui, skin, view.steps.as_ref());
-            row(ui, skin, &say(skin, "ssi_trial.angle"), skin.mono(format!("{} °", skin.number(degrees, 4))));
+            refused(ui, theme, view.steps.as_ref());
+            row(ui, theme, &say(theme, "ssi_trial.angle"), theme.mono(format!("{} °", theme.number(degrees, 4))));
         }
-        Some((_, Place::Length { millimetres })) => {
-            row(ui, skin, &say(skin, "ssi_trial.length"), skin.mono(format!("{} mm", skin.number(millimetres, 4))));
+        Some((_, Location::Length { millimetres })) => {
+            row(ui, theme, &say(theme, "ssi_trial.length"), theme.mono(format!("{} mm", theme.number(millimetres, 4))));
         }
         None => {}
     }
 }
 
-fn refused(ui: &mut Ui, skin: &Skin, draft: Option<&(String, Option<Text>)>) {
-    problem(ui, skin, draft.and_then(|(_, problem)| problem.as_ref()));
+fn refused(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
+    problem(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 
 /// The bits as text: to be copied, and to be pasted over.
-fn bits(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut View, actions: &mut Vec<Action>) {
+fn bits(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    shown: &Decoded,
+    view: &mut TrialUiState,
+    actions: &mut Vec<Action>,
+) {
     let clocks = encoder.designer.layout().clocks();
     let own = frame_bits(shown.frame, clocks);
-    let word = say(skin, "ssi_trial.bits_label");
+    let word = say(theme, "ssi_trial.bits_label");
     ui.horizontal(|ui| {
-        ui.label(skin.label(&word));
+        ui.label(theme.label(&word));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, true, icons::COPY, &say(skin, "ssi_trial.copy")).clicked() {
+            if icon_button(ui, true, icons::COPY, &say(theme, "ssi_trial.copy")).clicked() {
                 ui.copy_text(own.clone());
             }
             let hex = format!("0x{:0width$X}", shown.frame, width = usize::from(clocks).div_ceil(4));
-            ui.add(egui::Label::new(skin.mono(hex)).selectable(true));
+            ui.add(egui::Label::new(theme.mono(hex)).selectable(true));
         });
     });
     let mut text = view.bits.take().unwrap_or_else(|| own.clone());
     // The frame around what is typed comes to it.
     let width = (ui.available_width() - 18.0).max(0.0);
-    let response = mono_entry(ui, skin, &mut text, width, &word, "");
+    let response = mono_entry(ui, theme, &mut text, width, &word, "");
     if response.has_focus() {
         view.bits = Some(text);
     } else if response.lost_focus() && text.trim() != own {
@@ -127,19 +147,19 @@ fn bits(ui: &mut Ui, skin: &Skin, encoder: &Encoder, shown: &Decoded, view: &mut
 }
 
 /// What there is to say of the frame.
-fn findings(ui: &mut Ui, skin: &Skin, shown: &Decoded) {
+fn findings(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
     if shown.findings.is_empty() {
         return;
     }
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
     for finding in &shown.findings {
         let (icon, colour) = match finding.meaning() {
-            Meaning::Invalid => (icons::X_CIRCLE, skin.palette.bad),
-            Meaning::Warning => (icons::WARNING, skin.palette.warn),
+            Meaning::Invalid => (icons::X_CIRCLE, theme.palette.bad),
+            Meaning::Warning => (icons::WARNING, theme.palette.warn),
         };
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icon).color(colour));
-            paragraph(ui, skin.words(&words::finding(finding)));
+            paragraph(ui, theme.words(&words::finding(finding)));
         });
     }
 }

@@ -6,9 +6,9 @@ use crate::devices::ssi::protocol::{Family, Signal};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, row};
-use crate::ui::wires::wires_ui;
+use crate::ui::wiring::wires_ui;
 
 /// Width of the column of wires.
 const WIRE: f32 = 84.0;
@@ -25,45 +25,45 @@ const WIRES: [(&str, &str); 6] = [
 
 const NOTES: [&str; 3] = ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.adapter"];
 
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, family: Option<&Family>) {
-    card(ui, skin, "wiring.title", |ui| {
-        wires_ui(ui, skin, &TEXTS, WIRE, &WIRES);
-        ui.add_space(skin.space.inside);
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
+    card(ui, theme, "wiring.title", |ui| {
+        wires_ui(ui, theme, &TEXTS, WIRE, &WIRES);
+        ui.add_space(theme.space.inside);
         for note in NOTES {
-            paragraph(ui, skin.caption(say(skin, note)));
+            paragraph(ui, theme.caption(say(theme, note)));
         }
         let Some(family) = family else { return };
         if !family.signals.is_empty() {
-            ui.add_space(skin.space.between);
-            ui.label(skin.heading(say(skin, "ssi_wiring.signals")));
+            ui.add_space(theme.space.between);
+            ui.label(theme.heading(say(theme, "ssi_wiring.signals")));
             for signal in &family.signals {
-                row(ui, skin, &signal.name, limits(skin, signal));
+                row(ui, theme, &signal.name, limits(theme, signal));
             }
         }
         if !family.notes.is_empty() {
-            ui.add_space(skin.space.between);
-            ui.label(skin.heading(&family.name));
+            ui.add_space(theme.space.between);
+            ui.label(theme.heading(&family.name));
             for note in &family.notes {
-                paragraph(ui, skin.caption(skin.words(&words::note(family, note))));
+                paragraph(ui, theme.caption(theme.words(&words::note(family, note))));
             }
-            paragraph(ui, skin.caption(skin.words(&words::note(family, &family.source))));
+            paragraph(ui, theme.caption(theme.words(&words::note(family, &family.source))));
         }
     });
 }
 
 /// What a signal may be.
-fn limits(skin: &Skin, signal: &Signal) -> String {
+fn limits(theme: &Theme, signal: &Signal) -> String {
     let volts = |(least, most): (f64, f64)| {
         if (most - least).abs() < 1e-9 {
-            skin.number(most, 2)
+            theme.number(most, 2)
         } else {
-            format!("{} … {}", skin.number(least, 2), skin.number(most, 2))
+            format!("{} … {}", theme.number(least, 2), theme.number(most, 2))
         }
     };
     let parts = [
-        signal.amplitude_volts.map(|own| skin.words(&TEXTS.text("ssi_wiring.volts_pp").with("volts", volts(own)))),
-        signal.offset_volts.map(|own| format!("{} {} V", say(skin, "ssi_wiring.offset"), volts(own))),
-        signal.supply_volts.map(|own| format!("{} {} V", say(skin, "ssi_wiring.at"), volts(own))),
+        signal.amplitude_volts.map(|own| theme.words(&TEXTS.text("ssi_wiring.volts_pp").with("volts", volts(own)))),
+        signal.offset_volts.map(|own| format!("{} {} V", say(theme, "ssi_wiring.offset"), volts(own))),
+        signal.supply_volts.map(|own| format!("{} {} V", say(theme, "ssi_wiring.at"), volts(own))),
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     if parts.is_empty() { "–".to_owned() } else { parts.join(" · ") }
@@ -73,7 +73,7 @@ fn limits(skin: &Skin, signal: &Signal) -> String {
 mod tests {
     use super::{NOTES, WIRES};
     use crate::devices::ssi::state::TEXTS;
-    use crate::ui::wires::{check_notes, check_wires};
+    use crate::ui::wiring::{check_notes, check_wires};
 
     /// Issue 22.23: SICK SSI description 2.1 (four lines, RS-422 or RS-485, pairs twisted and shielded), figure 2 and
     /// reference section 1 (clock and data idle high: the plus wires; the minus wires rest low), 2.7 (lengths and rates).

@@ -7,37 +7,37 @@ use crate::app::{Action, explain};
 use crate::link::Echo;
 use crate::parameter::Entry;
 use crate::ui::controls::{LABELS, choice, entry, icon_button, name, paragraph, text_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 use crate::units::Parity;
 
-pub(crate) fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, port: &mut String, actions: &mut Vec<Action>) {
-    entry(ui, skin, &skin.say("connect.port"), |ui| {
-        text_entry(ui, port, 300.0, &skin.say("connect.port"), "/dev/ttyUSB0");
-        if icon_button(ui, dialog.ports.is_some(), icons::ARROW_CLOCKWISE, &skin.say("connect.list_ports")).clicked() {
+pub(crate) fn serial(ui: &mut Ui, theme: &Theme, dialog: &Dialog, port: &mut String, actions: &mut Vec<Action>) {
+    entry(ui, theme, &theme.say("connect.port"), |ui| {
+        text_entry(ui, port, 300.0, &theme.say("connect.port"), "/dev/ttyUSB0");
+        if icon_button(ui, dialog.ports.is_some(), icons::ARROW_CLOCKWISE, &theme.say("connect.list_ports")).clicked() {
             actions.push(Action::Connect(Connect::ListPorts));
         }
     });
     match &dialog.ports {
         None => {
-            ui.label(skin.caption(skin.say("connect.listing")));
+            ui.label(theme.caption(theme.say("connect.listing")));
         }
         Some(Err(why)) => {
-            paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.warn));
+            paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));
         }
         Some(Ok(offers)) if offers.is_empty() => {
-            paragraph(ui, skin.caption(skin.say("connect.no_ports")));
+            paragraph(ui, theme.caption(theme.say("connect.no_ports")));
         }
         Some(Ok(offers)) => {
             for offer in offers {
                 ui.horizontal(|ui| {
                     ui.add_space(LABELS);
-                    let button = egui::Button::selectable(*port == offer.path, skin.mono(&offer.path));
+                    let button = egui::Button::selectable(*port == offer.path, theme.mono(&offer.path));
                     if ui.add(button).clicked() {
                         port.clone_from(&offer.path);
                     }
-                    ui.label(skin.label(&offer.description));
+                    ui.label(theme.label(&offer.description));
                     if !offer.listed {
-                        ui.label(skin.caption(skin.say("connect.not_listed")));
+                        ui.label(theme.caption(theme.say("connect.not_listed")));
                     }
                 });
             }
@@ -45,41 +45,47 @@ pub(crate) fn serial(ui: &mut Ui, skin: &Skin, dialog: &Dialog, port: &mut Strin
     }
 }
 
-pub(crate) fn network(ui: &mut Ui, skin: &Skin, host: &mut String, port: &mut String) {
-    place(ui, skin, "connect.host", (host, "192.168.0.7"), (port, "4001"));
-    ui.label(skin.caption(skin.say("connect.tcp_words")));
+pub(crate) fn network(ui: &mut Ui, theme: &Theme, host: &mut String, port: &mut String) {
+    place(ui, theme, "connect.host", (host, "192.168.0.7"), (port, "4001"));
+    ui.label(theme.caption(theme.say("connect.tcp_words")));
 }
 
 /// Host and port, each with what it may look like.
-pub(crate) fn place(ui: &mut Ui, skin: &Skin, id: &'static str, host: (&mut String, &str), port: (&mut String, &str)) {
-    let word = skin.say(id);
-    entry(ui, skin, &word, |ui| {
+pub(crate) fn place(
+    ui: &mut Ui,
+    theme: &Theme,
+    id: &'static str,
+    host: (&mut String, &str),
+    port: (&mut String, &str),
+) {
+    let word = theme.say(id);
+    entry(ui, theme, &word, |ui| {
         text_entry(ui, host.0, 220.0, &word, host.1);
-        text_entry(ui, port.0, 72.0, &skin.say("connect.tcp_port"), port.1);
+        text_entry(ui, port.0, 72.0, &theme.say("connect.tcp_port"), port.1);
     });
 }
 
-pub(crate) fn recording(ui: &mut Ui, skin: &Skin, file: &mut String, actions: &mut Vec<Action>) {
-    entry(ui, skin, &skin.say("connect.file"), |ui| {
-        text_entry(ui, file, 360.0, &skin.say("connect.file"), "capture.trace");
-        if icon_button(ui, true, icons::FOLDER_OPEN, &skin.say("connect.choose_file")).clicked() {
+pub(crate) fn recording(ui: &mut Ui, theme: &Theme, file: &mut String, actions: &mut Vec<Action>) {
+    entry(ui, theme, &theme.say("connect.file"), |ui| {
+        text_entry(ui, file, 360.0, &theme.say("connect.file"), "capture.trace");
+        if icon_button(ui, true, icons::FOLDER_OPEN, &theme.say("connect.choose_file")).clicked() {
             actions.push(Action::Connect(Connect::AskRecording));
         }
     });
 }
 
 /// The parity, beside the speed.
-pub(crate) fn parity(ui: &mut Ui, skin: &Skin, own: &mut Parity) {
+pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     let parities = [Parity::Even, Parity::Odd, Parity::None];
-    let parities = parities.map(|parity| (parity, skin.words(&explain::parity(parity))));
-    ui.label(skin.label(skin.say("settings_card.parity")));
-    choice(ui, &skin.say("settings_card.parity"), own, parities);
+    let parities = parities.map(|parity| (parity, theme.words(&explain::parity(parity))));
+    ui.label(theme.label(theme.say("settings_card.parity")));
+    choice(ui, &theme.say("settings_card.parity"), own, parities);
 }
 
 /// The heading over what is rarely needed; whether it is unfolded.
-pub(crate) fn unfolded(ui: &mut Ui, skin: &Skin, open: &mut bool) -> bool {
+pub(crate) fn unfolded(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
     let icon = if *open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
-    let word = skin.say("connect.more");
+    let word = theme.say("connect.more");
     let response = ui.add(egui::Button::new(format!("{icon}  {word}")).frame(false));
     if name(response, true, &word).clicked() {
         *open = !*open;
@@ -87,61 +93,61 @@ pub(crate) fn unfolded(ui: &mut Ui, skin: &Skin, open: &mut bool) -> bool {
     *open
 }
 
-pub(crate) fn echo(ui: &mut Ui, skin: &Skin, echo: &mut Echo) {
-    entry(ui, skin, &skin.say("connect.echo"), |ui| {
+pub(crate) fn echo(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
+    entry(ui, theme, &theme.say("connect.echo"), |ui| {
         let echoes =
             [(Echo::Unknown, "connect.echo_auto"), (Echo::On, "connect.echo_on"), (Echo::Off, "connect.echo_off")];
-        let echoes = echoes.map(|(echo, id)| (echo, skin.say(id)));
-        choice(ui, &skin.say("connect.echo"), echo, echoes);
+        let echoes = echoes.map(|(echo, id)| (echo, theme.say(id)));
+        choice(ui, &theme.say("connect.echo"), echo, echoes);
     });
 }
 
-pub(crate) fn margin(ui: &mut Ui, skin: &Skin, margin: &mut String) {
-    entry(ui, skin, &skin.say("connect.margin"), |ui| {
-        text_entry(ui, margin, 72.0, &skin.say("connect.margin"), "50");
-        ui.label(skin.label("ms"));
+pub(crate) fn margin(ui: &mut Ui, theme: &Theme, margin: &mut String) {
+    entry(ui, theme, &theme.say("connect.margin"), |ui| {
+        text_entry(ui, margin, 72.0, &theme.say("connect.margin"), "50");
+        ui.label(theme.label("ms"));
     });
 }
 
 /// Entries of parameters; `say` is the device's.
 pub(crate) fn typed(
     ui: &mut Ui,
-    skin: &Skin,
-    say: fn(&Skin, &'static str) -> String,
+    theme: &Theme,
+    say: fn(&Theme, &'static str) -> String,
     entries: impl IntoIterator<Item = Entry>,
     typed: &mut Typed,
 ) {
     for own in entries {
-        let (word, mut text) = (say(skin, own.label), typed.get(own.key).to_owned());
+        let (word, mut text) = (say(theme, own.label), typed.get(own.key).to_owned());
         // A number needs less room than a list of faults.
         let width = if own.hint.parse::<f64>().is_ok() { 96.0 } else { 200.0 };
-        entry(ui, skin, &word, |ui| {
+        entry(ui, theme, &word, |ui| {
             if text_entry(ui, &mut text, width, &word, &own.hint).changed() {
                 typed.set(own.key, text);
             }
             if !own.unit.is_empty() {
-                ui.label(skin.label(own.unit));
+                ui.label(theme.label(own.unit));
             }
         });
     }
 }
 
 /// Whether the adapter leaves the encoder's supply on at the end.
-pub(crate) fn leave_supply(ui: &mut Ui, skin: &Skin, leave_on: &mut bool) {
-    ui.checkbox(leave_on, skin.say("connect.leave_supply"));
-    paragraph(ui, skin.caption(skin.say("connect.leave_supply_words")));
+pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
+    ui.checkbox(leave_on, theme.say("connect.leave_supply"));
+    paragraph(ui, theme.caption(theme.say("connect.leave_supply_words")));
 }
 
 /// One of a few, side by side.
 pub(crate) fn segments<T: PartialEq + Copy, const N: usize>(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     own: &mut T,
     all: [(T, &'static str); N],
 ) {
     ui.horizontal(|ui| {
         for (one, id) in all {
-            let word = skin.say(id);
+            let word = theme.say(id);
             let response = ui.add(egui::Button::selectable(*own == one, &word));
             if name(response, true, &word).clicked() {
                 *own = one;

@@ -6,7 +6,7 @@ use egui::Ui;
 use crate::app::Action;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::{Action as Connect, Connect as Dialog};
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 /// The form of a kind of device, as the device implements it.
 pub trait TypedConnectForm: 'static {
@@ -18,7 +18,7 @@ pub trait TypedConnectForm: 'static {
     /// Draws the form. `more` is whether the rarely needed entries are unfolded, for all kinds.
     fn form_ui(
         ui: &mut Ui,
-        skin: &Skin,
+        theme: &Theme,
         dialog: &Dialog,
         form: &mut Self::Form,
         memory: (&mut Self::Memory, &mut bool),
@@ -29,7 +29,7 @@ pub trait TypedConnectForm: 'static {
 /// The form of a kind of device, as the dialog uses it, with its selections.
 pub trait ConnectForm {
     /// Draws the form. `more` is whether the rarely needed entries are unfolded, for all kinds.
-    fn form_ui(&mut self, ui: &mut Ui, skin: &Skin, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
+    fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 
 /// Begins the form of a kind of device.
@@ -41,10 +41,10 @@ pub(in crate::ui) fn begun<F: TypedConnectForm>() -> Box<dyn ConnectForm> {
 struct Begun<F: TypedConnectForm>(F::Memory);
 
 impl<F: TypedConnectForm> ConnectForm for Begun<F> {
-    fn form_ui(&mut self, ui: &mut Ui, skin: &Skin, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>) {
+    fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>) {
         let Some(own) = dialog.form::<F::Form>() else { return };
         let mut form = own.clone();
-        F::form_ui(ui, skin, dialog, &mut form, (&mut self.0, more), actions);
+        F::form_ui(ui, theme, dialog, &mut form, (&mut self.0, more), actions);
         if form != *own {
             // Before whatever else was clicked: that is to see it.
             actions.insert(0, Action::Connect(Connect::edit(form)));

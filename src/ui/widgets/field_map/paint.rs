@@ -5,7 +5,7 @@ use egui::{Align2, Color32, CornerRadius, FontId, Rect, Shape, Stroke, StrokeKin
 use super::MapField;
 use super::strip::{Strip, widest};
 use crate::ui::widgets::{focus_ring, hatch, series};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is going on with a part of the map.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,10 +16,10 @@ pub(super) struct State {
 }
 
 /// The shape of a run: half a gap free at the ends of the field, round there, square where it goes on in another line.
-fn shape(skin: &Skin, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
+fn shape(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
     let (begins, ends) = (number == 0, number + 1 == runs.len());
-    let (mut rect, radius) = (*run, skin.radius.nw);
+    let (mut rect, radius) = (*run, theme.radius.nw);
     if begins {
         rect.min.x += 1.0;
     }
@@ -31,16 +31,16 @@ fn shape(skin: &Skin, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
 }
 
 /// A field.
-pub(super) fn field(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], field: &MapField, state: &State) {
-    let colour = series(skin, field.colour);
+pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field: &MapField, state: &State) {
+    let colour = series(theme, field.colour);
     let painter = ui.painter();
     for number in 0..runs.len() {
-        let (rect, corners) = shape(skin, runs, number);
-        painter.rect_filled(rect, corners, skin.palette.sunken);
+        let (rect, corners) = shape(theme, runs, number);
+        painter.rect_filled(rect, corners, theme.palette.sunken);
         let strength = if state.hovered { 0.34 } else { 0.22 };
         painter.rect_filled(rect, corners, colour.gamma_multiply(strength));
         if field.unreadable {
-            hatch(painter, skin, rect, colour.gamma_multiply(0.3));
+            hatch(painter, theme, rect, colour.gamma_multiply(0.3));
         }
         let run = runs.get(number).copied().unwrap_or(rect);
         let mut x = run.left() + strip.block.x;
@@ -48,25 +48,25 @@ pub(super) fn field(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], field: &
             // Only at the edges: the field's words stand between.
             let (top, bottom) = (rect.top(), rect.bottom());
             let stroke = Stroke::new(1.0, colour.gamma_multiply(0.7));
-            painter.vline(x - 0.5, top..=top + skin.space.inside, stroke);
-            painter.vline(x - 0.5, bottom - skin.space.inside..=bottom, stroke);
+            painter.vline(x - 0.5, top..=top + theme.space.inside, stroke);
+            painter.vline(x - 0.5, bottom - theme.space.inside..=bottom, stroke);
             x += strip.block.x;
         }
-        let (width, edge) = if state.selected { (2.0, skin.palette.accent.into()) } else { (1.0, colour) };
+        let (width, edge) = if state.selected { (2.0, theme.palette.accent.into()) } else { (1.0, colour) };
         painter.rect_stroke(rect, corners, Stroke::new(width, edge), StrokeKind::Inside);
         if state.focused {
-            focus_ring(painter, skin, rect, corners);
+            focus_ring(painter, theme, rect, corners);
         }
     }
     if let Some(run) = runs.get(widest(runs)) {
-        inscribe(ui, skin, *run, field);
+        inscribe(ui, theme, *run, field);
     }
 }
 
 /// Number and icons above, the caption below, as far as they fit. In a narrow field the icons take the caption's place.
-fn inscribe(ui: &Ui, skin: &Skin, run: Rect, field: &MapField) {
-    let palette = skin.palette;
-    let inside = run.shrink2(Vec2::new(skin.space.between, skin.space.inside + 2.0));
+fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
+    let palette = theme.palette;
+    let inside = run.shrink2(Vec2::new(theme.space.between, theme.space.inside + 2.0));
     let painter = ui.painter();
     let flags = [
         (field.edited, icons::PENCIL_SIMPLE, palette.staged),
@@ -74,15 +74,15 @@ fn inscribe(ui: &Ui, skin: &Skin, run: Rect, field: &MapField) {
         (field.unreadable, icons::KEY, palette.text),
     ];
     let shown: Vec<_> = flags.into_iter().filter(|(shown, ..)| *shown).collect();
-    let size = skin.sizes.body;
+    let size = theme.sizes.body;
     let pitch = size + 1.0;
-    let font = skin.strong(size);
+    let font = theme.strong(size);
     let number = painter.layout_no_wrap(field.number.to_string(), font, palette.text.into());
-    let beside = number.size().x + skin.space.inside + shown.len() as f32 * pitch <= inside.width();
-    let caption = fitting(ui, skin, &field.caption, inside.width()).filter(|_| beside);
+    let beside = number.size().x + theme.space.inside + shown.len() as f32 * pitch <= inside.width();
+    let caption = fitting(ui, theme, &field.caption, inside.width()).filter(|_| beside);
     let (top, bottom) = (inside.top() + size / 2.0, inside.bottom() - size / 2.0 + 1.0);
     let y = if caption.is_some() || !beside { top } else { inside.center().y };
-    let narrow = run.width() < skin.space.inside * 7.0;
+    let narrow = run.width() < theme.space.inside * 7.0;
     let left = if narrow { run.center().x - number.size().x / 2.0 } else { inside.left() };
     if number.size().x <= run.width() - 2.0 {
         painter.galley(egui::pos2(left, y - number.size().y / 2.0), number, palette.text.into());
@@ -103,11 +103,11 @@ fn inscribe(ui: &Ui, skin: &Skin, run: Rect, field: &MapField) {
 }
 
 /// As much of a caption as fits: its parts, separated by ` · `, fall away from the end.
-fn fitting(ui: &Ui, skin: &Skin, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
+fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
     let mut rest = caption;
     while !rest.is_empty() {
-        let font = FontId::proportional(skin.sizes.caption);
-        let galley = ui.painter().layout_no_wrap(rest.to_owned(), font, skin.palette.text.into());
+        let font = FontId::proportional(theme.sizes.caption);
+        let galley = ui.painter().layout_no_wrap(rest.to_owned(), font, theme.palette.text.into());
         if galley.size().x <= room {
             return Some(galley);
         }
@@ -117,56 +117,56 @@ fn fitting(ui: &Ui, skin: &Skin, caption: &str, room: f32) -> Option<std::sync::
 }
 
 /// What is free: an outline a block.
-pub(super) fn free(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], state: &State) {
+pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: &State) {
     let painter = ui.painter();
     let edge = match state.hovered {
-        true => skin.palette.accent.into(),
-        false => Color32::from(skin.palette.muted).gamma_multiply(0.5),
+        true => theme.palette.accent.into(),
+        false => Color32::from(theme.palette.muted).gamma_multiply(0.5),
     };
     for number in 0..runs.len() {
-        let (rect, corners) = shape(skin, runs, number);
+        let (rect, corners) = shape(theme, runs, number);
         let run = runs.get(number).copied().unwrap_or(rect);
         let mut x = run.left();
         while x < run.right() - 1.0 {
             let block = Rect::from_min_size(egui::pos2(x, run.top()), strip.block).shrink2(Vec2::new(2.0, 0.0));
-            painter.rect_stroke(block, skin.space.inside, Stroke::new(1.0, edge), StrokeKind::Inside);
+            painter.rect_stroke(block, theme.space.inside, Stroke::new(1.0, edge), StrokeKind::Inside);
             x += strip.block.x;
         }
         if state.focused {
-            focus_ring(painter, skin, rect, corners);
+            focus_ring(painter, theme, rect, corners);
         }
     }
 }
 
 /// Two short lines at the end of the last field.
-pub(super) fn handle(ui: &Ui, skin: &Skin, run: Rect, active: bool) {
-    let colour = if active { skin.palette.accent } else { skin.palette.text };
-    let (x, y) = (run.right() - skin.space.between, run.center().y);
-    let half = if active { skin.space.between + 2.0 } else { skin.space.between };
+pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
+    let colour = if active { theme.palette.accent } else { theme.palette.text };
+    let (x, y) = (run.right() - theme.space.between, run.center().y);
+    let half = if active { theme.space.between + 2.0 } else { theme.space.between };
     for x in [x - 0.5, x + 2.5] {
         ui.painter().vline(x, y - half..=y + half, Stroke::new(1.0, colour));
     }
 }
 
 /// What the last field would be.
-pub(super) fn ghost(ui: &Ui, skin: &Skin, strip: &Strip, runs: &[Rect], words: &str) {
-    let accent = Color32::from(skin.palette.accent);
+pub(super) fn ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words: &str) {
+    let accent = Color32::from(theme.palette.accent);
     let painter = ui.painter();
     for number in 0..runs.len() {
-        let (rect, corners) = shape(skin, runs, number);
+        let (rect, corners) = shape(theme, runs, number);
         painter.rect_filled(rect, corners, accent.gamma_multiply(0.16));
         let rect = rect.shrink(0.5);
         let path = [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
-        painter.extend(Shape::dashed_line(&path, Stroke::new(1.5, accent), skin.space.inside, skin.space.inside));
+        painter.extend(Shape::dashed_line(&path, Stroke::new(1.5, accent), theme.space.inside, theme.space.inside));
     }
     let Some(last) = runs.last() else { return };
     // A label on the accent, inside the end of the ghost and never outside the map.
-    let font = FontId::monospace(skin.sizes.caption);
-    let galley = painter.layout_no_wrap(words.to_owned(), font, skin.palette.on_accent.into());
-    let size = galley.size() + Vec2::new(skin.space.between, skin.space.inside);
-    let right = last.right() - skin.space.between;
+    let font = FontId::monospace(theme.sizes.caption);
+    let galley = painter.layout_no_wrap(words.to_owned(), font, theme.palette.on_accent.into());
+    let size = galley.size() + Vec2::new(theme.space.between, theme.space.inside);
+    let right = last.right() - theme.space.between;
     let left = (right - size.x).max(strip.origin.x);
     let label = Rect::from_min_size(egui::pos2(left, last.center().y - size.y / 2.0), size);
-    painter.rect_filled(label, skin.space.inside, accent);
-    painter.galley(label.center() - galley.size() / 2.0, galley, skin.palette.on_accent.into());
+    painter.rect_filled(label, theme.space.inside, accent);
+    painter.galley(label.center() - galley.size() / 2.0, galley, theme.palette.on_accent.into());
 }

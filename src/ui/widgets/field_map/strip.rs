@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2};
 
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 /// Blocks from left to right and from line to line.
 #[derive(Clone, Copy, Debug)]
@@ -24,14 +24,14 @@ impl Strip {
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
     /// The largest blocks with which `count` of them fit two lines; the smallest where none do.
-    pub(super) fn new(skin: &Skin, room: f32, count: usize) -> Self {
-        let (margin, gap) = (skin.space.inside, skin.space.between);
+    pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
+        let (margin, gap) = (theme.space.inside, theme.space.between);
         let columns_of = |width: f32| ((room / width).floor() as usize).max(1);
-        let widths = Self::STEPS.map(|step| step * skin.space.inside);
+        let widths = Self::STEPS.map(|step| step * theme.space.inside);
         let fits = widths.into_iter().find(|width| columns_of(*width) * 2 >= count);
-        let width = fits.unwrap_or(Self::STEPS.last().copied().unwrap_or(4.0) * skin.space.inside);
+        let width = fits.unwrap_or(Self::STEPS.last().copied().unwrap_or(4.0) * theme.space.inside);
         let columns = columns_of(width);
-        let block = Vec2::new(width, skin.space.inside * 11.0);
+        let block = Vec2::new(width, theme.space.inside * 11.0);
         let lines = count.div_ceil(columns);
         let used = columns.min(count);
         let height = lines as f32 * block.y + lines.saturating_sub(1) as f32 * gap;

@@ -3,7 +3,7 @@
 use egui::{FontId, Pos2, Rect, Ui, Vec2};
 
 use super::view::Column;
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 /// Bytes a line.
 pub(super) const WIDTH: usize = 16;
@@ -32,20 +32,20 @@ fn on_grid(length: f32) -> f32 {
 }
 
 impl Grid {
-    pub(super) fn new(ui: &Ui, skin: &Skin, len: usize) -> Self {
-        let font = FontId::monospace(skin.sizes.body);
+    pub(super) fn new(ui: &Ui, theme: &Theme, len: usize) -> Self {
+        let font = FontId::monospace(theme.sizes.body);
         let (glyph, row) = ui.fonts_mut(|fonts| (fonts.glyph_width(&font, '0'), fonts.row_height(&font)));
         let digits = format!("{:X}", len.saturating_sub(1)).len().max(2);
-        let (byte, letter) = (on_grid(glyph * 2.0 + skin.space.between - 1.0), glyph.ceil());
+        let (byte, letter) = (on_grid(glyph * 2.0 + theme.space.between - 1.0), glyph.ceil());
         let places = |gap: f32| {
-            let hex_left = on_grid(glyph * digits as f32) + gap + skin.space.inside;
+            let hex_left = on_grid(glyph * digits as f32) + gap + theme.space.inside;
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
-            (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + skin.space.inside)
+            (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
         // In a small window the columns move together rather than the last letters be cut off.
-        let wide = places(skin.space.between);
-        let fits = wide.3 + skin.space.between * 2.0 <= ui.available_width();
-        let (gap, hex_left, text_left, width) = if fits { wide } else { places(skin.space.inside) };
+        let wide = places(theme.space.between);
+        let fits = wide.3 + theme.space.between * 2.0 <= ui.available_width();
+        let (gap, hex_left, text_left, width) = if fits { wide } else { places(theme.space.inside) };
         let row = on_grid(row + 2.0);
         Grid { font, glyph, row, width, digits, gap, text_left, hex_left, byte, letter, len }
     }

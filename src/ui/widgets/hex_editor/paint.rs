@@ -6,30 +6,30 @@ use super::grid::{Grid, WIDTH};
 use super::view::{Column, HexView};
 use super::{HexMark, HexModel};
 use crate::bits;
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 /// The line above: places in a line.
-pub(super) fn header(ui: &Ui, skin: &Skin, grid: &Grid, rect: Rect, model: &HexModel<'_>, view: &HexView) {
-    let font = FontId::monospace(skin.sizes.caption);
+pub(super) fn header(ui: &Ui, theme: &Theme, grid: &Grid, rect: Rect, model: &HexModel<'_>, view: &HexView) {
+    let font = FontId::monospace(theme.sizes.caption);
     let painter = ui.painter();
     for place in 0..WIDTH {
         let here = !model.wanted.is_empty() && view.cursor() % WIDTH == place;
-        let colour = if here { skin.palette.text } else { skin.palette.muted };
+        let colour = if here { theme.palette.text } else { theme.palette.muted };
         let cell = grid.cell(rect.min, Column::Hex, place);
         painter.text(cell.center(), Align2::CENTER_CENTER, format!("{place:X}"), font.clone(), colour.into());
     }
     let left = grid.cell(rect.min, Column::Text, 0).left_center();
-    let words = skin.say("widget.hex_text");
-    let caption = FontId::proportional(skin.sizes.caption);
-    painter.text(left, Align2::LEFT_CENTER, words, caption, skin.palette.muted.into());
+    let words = theme.say("widget.hex_text");
+    let caption = FontId::proportional(theme.sizes.caption);
+    painter.text(left, Align2::LEFT_CENTER, words, caption, theme.palette.muted.into());
     let y = rect.top() + grid.row + 0.5;
-    painter.hline(rect.x_range(), y, Stroke::new(1.0, skin.palette.line));
+    painter.hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
 }
 
 /// Everything of one frame that painting needs.
 struct Brush<'a> {
     ui: &'a Ui,
-    skin: &'a Skin,
+    theme: &'a Theme,
     grid: &'a Grid,
     origin: Pos2,
     model: &'a HexModel<'a>,
@@ -42,7 +42,7 @@ struct Brush<'a> {
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
 pub(super) fn lines(
     ui: &Ui,
-    skin: &Skin,
+    theme: &Theme,
     grid: &Grid,
     origin: Pos2,
     model: &HexModel<'_>,
@@ -51,13 +51,13 @@ pub(super) fn lines(
     hovered: Option<(Column, usize)>,
 ) {
     let hovered = hovered.map(|(_, at)| at);
-    let brush = Brush { ui, skin, grid, origin, model, view, focused: response.has_focus(), hovered };
+    let brush = Brush { ui, theme, grid, origin, model, view, focused: response.has_focus(), hovered };
     let seen = ui.clip_rect();
     let line_at = |y: f32| ((y - origin.y) / grid.row).floor().max(0.0) as usize;
     let (first, last) = (line_at(seen.top()), line_at(seen.bottom()) + 1);
     let x = origin.x + grid.text_left - grid.gap;
     let bottom = origin.y + grid.height_of(grid.lines());
-    ui.painter().vline(x.round() + 0.5, origin.y..=bottom, Stroke::new(1.0, skin.palette.line));
+    ui.painter().vline(x.round() + 0.5, origin.y..=bottom, Stroke::new(1.0, theme.palette.line));
     for line in first..last.min(grid.lines()) {
         brush.line(line);
     }
@@ -69,7 +69,7 @@ impl Brush<'_> {
         let end = (start + WIDTH).min(self.model.wanted.len());
         let here = (start..end).contains(&self.view.cursor());
         let address = format!("{start:0digits$X}", digits = self.grid.digits);
-        let colour = if here { self.skin.palette.text } else { self.skin.palette.muted };
+        let colour = if here { self.theme.palette.text } else { self.theme.palette.muted };
         let left = self.origin + Vec2::new(0.0, self.grid.row * (line as f32 + 0.5));
         self.ui.painter().text(left, Align2::LEFT_CENTER, address, self.grid.font.clone(), colour.into());
         self.selection(start, end);
@@ -92,15 +92,19 @@ impl Brush<'_> {
         }
         for column in [Column::Hex, Column::Text] {
             let active = self.focused && column == self.view.column;
-            let fill = Color32::from(self.skin.palette.accent).gamma_multiply(if active { 0.32 } else { 0.16 });
+            let fill = Color32::from(self.theme.palette.accent).gamma_multiply(if active { 0.32 } else { 0.16 });
             let left = self.grid.cell(self.origin, column, first);
             let right = self.grid.cell(self.origin, column, last - 1);
-            self.ui.painter().rect_filled(left.union(right).shrink2(Vec2::new(0.0, 1.0)), self.skin.space.inside, fill);
+            self.ui.painter().rect_filled(
+                left.union(right).shrink2(Vec2::new(0.0, 1.0)),
+                self.theme.space.inside,
+                fill,
+            );
         }
     }
 
     fn byte(&self, at: usize, byte: u8) {
-        let palette = self.skin.palette;
+        let palette = self.theme.palette;
         let changed = self.model.is_changed(at);
         let colour = Color32::from(if changed { palette.staged } else { palette.text });
         let painter = self.ui.painter();
@@ -108,7 +112,7 @@ impl Brush<'_> {
         if self.hovered == Some(at) {
             for cell in [hex, text] {
                 let cell = cell.shrink2(Vec2::new(0.0, 1.0));
-                painter.rect_filled(cell, self.skin.space.inside, Color32::from(palette.line));
+                painter.rect_filled(cell, self.theme.space.inside, Color32::from(palette.line));
             }
         }
         let pending = self.view.pending.filter(|_| at == self.view.cursor());
@@ -123,7 +127,7 @@ impl Brush<'_> {
         painter.text(text.center(), Align2::CENTER_CENTER, character, self.grid.font.clone(), ink);
         if changed && pending.is_none() {
             for (cell, half) in [(hex, self.grid.glyph), (text, self.grid.glyph / 2.0)] {
-                let y = cell.bottom() - self.skin.space.inside;
+                let y = cell.bottom() - self.theme.space.inside;
                 let x = cell.center().x - half..=cell.center().x + half;
                 painter.hline(x, y, Stroke::new(1.5, palette.staged));
             }
@@ -136,14 +140,14 @@ impl Brush<'_> {
         if first >= last {
             return;
         }
-        let stroke = Stroke::new(1.0, self.skin.palette.muted);
+        let stroke = Stroke::new(1.0, self.theme.palette.muted);
         let left = self.grid.cell(self.origin, Column::Hex, first);
         let right = self.grid.cell(self.origin, Column::Hex, last - 1);
         let (x0, x1) = (left.left() + 2.5, right.right() - 2.5);
         let y = left.bottom() - 0.5;
         let painter = self.ui.painter();
         painter.hline(x0..=x1, y, stroke);
-        let tick = y - self.skin.space.inside..=y;
+        let tick = y - self.theme.space.inside..=y;
         if mark.range.start >= start {
             painter.vline(x0, tick.clone(), stroke);
         }
@@ -154,9 +158,9 @@ impl Brush<'_> {
 
     fn cursor(&self) {
         let cell = self.grid.cell(self.origin, self.view.column, self.view.cursor());
-        let colour = if self.focused { self.skin.palette.accent } else { self.skin.palette.muted };
+        let colour = if self.focused { self.theme.palette.accent } else { self.theme.palette.muted };
         let rect = cell.shrink2(Vec2::new(0.0, 1.0));
         let stroke = Stroke::new(if self.focused { 1.5 } else { 1.0 }, colour);
-        self.ui.painter().rect_stroke(rect, self.skin.space.inside, stroke, StrokeKind::Inside);
+        self.ui.painter().rect_stroke(rect, self.theme.space.inside, stroke, StrokeKind::Inside);
     }
 }

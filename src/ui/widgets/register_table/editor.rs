@@ -3,29 +3,29 @@
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};
 
-use super::{Place, RegisterTable, RegisterView};
+use super::{RegisterLocation, RegisterTable, RegisterView};
 use crate::app::Text;
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 /// Draws the entry in its cell.
 pub(super) fn editor_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     table_id: Id,
     cell: Rect,
     table: &RegisterTable<'_>,
     view: &mut RegisterView,
-    take: &mut dyn FnMut(Place, &str) -> Result<(), Text>,
+    take: &mut dyn FnMut(RegisterLocation, &str) -> Result<(), Text>,
 ) {
     let Some(mut edit) = view.edit.take() else { return };
     let before = edit.text.clone();
     ui.spacing_mut().interact_size.y = cell.height();
     // What is typed stands where the value stood.
-    let inset = skin.space.inside;
+    let inset = theme.space.inside;
     let cell = Rect::from_min_max(cell.min - Vec2::new(inset, 0.0), cell.max - Vec2::new(inset, 0.0));
     let entry = TextEdit::singleline(&mut edit.text)
         .id(table_id.with("entry"))
-        .font(FontId::monospace(skin.sizes.body))
+        .font(FontId::monospace(theme.sizes.body))
         .margin(Margin::symmetric(inset as i8, 0))
         .desired_width(cell.width());
     let response = ui.put(cell, entry);

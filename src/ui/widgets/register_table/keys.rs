@@ -5,7 +5,7 @@ use egui::{Event, EventFilter, Id, Key, Modifiers, Ui};
 
 use super::lines::Lines;
 use super::view::{Edit, Selected};
-use super::{Place, RegisterEvent, RegisterTable, RegisterView};
+use super::{RegisterEvent, RegisterLocation, RegisterTable, RegisterView};
 
 /// Keeps the arrows for the table while it has the keyboard.
 pub(super) fn hold(ui: &Ui, id: Id) {
@@ -131,7 +131,12 @@ pub(super) fn begin(table: &RegisterTable<'_>, view: &mut RegisterView, typed: O
 }
 
 /// The same for a register.
-pub(super) fn begin_at(table: &RegisterTable<'_>, view: &mut RegisterView, place: Place, typed: Option<&str>) -> bool {
+pub(super) fn begin_at(
+    table: &RegisterTable<'_>,
+    view: &mut RegisterView,
+    place: RegisterLocation,
+    typed: Option<&str>,
+) -> bool {
     let row = (table.row)(place);
     if let Some(why) = row.read_only {
         view.refused = Some(why);

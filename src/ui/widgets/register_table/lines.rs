@@ -2,15 +2,15 @@
 //! built a line; thousands of registers cost no more than their groups.
 
 use super::view::Selected;
-use super::{Place, RegisterTable, RegisterView};
+use super::{RegisterLocation, RegisterTable, RegisterView};
 
 /// What a line is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineKind {
     Group(usize),
-    Row(Place),
+    Row(RegisterLocation),
     /// A bit field of a register, by its number.
-    Bits(Place, usize),
+    Bits(RegisterLocation, usize),
 }
 
 /// All lines.
@@ -35,8 +35,8 @@ impl Lines {
         let mut total = 0;
         let section = |(number, group): (usize, &super::RegisterGroup)| {
             let rows = if view.folded.contains(&number) { 0 } else { group.rows };
-            let range = Place { group: number, row: 0 }..Place { group: number, row: rows };
-            let fields = |place: &Place| (place.row, (table.row)(*place).fields.len());
+            let range = RegisterLocation { group: number, row: 0 }..RegisterLocation { group: number, row: rows };
+            let fields = |place: &RegisterLocation| (place.row, (table.row)(*place).fields.len());
             let open: Vec<_> = if rows > 0 { view.open.range(range).map(fields).collect() } else { Vec::new() };
             let own = Section { start: total, rows, open };
             total += 1 + rows + own.open.iter().map(|(_, fields)| fields).sum::<usize>();
@@ -60,11 +60,11 @@ impl Lines {
                 break;
             }
             if rest <= row + fields {
-                return Some(LineKind::Bits(Place { group, row: *row }, rest - row - 1));
+                return Some(LineKind::Bits(RegisterLocation { group, row: *row }, rest - row - 1));
             }
             rest -= fields;
         }
-        Some(LineKind::Row(Place { group, row: rest }))
+        Some(LineKind::Row(RegisterLocation { group, row: rest }))
     }
 
     /// The group that a line belongs to.
@@ -105,14 +105,17 @@ mod tests {
         RegisterGroup { rows, ..RegisterGroup::default() }
     }
 
-    fn place(group: usize, row: usize) -> Place {
-        Place { group, row }
+    fn place(group: usize, row: usize) -> RegisterLocation {
+        RegisterLocation { group, row }
     }
 
     #[test]
     fn every_line_is_found_both_ways() {
         let groups = [group(3), group(0), group(2), group(4)];
-        let row = |own: Place| RegisterRow { fields: vec![RegisterBits::default(); own.row + 1], ..Default::default() };
+        let row = |own: RegisterLocation| RegisterRow {
+            fields: vec![RegisterBits::default(); own.row + 1],
+            ..Default::default()
+        };
         let table = RegisterTable { label: "", groups: &groups, row: &row, kind: RegisterKind::Numbers };
         let mut view = RegisterView::default();
         view.fold(2, true);

@@ -7,7 +7,7 @@ use egui::{
 use super::columns::{Column, Columns};
 use super::{RegisterBits, RegisterGroup, RegisterKind, RegisterRow};
 use crate::app::Text;
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Height of the line with the names of the columns.
 pub(super) const HEADER: f32 = 20.0;
@@ -28,13 +28,13 @@ impl State {
         State { selected, hovered: response.hovered() }
     }
 
-    fn paint(self, ui: &Ui, skin: &Skin, rect: Rect) {
+    fn paint(self, ui: &Ui, theme: &Theme, rect: Rect) {
         let strength = match (self.selected, self.hovered) {
             (true, _) => 0.22,
             (false, true) => 0.08,
             (false, false) => return,
         };
-        ui.painter().rect_filled(rect, 2.0, Color32::from(skin.palette.accent).gamma_multiply(strength));
+        ui.painter().rect_filled(rect, 2.0, Color32::from(theme.palette.accent).gamma_multiply(strength));
     }
 }
 
@@ -56,72 +56,72 @@ const fn title(kind: RegisterKind, column: Column) -> &'static str {
 }
 
 /// The names of the columns.
-pub(super) fn header(ui: &mut Ui, skin: &Skin, kind: RegisterKind, columns: &Columns) {
+pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &Columns) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER), Sense::hover());
     let middle = rect.top() + HEADER / 2.0 - 2.0;
     for (column, range) in columns.iter().filter(|(column, _)| *column != Column::Marks) {
-        let words = skin.caption(skin.say(title(kind, column)));
-        inscribe(ui, skin, rect, middle, range, words, column == Column::Decimal);
+        let words = theme.caption(theme.say(title(kind, column)));
+        inscribe(ui, theme, rect, middle, range, words, column == Column::Decimal);
     }
-    ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, skin.palette.line));
+    ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, theme.palette.line));
 }
 
 /// The heading of a group.
-pub(super) fn heading(ui: &Ui, skin: &Skin, rect: Rect, group: &RegisterGroup, folded: bool, state: State) {
+pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup, folded: bool, state: State) {
     let painter = ui.painter();
-    painter.rect_filled(rect, 2.0, skin.palette.raised);
-    state.paint(ui, skin, rect);
+    painter.rect_filled(rect, 2.0, theme.palette.raised);
+    state.paint(ui, theme, rect);
     let caret = if folded { icons::CARET_RIGHT } else { icons::CARET_DOWN };
-    let palette = skin.palette;
+    let palette = theme.palette;
     let middle = rect.center().y;
-    let font = FontId::proportional(skin.sizes.caption);
+    let font = FontId::proportional(theme.sizes.caption);
     painter.text(pos2(rect.left() + 4.0, middle), Align2::LEFT_CENTER, caret, font.clone(), palette.muted.into());
-    let title = painter.layout_no_wrap(group.title.clone(), skin.strong(skin.sizes.body), palette.text.into());
+    let title = painter.layout_no_wrap(group.title.clone(), theme.strong(theme.sizes.body), palette.text.into());
     let right = rect.left() + CARET + title.size().x;
     painter.galley(pos2(rect.left() + CARET, middle - title.size().y / 2.0), title, palette.text.into());
-    let room = Rangef::new(right - rect.left() + skin.space.groups, rect.width());
-    inscribe(ui, skin, rect, middle, room, skin.caption(&group.note), false);
+    let room = Rangef::new(right - rect.left() + theme.space.groups, rect.width());
+    inscribe(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
 
 /// A register. Its value is not drawn while it is typed over.
 pub(super) fn row(
     ui: &Ui,
-    skin: &Skin,
+    theme: &Theme,
     rect: Rect,
     (kind, columns): (RegisterKind, &Columns),
     row: &RegisterRow,
     (open, typing): (bool, bool),
     state: State,
 ) {
-    state.paint(ui, skin, rect);
-    marks(ui, skin, rect.left_center(), row, open);
-    let palette = skin.palette;
+    state.paint(ui, theme, rect);
+    marks(ui, theme, rect.left_center(), row, open);
+    let palette = theme.palette;
     let value = if row.edited { palette.staged } else { palette.text };
     if kind == RegisterKind::Numbers
         && row.read_only.is_none()
         && let Some(range) = columns.range(Column::Value)
     {
-        ui.painter().rect_filled(box_of(skin, rect, range), 2.0, palette.raised);
+        ui.painter().rect_filled(box_of(theme, rect, range), 2.0, palette.raised);
     }
     for (column, range) in columns.iter() {
         let (words, ink) = match column {
             Column::Marks => continue,
-            Column::Address => (skin.mono(&row.address), palette.muted),
+            Column::Address => (theme.mono(&row.address), palette.muted),
             Column::Name => (egui::RichText::new(&row.name), palette.text),
             Column::Value if typing => continue,
-            Column::Value if row.value.is_empty() => (skin.mono("–"), palette.muted),
-            Column::Value => (skin.mono(&row.value), value),
-            Column::Decimal => (skin.mono(&row.decimal), value),
+            Column::Value if row.value.is_empty() => (theme.mono("–"), palette.muted),
+            Column::Value => (theme.mono(&row.value), value),
+            Column::Decimal => (theme.mono(&row.decimal), value),
             // The number stands for what it means where its own column has fallen away.
             Column::Meaning if row.meaning.is_empty() && columns.range(Column::Decimal).is_none() => {
-                (skin.mono(&row.decimal), value)
+                (theme.mono(&row.decimal), value)
             }
             Column::Meaning if kind == RegisterKind::Numbers => (egui::RichText::new(&row.meaning), palette.muted),
             Column::Meaning => (egui::RichText::new(&row.meaning), value),
-            Column::Access => (skin.mono(&row.access), palette.muted),
-            Column::Range => (skin.caption(&row.range), palette.muted),
-            Column::Default if row.differs => (skin.mono(format!("≠ {}", row.default)), palette.text),
-            Column::Default => (skin.mono(&row.default), palette.muted),
+            Column::Access => (theme.mono(&row.access), palette.muted),
+            Column::Range => (theme.caption(&row.range), palette.muted),
+            Column::Default if row.differs => (theme.mono(format!("≠ {}", row.default)), palette.text),
+            Column::Default => (theme.mono(&row.default), palette.muted),
         };
         let right = column == Column::Decimal;
         let range = match (column, columns.range(Column::Meaning)) {
@@ -129,7 +129,7 @@ pub(super) fn row(
             (Column::Value, Some(meaning)) if row.meaning.is_empty() => Rangef::new(range.min, meaning.max),
             _ => range,
         };
-        let width = inscribe(ui, skin, rect, rect.center().y, range, words.color(ink), right);
+        let width = inscribe(ui, theme, rect, rect.center().y, range, words.color(ink), right);
         if row.edited && column == Column::Value {
             let left = rect.left() + range.min;
             let y = rect.bottom() - 2.0;
@@ -139,17 +139,17 @@ pub(super) fn row(
 }
 
 /// Where the number of a line can be pressed to edit it.
-pub(super) fn box_of(skin: &Skin, rect: Rect, value: Rangef) -> Rect {
-    let inset = skin.space.inside;
-    let x = rect.left() + value.min - inset..=rect.left() + value.max - skin.space.between;
+pub(super) fn box_of(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
+    let inset = theme.space.inside;
+    let x = rect.left() + value.min - inset..=rect.left() + value.max - theme.space.between;
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
 }
 
 /// A caret for bit fields, a dot for what changed, a pencil for what was edited, a flash for what costs, a disk for what is kept.
-fn marks(ui: &Ui, skin: &Skin, left: Pos2, row: &RegisterRow, open: bool) {
-    let palette = skin.palette;
+fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
+    let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
-    let font = FontId::proportional(skin.sizes.caption);
+    let font = FontId::proportional(theme.sizes.caption);
     let text = |at: f32, icon: &str, colour: Color32| {
         ui.painter().text(left + Vec2::new(at, 0.0), Align2::CENTER_CENTER, icon, font.clone(), colour);
     };
@@ -169,19 +169,19 @@ fn marks(ui: &Ui, skin: &Skin, left: Pos2, row: &RegisterRow, open: bool) {
 }
 
 /// A bit field, below its register.
-pub(super) fn bits(ui: &Ui, skin: &Skin, rect: Rect, columns: &Columns, bits: &RegisterBits) {
-    let palette = skin.palette;
+pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: &RegisterBits) {
+    let palette = theme.palette;
     let ink = if bits.lit { palette.warn } else { palette.muted };
     for (column, range) in columns.iter() {
         let (words, inset) = match column {
-            Column::Address => (skin.mono(&bits.bits), skin.space.between),
-            Column::Name => (egui::RichText::new(&bits.name), skin.space.between),
-            Column::Value => (skin.mono(&bits.value), 0.0),
+            Column::Address => (theme.mono(&bits.bits), theme.space.between),
+            Column::Name => (egui::RichText::new(&bits.name), theme.space.between),
+            Column::Value => (theme.mono(&bits.value), 0.0),
             Column::Meaning => (egui::RichText::new(&bits.meaning), 0.0),
             Column::Marks | Column::Decimal | Column::Access | Column::Range | Column::Default => continue,
         };
         let range = Rangef::new(range.min + inset, range.max);
-        inscribe(ui, skin, rect, rect.center().y, range, words.color(ink), false);
+        inscribe(ui, theme, rect, rect.center().y, range, words.color(ink), false);
     }
     let x = rect.left() + MARK / 2.0;
     ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
@@ -190,30 +190,30 @@ pub(super) fn bits(ui: &Ui, skin: &Skin, rect: Rect, columns: &Columns, bits: &R
 /// Words within a column, cut off where they are too long; how wide they are.
 fn inscribe(
     ui: &Ui,
-    skin: &Skin,
+    theme: &Theme,
     line: Rect,
     middle: f32,
     range: Rangef,
     words: egui::RichText,
     to_the_right: bool,
 ) -> f32 {
-    let room = range.span() - skin.space.between;
+    let room = range.span() - theme.space.between;
     if room <= 0.0 {
         return 0.0;
     }
     let galley = egui::WidgetText::from(words).into_galley(ui, Some(TextWrapMode::Truncate), room, TextStyle::Body);
     let width = galley.size().x;
-    let left = if to_the_right { range.max - skin.space.groups - width } else { range.min };
-    ui.painter().galley(pos2(line.left() + left, middle - galley.size().y / 2.0), galley, skin.palette.text.into());
+    let left = if to_the_right { range.max - theme.space.groups - width } else { range.min };
+    ui.painter().galley(pos2(line.left() + left, middle - galley.size().y / 2.0), galley, theme.palette.text.into());
     width
 }
 
 /// What a register is, and what there was no room for.
-pub(super) fn tip(ui: &mut Ui, skin: &Skin, (kind, columns): (RegisterKind, &Columns), row: &RegisterRow) {
-    ui.spacing_mut().item_spacing.y = skin.space.inside;
-    ui.label(egui::RichText::new(row.label()).color(skin.palette.text));
+pub(super) fn tip(ui: &mut Ui, theme: &Theme, (kind, columns): (RegisterKind, &Columns), row: &RegisterRow) {
+    ui.spacing_mut().item_spacing.y = theme.space.inside;
+    ui.label(egui::RichText::new(row.label()).color(theme.palette.text));
     if !row.meaning.is_empty() {
-        ui.label(egui::RichText::new(&row.meaning).color(skin.palette.muted));
+        ui.label(egui::RichText::new(&row.meaning).color(theme.palette.muted));
     }
     let values = [
         (Column::Decimal, &row.decimal),
@@ -224,26 +224,26 @@ pub(super) fn tip(ui: &mut Ui, skin: &Skin, (kind, columns): (RegisterKind, &Col
     for (column, value) in values {
         if columns.range(column).is_none() && !value.is_empty() {
             ui.horizontal(|ui| {
-                ui.label(skin.caption(skin.say(title(kind, column))));
-                ui.label(skin.mono(value));
+                ui.label(theme.caption(theme.say(title(kind, column))));
+                ui.label(theme.mono(value));
             });
         }
     }
     let note = |ui: &mut Ui, icon: &str, words: &str, colour: Color32| {
-        ui.label(skin.caption(format!("{icon} {words}")).color(colour));
+        ui.label(theme.caption(format!("{icon} {words}")).color(colour));
     };
-    let palette = skin.palette;
+    let palette = theme.palette;
     if row.edited {
-        note(ui, icons::PENCIL_SIMPLE, &skin.say("widget.register_edited"), palette.staged.into());
+        note(ui, icons::PENCIL_SIMPLE, &theme.say("widget.register_edited"), palette.staged.into());
     } else if row.changed {
         let words = match row.before.as_str() {
-            "" => skin.say("widget.register_changed"),
-            before => skin.words(&Text::new("widget.register_changed_from").with("value", before)),
+            "" => theme.say("widget.register_changed"),
+            before => theme.words(&Text::new("widget.register_changed_from").with("value", before)),
         };
         note(ui, icons::INFO, &words, palette.accent.into());
     }
     if row.differs {
-        note(ui, icons::INFO, &skin.say("widget.register_differs"), palette.text.into());
+        note(ui, icons::INFO, &theme.say("widget.register_differs"), palette.text.into());
     }
     if let Some(cost) = &row.cost {
         note(ui, icons::LIGHTNING, cost, palette.warn.into());

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::Place;
+use super::RegisterLocation;
 use crate::app::Text;
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 /// What a table remembers between two frames.
 #[derive(Clone, Debug, Default)]
@@ -13,10 +13,10 @@ pub struct RegisterView {
     /// Groups of which only the heading is shown.
     pub(super) folded: BTreeSet<usize>,
     /// Registers whose bit fields are shown.
-    pub(super) open: BTreeSet<Place>,
+    pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
     /// The register that was pressed to be edited.
-    pub(super) wanted: Option<Place>,
+    pub(super) wanted: Option<RegisterLocation>,
     /// Why the value that should be edited cannot be.
     pub(super) refused: Option<String>,
     /// What is selected has moved and has to be seen.
@@ -29,13 +29,13 @@ pub struct RegisterView {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Selected {
     Group(usize),
-    Row(Place),
+    Row(RegisterLocation),
 }
 
 /// What is being typed.
 #[derive(Clone, Debug)]
 pub(super) struct Edit {
-    pub(super) place: Place,
+    pub(super) place: RegisterLocation,
     pub(super) text: String,
     /// Why it was not taken.
     pub(super) problem: Option<Text>,
@@ -47,7 +47,7 @@ pub(super) struct Edit {
 
 impl RegisterView {
     /// The register that is selected.
-    pub fn selected(&self) -> Option<Place> {
+    pub fn selected(&self) -> Option<RegisterLocation> {
         match self.selected {
             Some(Selected::Row(place)) => Some(place),
             Some(Selected::Group(_)) | None => None,
@@ -63,13 +63,13 @@ impl RegisterView {
     }
 
     /// Why what was typed, or should be, cannot be taken.
-    pub fn problem(&self, skin: &Skin) -> Option<String> {
-        let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| skin.words(problem));
+    pub fn problem(&self, theme: &Theme) -> Option<String> {
+        let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.words(problem));
         typed.or_else(|| self.refused.clone())
     }
 
     /// The register whose value is being typed, or was refused.
-    pub fn typed(&self) -> Option<Place> {
+    pub fn typed(&self) -> Option<RegisterLocation> {
         self.edit.as_ref().map(|edit| edit.place)
     }
 
@@ -79,7 +79,7 @@ impl RegisterView {
     }
 
     /// Selects a register, unfolds its group and brings it in sight.
-    pub fn select(&mut self, place: Place) {
+    pub fn select(&mut self, place: RegisterLocation) {
         self.folded.remove(&place.group);
         self.go(Selected::Row(place));
     }
@@ -100,7 +100,7 @@ impl RegisterView {
 
     /// The registers of the table are other ones: what is selected or typed goes along with its own, and ends where that
     /// has gone.
-    pub fn follow(&mut self, now: impl Fn(Place) -> Option<Place>) {
+    pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(Selected::Row(place)) => now(place).map(Selected::Row),
             group => group,
@@ -115,7 +115,7 @@ impl RegisterView {
         self.reveal = true;
     }
 
-    pub(super) fn unfold(&mut self, place: Place, shown: bool) {
+    pub(super) fn unfold(&mut self, place: RegisterLocation, shown: bool) {
         if shown {
             self.open.insert(place);
         } else {

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};
 
 use super::Gauge;
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Least width of the scale, and widths of what stands before it.
 const SCALE: f32 = 96.0;
@@ -14,27 +14,27 @@ const VALUE: f32 = 96.0;
 const HEIGHT: f32 = 20.0;
 
 /// Draws name, value, scale and limits of each on one line; the limits below where there is no room.
-pub(super) fn gauges_ui(ui: &mut Ui, skin: &Skin, gauges: &[Gauge]) {
+pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
     let width = |gauge: &Gauge| {
-        let font = FontId::proportional(skin.sizes.caption);
-        ui.painter().layout_no_wrap(gauge.limits.clone(), font, skin.palette.muted.into()).size().x
+        let font = FontId::proportional(theme.sizes.caption);
+        ui.painter().layout_no_wrap(gauge.limits.clone(), font, theme.palette.muted.into()).size().x
     };
     // The scales of all of them are equally long.
     let limits = gauges.iter().map(width).fold(0.0, f32::max);
-    let room = ui.available_width() - ICON - NAME - VALUE - skin.space.between * 3.0;
-    let beside = room - limits - skin.space.between;
+    let room = ui.available_width() - ICON - NAME - VALUE - theme.space.between * 3.0;
+    let beside = room - limits - theme.space.between;
     let (scale, below) = if beside >= SCALE { (beside, false) } else { (room, true) };
     ui.scope(|ui| {
         // What is read stands closer than what is touched.
         ui.spacing_mut().interact_size.y = HEIGHT;
         for gauge in gauges {
-            gauge_ui(ui, skin, gauge, scale.clamp(SCALE / 2.0, SCALE * 3.0), below);
+            gauge_ui(ui, theme, gauge, scale.clamp(SCALE / 2.0, SCALE * 3.0), below);
         }
     });
 }
 
-fn gauge_ui(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, limits_below: bool) {
-    let palette = skin.palette;
+fn gauge_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, limits_below: bool) {
+    let palette = theme.palette;
     let (icon, ink) = match (gauge.fits(), gauge.value) {
         (true, _) if !gauge.is_best() => (icons::INFO, palette.text),
         (true, _) => (icons::CHECK_CIRCLE, palette.good),
@@ -43,17 +43,17 @@ fn gauge_ui(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, limits_below: b
     };
     ui.horizontal(|ui| {
         column(ui, ICON, RichText::new(icon).color(ink));
-        column(ui, NAME, skin.label(&gauge.name));
-        column(ui, VALUE, skin.mono(&gauge.shown).color(ink));
-        scale(ui, skin, gauge, width, ink.into());
+        column(ui, NAME, theme.label(&gauge.name));
+        column(ui, VALUE, theme.mono(&gauge.shown).color(ink));
+        scale(ui, theme, gauge, width, ink.into());
         if !limits_below {
-            ui.label(skin.caption(&gauge.limits));
+            ui.label(theme.caption(&gauge.limits));
         }
     });
     if limits_below {
         ui.horizontal(|ui| {
-            ui.add_space(ICON + skin.space.between);
-            ui.label(skin.caption(&gauge.limits));
+            ui.add_space(ICON + theme.space.between);
+            ui.label(theme.caption(&gauge.limits));
         });
     }
 }
@@ -66,7 +66,7 @@ fn column(ui: &mut Ui, width: f32, words: RichText) {
 }
 
 /// The band that is allowed, and a hand where the value is; beyond the scale an arrow at its end.
-fn scale(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, ink: Color32) {
+fn scale(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Meter, true, &gauge.name);
@@ -82,15 +82,15 @@ fn scale(ui: &mut Ui, skin: &Skin, gauge: &Gauge, width: f32, ink: Color32) {
     let x = |share: f32| rect.left() + rect.width() * share.clamp(0.0, 1.0);
     let painter = ui.painter();
     let track = Rect::from_center_size(rect.center(), Vec2::new(rect.width(), 6.0));
-    painter.rect_filled(track, 3.0, skin.palette.sunken);
-    painter.rect_stroke(track, 3.0, Stroke::new(1.0, skin.palette.line), egui::StrokeKind::Inside);
+    painter.rect_filled(track, 3.0, theme.palette.sunken);
+    painter.rect_stroke(track, 3.0, Stroke::new(1.0, theme.palette.line), egui::StrokeKind::Inside);
     let band = |range: &std::ops::RangeInclusive<f64>, strength: f32| {
         // A narrow band is still to be seen.
         let (from, to) = (x(share(*range.start())), x(share(*range.end())));
         let half = ((to - from) / 2.0).max(1.5);
         let middle = (from + to) / 2.0;
         let place = Rect::from_min_max(pos2(middle - half, track.top()), pos2(middle + half, track.bottom()));
-        painter.rect_filled(place, 2.0, Color32::from(skin.palette.good).gamma_multiply(strength));
+        painter.rect_filled(place, 2.0, Color32::from(theme.palette.good).gamma_multiply(strength));
     };
     match &gauge.best {
         Some(best) => {

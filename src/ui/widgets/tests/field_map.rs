@@ -4,7 +4,7 @@ use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use super::{NONE, focus, press, skin, window};
+use super::{NONE, focus, press, theme, window};
 use crate::ui::widgets::{FieldMap, MapEvent, MapField, field_map};
 
 #[derive(Default)]
@@ -38,7 +38,7 @@ fn map(sizes: &[usize], free: usize) -> Harness<'static, Memory> {
             resize: Some(1..=8),
             ..FieldMap::default()
         };
-        state.events.extend(field_map(ui, &skin(), &map));
+        state.events.extend(field_map(ui, &theme(), &map));
     })
 }
 

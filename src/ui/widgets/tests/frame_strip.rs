@@ -2,7 +2,7 @@
 
 use egui_kittest::kittest::Queryable;
 
-use super::{skin, window};
+use super::{theme, window};
 use crate::analysis::quality::Verdict;
 use crate::ui::widgets::{FrameStrip, StripField, frame_strip};
 
@@ -32,7 +32,7 @@ fn a_frame_says_its_fields() {
             ui.set_max_width(width);
             // Fewer bits than the fields have: the rest is not known.
             let bits: Vec<Option<bool>> = (0..20).map(|at| Some(at % 3 == 0)).collect();
-            frame_strip(ui, &skin(), &FrameStrip { label: "Frame", fields: &fields, bits: &bits });
+            frame_strip(ui, &theme(), &FrameStrip { label: "Frame", fields: &fields, bits: &bits });
         });
         let value = harness.get_by_label("Frame").value().unwrap();
         assert_eq!(value, "Start, MT: 4660, ST: 98304, nERR: error, CRC: 0E ≠ 0F");

@@ -4,7 +4,7 @@ use egui::{Event, Key, Modifiers, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use super::{CTRL, NONE, SHIFT, focus, press, skin, window};
+use super::{CTRL, NONE, SHIFT, focus, press, theme, window};
 use crate::app::Text;
 use crate::ui::widgets::{HexEdit, HexMark, HexModel, HexView, hex_editor};
 
@@ -26,7 +26,7 @@ fn editor(count: u8, read_only: Option<Text>) -> Harness<'static, Bytes> {
         let marks = [HexMark { range: 4..8, words: "belongs to the mounting" }];
         let model = HexModel { device: &state.device, wanted: &state.wanted, marks: &marks, read_only: None, lines: 8 };
         let model = HexModel { read_only: state.read_only.as_ref(), ..model };
-        let edits = hex_editor(ui, &skin(), BYTES, &model, &mut state.view);
+        let edits = hex_editor(ui, &theme(), BYTES, &model, &mut state.view);
         for edit in &edits {
             match edit {
                 HexEdit::Put { address, bytes } => {

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 
 use HoldEvent::{Hold, Press, Release, Stop};
 
-use super::{focus, skin, window};
+use super::{focus, theme, window};
 use crate::app::HoldEvent;
 use crate::ui::widgets::{HoldButton, HoldSurroundings, hold_button, surround_hold_buttons};
 
@@ -25,7 +25,7 @@ fn jog() -> Harness<'static, Jog> {
         }
         surround_hold_buttons(ui.ctx(), jog.around);
         let button = HoldButton { word: "+", caption: "hold", label: "Jog up", enabled: !jog.locked };
-        jog.events.extend(hold_button(ui, &skin(), &button, Vec2::new(120.0, 64.0)));
+        jog.events.extend(hold_button(ui, &theme(), &button, Vec2::new(120.0, 64.0)));
     })
 }
 

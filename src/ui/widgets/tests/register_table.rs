@@ -7,16 +7,16 @@ use egui::{Event, Key, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use super::{CTRL, NONE, focus, press, skin, window};
+use super::{CTRL, NONE, focus, press, theme, window};
 use crate::app::Text;
 use crate::ui::widgets::{
-    Place, RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterOutput, RegisterRow, RegisterTable,
-    RegisterView, register_table,
+    RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterOutput, RegisterRow,
+    RegisterTable, RegisterView, register_table,
 };
 
 #[derive(Default)]
 struct Registers {
-    edits: BTreeMap<Place, u8>,
+    edits: BTreeMap<RegisterLocation, u8>,
     view: RegisterView,
     events: Vec<RegisterEvent>,
     output: RegisterOutput,
@@ -27,7 +27,7 @@ struct Registers {
 const TABLE: &str = "Registers";
 const BANKS: usize = 68;
 
-fn register(place: Place, edited: Option<u8>) -> RegisterRow {
+fn register(place: RegisterLocation, edited: Option<u8>) -> RegisterRow {
     let value = edited.unwrap_or((place.row & 0xFF) as u8);
     let bits = |at: usize| RegisterBits { bits: format!("b{at}"), name: format!("flag {at}"), ..Default::default() };
     RegisterRow {
@@ -54,7 +54,7 @@ fn table_of(kind: RegisterKind) -> Harness<'static, Registers> {
         .collect();
     window(Registers::default(), move |ui, state: &mut Registers| {
         let (asked, edits) = (RefCell::new(0), &state.edits);
-        let row = |place: Place| {
+        let row = |place: RegisterLocation| {
             *asked.borrow_mut() += 1;
             register(place, edits.get(&place).copied())
         };
@@ -65,7 +65,7 @@ fn table_of(kind: RegisterKind) -> Harness<'static, Registers> {
             put = Some((place, value));
             Ok(())
         };
-        let output = register_table(ui, &skin(), &model, 400.0, &mut state.view, &mut take);
+        let output = register_table(ui, &theme(), &model, 400.0, &mut state.view, &mut take);
         state.asked = asked.into_inner();
         state.edits.extend(put);
         if let Some(RegisterEvent::Revert(place)) = output.event {
@@ -81,11 +81,11 @@ fn selected(harness: &Harness<'_, Registers>) -> String {
 }
 
 fn problem(harness: &Harness<'_, Registers>) -> Option<String> {
-    harness.state().view.problem(&skin())
+    harness.state().view.problem(&theme())
 }
 
-fn place(group: usize, row: usize) -> Place {
-    Place { group, row }
+fn place(group: usize, row: usize) -> RegisterLocation {
+    RegisterLocation { group, row }
 }
 
 /// Presses at a row, at so many points from its left.
@@ -267,7 +267,7 @@ fn what_is_typed_stays_with_its_register_when_the_lines_are_other_ones() {
         harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
     };
     assert_eq!(typed(&harness).as_deref(), Some("00:05 register 5"));
-    harness.state_mut().view.follow(|own| Some(Place { row: own.row + 1, ..own }));
+    harness.state_mut().view.follow(|own| Some(RegisterLocation { row: own.row + 1, ..own }));
     harness.run();
     assert_eq!(typed(&harness).as_deref(), Some("00:06 register 6"));
     assert_eq!(harness.state().view.selected(), Some(place(0, 6)));

@@ -3,7 +3,7 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use super::{skin, window};
+use super::{theme, window};
 use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
 
 #[derive(Default)]
@@ -32,7 +32,7 @@ fn procedure(run: Run) -> Harness<'static, Run> {
         let list = [step("Ask", StepState::Done, "Another drive"), turn, step("Check", StepState::ToCome, "")];
         let start = Some(("Start", run.refused.map_or(Ok(()), Err)));
         let model = Steps { steps: &list, start, skip: Some("Leave out") };
-        run.events.extend(steps(ui, &skin(), &model));
+        run.events.extend(steps(ui, &theme(), &model));
     })
 }
 

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::{Attempt, Master, Taken, Trouble};
+use super::{Attempt, ExchangeError, Master, Taken};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
 use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
 use crate::devices::biss::procedures::error::{Asked, Damage, Error};
@@ -144,12 +144,12 @@ impl<'a> Master<'a> {
                 self.station.bank = self.station.bank.map(|(bank, _)| (bank, now));
                 return Ok(Ok(answered.reply));
             }
-            Ok(None) => Trouble::Silence { echo_heard: false },
+            Ok(None) => ExchangeError::Silence { echo_heard: false },
             Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::NO_ANSWER, .. })) => {
-                Trouble::Silence { echo_heard: false }
+                ExchangeError::Silence { echo_heard: false }
             }
             Err(Failure::Adapter(AdapterError::Refused { code: ErrorCode::WRONG_ANSWER, .. })) => {
-                Trouble::Damage(Damage::ControlFrame)
+                ExchangeError::Damage(Damage::ControlFrame)
             }
             Err(failure) => {
                 self.may_be_reset(&failure);
@@ -182,11 +182,11 @@ impl<'a> Master<'a> {
                 let is_split_known = self.station.is_split_known();
                 Ok(PositionReading { crc_errors, is_split_known, ..PositionReading::in_frame(at, &reading, &layout) })
             }
-            Err(FrameError::StuckLow) => Err(Trouble::NoFrame(NoFrame::StuckLow)),
-            Err(FrameError::StuckHigh) => Err(Trouble::NoFrame(NoFrame::StuckHigh)),
+            Err(FrameError::StuckLow) => Err(ExchangeError::NoFrame(NoFrame::StuckLow)),
+            Err(FrameError::StuckHigh) => Err(ExchangeError::NoFrame(NoFrame::StuckHigh)),
             Err(cause) => {
                 self.station.crc_errors = self.station.crc_errors.saturating_add(1);
-                Err(Trouble::Damage(Damage::Frame(cause)))
+                Err(ExchangeError::Damage(Damage::Frame(cause)))
             }
         })
     }
@@ -209,7 +209,7 @@ impl<'a> Master<'a> {
             other => return Err(Error::Unexpected(format!("a frame with status {}", other.byte()))),
         };
         self.station.bank = None;
-        Ok(Err(Trouble::NoFrame(no_frame)))
+        Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
     /// Five frames had wrong checksums. Where none has been right yet, more are looked at: noise lets some through,
@@ -221,7 +221,7 @@ impl<'a> Master<'a> {
         for _ in 0..WRONG_FRAMES {
             match self.bus_position_once()? {
                 Ok(reading) => return Ok(reading),
-                Err(Trouble::Damage(Damage::Frame(_))) => {}
+                Err(ExchangeError::Damage(Damage::Frame(_))) => {}
                 Err(_) => return Err(failed),
             }
         }
@@ -237,7 +237,7 @@ impl<'a> Master<'a> {
     pub(super) fn diagnose(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.frame_once() {
-            Ok(Err(Trouble::NoFrame(cause))) => self.no_frame(cause, tries),
+            Ok(Err(ExchangeError::NoFrame(cause))) => self.no_frame(cause, tries),
             _ => failed,
         }
     }

@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-use super::{Attempt, Master, Taken, Trouble};
+use super::{Attempt, ExchangeError, Master, Taken};
 use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
@@ -183,16 +183,16 @@ impl Master<'_> {
     }
 
     /// The time is up.
-    fn give_up(&mut self, heard: Heard) -> Trouble {
+    fn give_up(&mut self, heard: Heard) -> ExchangeError {
         let broken = heard.raw.strip_prefix(&*heard.sent).unwrap_or(&heard.raw);
         let echo = if heard.echo_heard { heard.sent.len() } else { 0 };
         let bytes = heard.bytes.saturating_sub(echo);
         let now = self.now();
         self.line.show(now, MaskedBytes::clear(broken));
         match heard.damage {
-            Some(damage) => Trouble::Damage(damage),
-            None if bytes > 0 => Trouble::Damage(Damage::NoFrame { bytes }),
-            None => Trouble::Silence { echo_heard: heard.echo_heard },
+            Some(damage) => ExchangeError::Damage(damage),
+            None if bytes > 0 => ExchangeError::Damage(Damage::NoFrame { bytes }),
+            None => ExchangeError::Silence { echo_heard: heard.echo_heard },
         }
     }
 }

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::gauge::Gauge;
 use super::operator::Measured;
-use super::{Activity, Answer, Demand, Detail, Failure, Motion, News, Operator, Run, Standing, Step, Task};
+use super::speed_monitor::SpeedMonitor;
+use super::{Activity, Answer, Demand, Detail, Failure, LeftState, Motion, News, Operator, Run, Step, Task};
 use crate::devices::biss::procedures::{Error, Master};
 use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
@@ -40,7 +40,7 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
     pub(super) description: Arc<Description>,
     operator: &'g mut dyn Operator,
     tell: &'g mut dyn FnMut(News),
-    standing: Standing,
+    standing: LeftState,
     op: usize,
     step: Step,
     cycles: u64,
@@ -79,7 +79,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         operator: &'g mut dyn Operator,
         tell: &'g mut dyn FnMut(News),
     ) -> Self {
-        let standing = Standing::in_operation(false);
+        let standing = LeftState::in_operation(false);
         Guide { master, description, operator, tell, standing, op: 0, step: Step::LeadBack, cycles: 0 }
     }
 
@@ -90,11 +90,11 @@ impl<'g, 'm> Guide<'g, 'm> {
 
     /// The encoder was found in operation; somebody may have left the password set.
     pub(in crate::devices::biss::procedures) fn found(&mut self, password: bool) {
-        self.standing = Standing::in_operation(password);
+        self.standing = LeftState::in_operation(password);
     }
 
     /// What is known of the encoder's state.
-    pub(in crate::devices::biss::procedures) fn standing(&self) -> &Standing {
+    pub(in crate::devices::biss::procedures) fn standing(&self) -> &LeftState {
         &self.standing
     }
 
@@ -292,7 +292,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
         self.step(Step::Await(task));
         let begun = self.master.now();
-        let mut gauge = Gauge::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
+        let mut gauge = SpeedMonitor::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
         let mut is_told = false;
         loop {
             let measured = self.measure(task, &mut gauge)?;
@@ -314,7 +314,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 
     /// Positions for as long as lies between two questions, and the temperature where it matters.
-    fn measure(&mut self, task: Task, gauge: &mut Gauge) -> Result<Measured, Failure> {
+    fn measure(&mut self, task: Task, gauge: &mut SpeedMonitor) -> Result<Measured, Failure> {
         let mut measured = Measured::default();
         let end = self.master.now() + ASKING;
         loop {
@@ -347,10 +347,10 @@ impl<'g, 'm> Guide<'g, 'm> {
 }
 
 /// Reads mode and password; gives back the mode.
-fn look(master: &mut Master<'_>, lock: Lock, standing: &mut Standing) -> Result<DeviceMode, Error> {
+fn look(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<DeviceMode, Error> {
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     let password = master.read(lock.password_at)? != 0;
-    *standing = Standing {
+    *standing = LeftState {
         mode: super::Possible::known(mode),
         password: super::Possible::known(password),
         activity: standing.activity,
@@ -361,13 +361,13 @@ fn look(master: &mut Master<'_>, lock: Lock, standing: &mut Standing) -> Result<
     Ok(mode)
 }
 
-fn unlock(master: &mut Master<'_>, lock: Lock, standing: &mut Standing) -> Result<(), Error> {
+fn unlock(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<(), Error> {
     let ended = master.write(lock.password_at, lock.password);
     standing.password.becomes(true, &ended);
     ended
 }
 
-fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mut Standing) -> Result<(), Error> {
+fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mut LeftState) -> Result<(), Error> {
     let ended = master.write(lock.mode_at, mode.byte());
     standing.mode.becomes(mode, &ended);
     ended
@@ -379,7 +379,7 @@ pub(super) fn lead_back(
     master: &mut Master<'_>,
     description: &Description,
     lock: Lock,
-    standing: &mut Standing,
+    standing: &mut LeftState,
 ) -> Result<DeviceMode, Error> {
     let mode = look(master, lock, standing)?;
     if mode != DeviceMode::OPERATION {

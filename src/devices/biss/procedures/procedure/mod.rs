@@ -1,6 +1,6 @@
 //! The guided procedures (manual 6.3 to 6.7), each straight-line code from entering its device mode to operation again.
 //! They speak to whoever stands at the motor through an [`Operator`], tell every [`Step`], and end in operation mode with
-//! the password cleared, whatever happens; where the encoder can no longer be reached, what is known of its [`Standing`]
+//! the password cleared, whatever happens; where the encoder can no longer be reached, what is known of its [`LeftState`]
 //! is told instead, and [`lead_back`] does the rest later.
 //!
 //! | file | what it is |
@@ -16,20 +16,20 @@ mod calibration;
 mod data;
 mod failure;
 mod filter;
-mod gauge;
 mod guide;
+mod left_state;
 mod operator;
 mod preset;
-mod standing;
+mod speed_monitor;
 mod steps;
 mod wiegand;
 
 pub use calibration::CalibrationReport;
 pub use failure::Failure;
-pub use gauge::Motion;
 pub(super) use guide::Guide;
-pub use operator::{Advice, Answer, Blocker, Demand, Operator, Run, Seat, SpeedRange, Task, Unattended};
-pub use standing::{Activity, Possible, Standing};
+pub use left_state::{Activity, LeftState, Possible};
+pub use operator::{Advice, Answer, Blocker, Demand, Operator, OperatorChannel, Run, SpeedRange, Task, Unattended};
+pub use speed_monitor::Motion;
 pub use steps::{Detail, News, Step, steps_of};
 pub use wiegand::WiegandReport;
 
@@ -113,7 +113,7 @@ pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<Device
     }
     let description = master.description()?;
     let Some(lock) = description.lock() else { return Ok(DeviceMode::OPERATION) };
-    let mut standing = Standing::in_operation(false);
+    let mut standing = LeftState::in_operation(false);
     let back = |master: &mut Master<'_>| guide::lead_back(master, &description, lock, &mut standing);
     master.shielded(|master| master.with_patience(guide::SILENCE, back))
 }

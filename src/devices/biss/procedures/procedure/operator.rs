@@ -287,9 +287,9 @@ impl Operator for Unattended {
 
 /// Somebody elsewhere, for whom answers are left here. Clones share them.
 #[derive(Clone, Debug, Default)]
-pub struct Seat(Arc<Mutex<Option<(Task, Answer)>>>);
+pub struct OperatorChannel(Arc<Mutex<Option<(Task, Answer)>>>);
 
-impl Seat {
+impl OperatorChannel {
     /// Answers what is being asked; an answer to anything else, or from before it was asked, is not taken.
     pub fn answer(&self, to: Task, answer: Answer) {
         *self.slot() = Some((to, answer));
@@ -300,7 +300,7 @@ impl Seat {
     }
 }
 
-impl Operator for Seat {
+impl Operator for OperatorChannel {
     fn begins(&mut self) {
         *self.slot() = None;
     }
@@ -414,7 +414,7 @@ mod tests {
 
     #[test]
     fn an_answer_belongs_to_what_was_asked() {
-        let seat = Seat::default();
+        let seat = OperatorChannel::default();
         let mut operator = seat.clone();
         let (first, second) = (Task::Turn(Run::WiegandClockwise), Task::Turn(Run::WiegandCounterclockwise));
         let mut ask = |task| operator.attend(&demand(task, Measured::default()));

@@ -60,9 +60,9 @@ fn registers_are_written_only_where_no_procedure_does() {
         assert_eq!(place(&kit, at(text)), Err(PlanError::ReadOnly { address: at(text) }), "{text}");
     }
     for text in ["0x40", "0x50", "0x00:0x30", "0x01:0x08"] {
-        assert_eq!(place(&kit, at(text)), Ok(Place::Register), "{text}");
+        assert_eq!(place(&kit, at(text)), Ok(RegisterKind::Register), "{text}");
     }
-    assert!(matches!(place(&kit, at("0x43:0x3F")), Ok(Place::Data(area)) if area.open == Some(2)));
+    assert!(matches!(place(&kit, at("0x43:0x3F")), Ok(RegisterKind::Data(area)) if area.open == Some(2)));
     let plan =
         plan_edits(&kit, &[], &[(at("0x40"), Some(2)), (at("0x50"), None)], &[edit("0x40", &[3]), edit("0x50", &[1])]);
     let plan = plan.unwrap();

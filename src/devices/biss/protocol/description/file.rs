@@ -74,7 +74,7 @@ impl File {
 /// `direct(0x66)` or `bank(0x24, 0x10)`.
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum Place {
+enum RegisterLocation {
     Direct(u8),
     Bank(u8, u8),
 }
@@ -110,15 +110,15 @@ struct CrcRow {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LockRow {
-    password_at: Place,
+    password_at: RegisterLocation,
     password: u8,
-    mode_at: Place,
+    mode_at: RegisterLocation,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RegisterRow {
-    at: Place,
+    at: RegisterLocation,
     #[serde(default = "one")]
     width: u8,
     name: Name,
@@ -161,10 +161,10 @@ struct AreaRow {
 struct ProcedureRow {
     kind: ProcedureKind,
     mode: u8,
-    command: Place,
-    status: Place,
+    command: RegisterLocation,
+    status: RegisterLocation,
     #[serde(default)]
-    data: Option<Place>,
+    data: Option<RegisterLocation>,
     #[serde(default)]
     since: (u8, u8, u8),
 }
@@ -173,14 +173,14 @@ fn one() -> u8 {
     1
 }
 
-impl TryFrom<Place> for RegisterAddress {
+impl TryFrom<RegisterLocation> for RegisterAddress {
     type Error = String;
 
-    fn try_from(place: Place) -> Result<Self, String> {
+    fn try_from(place: RegisterLocation) -> Result<Self, String> {
         match place {
-            Place::Direct(address) => RegisterAddress::direct(address)
+            RegisterLocation::Direct(address) => RegisterAddress::direct(address)
                 .ok_or_else(|| format!("direct(0x{address:02X}): a direct register is from 0x40 to 0x7F")),
-            Place::Bank(bank, offset) => RegisterAddress::banked(bank, offset)
+            RegisterLocation::Bank(bank, offset) => RegisterAddress::banked(bank, offset)
                 .ok_or_else(|| format!("bank(0x{bank:02X}, 0x{offset:02X}): a bank has registers from 0x00 to 0x3F")),
         }
     }

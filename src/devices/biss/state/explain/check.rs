@@ -5,13 +5,13 @@ use super::{mismatch, name};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
-use crate::devices::biss::procedures::check::{Finding, Line, Step};
+use crate::devices::biss::procedures::check::{BissStepResult, Finding, Step};
 use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::sheet;
 
 /// The lines of a check.
-pub fn check(lines: &[Line]) -> Vec<CheckLine> {
+pub fn check(lines: &[BissStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
 

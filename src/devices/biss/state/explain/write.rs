@@ -11,7 +11,7 @@ use crate::app::review::{ChangeWords, OpWords};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::devices::biss::jobs::{Change, ChangeKind, Prepared, WEAR_LIMIT};
-use crate::devices::biss::procedures::procedure::{Activity, Failure, Run, Standing};
+use crate::devices::biss::procedures::procedure::{Activity, Failure, LeftState, Run};
 use crate::devices::biss::procedures::write::{Interrupted, Written};
 use crate::devices::biss::profile::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, WiegandStatus};
@@ -163,7 +163,7 @@ pub fn weight(text: &Text) -> Severity {
 }
 
 /// In which state an encoder was left that could not be led back.
-fn left(standing: &Standing) -> Vec<Text> {
+fn left(standing: &LeftState) -> Vec<Text> {
     let mut texts = vec![match standing.mode.values() {
         [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode(*certain)),
         several => TEXTS.text("biss_left.modes").with_list("modes", several.iter().map(|own| mode(*own))),
@@ -248,13 +248,13 @@ mod tests {
     use crate::devices::biss::procedures::write::Left;
     use crate::devices::biss::protocol::{DeviceMode, ProcedureKind, RegisterAddress};
 
-    fn cut_off(write_cycles: u64, cause: Failure, standing: Option<Standing>) -> Interrupted {
+    fn cut_off(write_cycles: u64, cause: Failure, standing: Option<LeftState>) -> Interrupted {
         let done = Written { ops: 1, write_cycles, ..Written::default() };
         let left = Left { at: Step::Run(Run::CalibrationClockwise), standing };
         Interrupted { done, unfinished: None, cause, left }
     }
 
-    fn told(cause: Failure, left: Option<Standing>) -> (Vec<String>, Vec<String>) {
+    fn told(cause: Failure, left: Option<LeftState>) -> (Vec<String>, Vec<String>) {
         let texts = interruption(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
         let words = |language| texts.iter().map(|text| text.words(language)).collect();
         (words(English), words(German))
@@ -298,10 +298,10 @@ mod tests {
         }
     }
 
-    fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<Standing> {
+    fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<LeftState> {
         let mut mode = Possible::known(modes[0]);
         modes[1..].iter().for_each(|own| mode.or(*own));
-        Some(Standing { mode, password: Possible::known(password), activity })
+        Some(LeftState { mode, password: Possible::known(password), activity })
     }
 
     /// Issue 22.5: whatever completes it comes behind leading the encoder back.

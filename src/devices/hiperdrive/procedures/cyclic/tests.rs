@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::{Connection, CyclicLost, Drives};
 use crate::buses::ethernet_ip::protocol::{ForwardClose, Owner, Path, RequestTimeout};
 use crate::devices::hiperdrive::procedures::Opened;
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, Intent, Permit, Wish};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, Intent, MotionRequest, Permit};
 use crate::devices::hiperdrive::protocol::{ByteOrder, Direction, DriveNumber, Layout, OutData, OutImage, Topology};
 use crate::units::Moment;
 
@@ -130,7 +130,7 @@ impl Bench {
         Bench { drives, intent, ms: 0, sequence: 0, status: 0x2A30, answers: true }
     }
 
-    fn act(&mut self, wish: Wish) {
+    fn act(&mut self, wish: MotionRequest) {
         self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
     }
 
@@ -164,7 +164,7 @@ impl Bench {
 
     fn jogs() -> Self {
         let mut bench = Bench::new();
-        bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+        bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
         assert_eq!(bench.cycles(40).join(" "), "0400 0401 0409 1419 1459");
         bench
     }
@@ -181,11 +181,11 @@ fn a_loss_stops_and_stays() {
     assert_eq!(bench.cycles(1).join(" "), "1419");
     assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(40) }));
     assert_eq!(bench.drives.men().next().unwrap().ended(), Some((1, Ended::Lost)));
-    bench.act(Wish::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(Goal::Enabled));
     assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
     assert!(bench.drives.is_over());
     bench.answers = true;
-    bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
@@ -220,7 +220,7 @@ fn whoever_was_kept_from_listening_listens_before_giving_up() {
 #[test]
 fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
     let mut bench = Bench::new();
-    bench.act(Wish::Lead(Goal::Enabled));
+    bench.act(MotionRequest::Lead(Goal::Enabled));
     bench.cycles(20);
     for missing in [3, 5, 7] {
         bench.answers = false;
@@ -232,7 +232,7 @@ fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
     // Nothing begins meanwhile.
     bench.answers = false;
     bench.cycles(4);
-    bench.act(Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
+    bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
     assert_eq!(bench.cycles(3).join(" "), "0409");
     assert_eq!(bench.drives.men().next().unwrap().ended(), Some((2, Ended::Deaf)));
     bench.cycles(2);
@@ -256,7 +256,7 @@ fn an_end_stops_and_switches_off() {
 #[test]
 fn a_drive_that_does_not_stand_ends_the_connection() {
     let mut bench = Bench::jogs();
-    bench.act(Wish::Stop);
+    bench.act(MotionRequest::Stop);
     let mut words = Vec::new();
     while let Some(word) = bench.cycle() {
         bench.status = 0x1A37;
@@ -278,7 +278,7 @@ fn the_others_rest() {
     let mut moves = [false; 4];
     for ms in (0..3000).step_by(10) {
         intent = match ms {
-            500 => Intent { wish: Wish::Move { target: 9999, effort }, number: 2, ..intent },
+            500 => Intent { wish: MotionRequest::Move { target: 9999, effort }, number: 2, ..intent },
             1500 => Intent { drive: second, number: 3, ..intent },
             _ => intent,
         };

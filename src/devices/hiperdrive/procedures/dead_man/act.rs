@@ -11,7 +11,7 @@ pub struct Intent {
     /// Of which drive. The others rest.
     pub drive: DriveNumber,
     /// What.
-    pub wish: Wish,
+    pub wish: MotionRequest,
     /// The act of a person that it came with: each has a number of its own, higher than those before.
     pub number: u64,
     /// When it was last said. After [`Intent::FRESH`] nothing that moves goes on.
@@ -20,7 +20,7 @@ pub struct Intent {
 
 /// What a person wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum MotionRequest {
     /// Nothing: what moves stops, and the drive's state is held.
     Rest,
     /// Another state.
@@ -270,7 +270,7 @@ impl Intent {
 
     /// Nothing is wanted.
     pub const fn rest(drive: DriveNumber, number: u64, now: Moment) -> Self {
-        Intent { drive, wish: Wish::Rest, number, refreshed: now }
+        Intent { drive, wish: MotionRequest::Rest, number, refreshed: now }
     }
 
     /// Nobody has said it for too long.
@@ -279,21 +279,33 @@ impl Intent {
     }
 }
 
-impl Wish {
+impl MotionRequest {
     /// It makes the drive move. A pause does not.
     pub const fn moves(self) -> bool {
-        matches!(self, Wish::Move { .. } | Wish::Step { .. } | Wish::Resume | Wish::Jog { .. } | Wish::Run { .. })
+        matches!(
+            self,
+            MotionRequest::Move { .. }
+                | MotionRequest::Step { .. }
+                | MotionRequest::Resume
+                | MotionRequest::Jog { .. }
+                | MotionRequest::Run { .. }
+        )
     }
 
     /// How fast and how strong, where it says so.
     pub fn effort(self) -> Option<Effort> {
         match self {
-            Wish::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),
-            Wish::Move { effort, .. }
-            | Wish::Step { effort, .. }
-            | Wish::Jog { effort, .. }
-            | Wish::Run { effort, .. } => Some(effort),
-            Wish::Rest | Wish::Lead(_) | Wish::Acknowledge | Wish::Pause | Wish::Resume | Wish::Stop => None,
+            MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),
+            MotionRequest::Move { effort, .. }
+            | MotionRequest::Step { effort, .. }
+            | MotionRequest::Jog { effort, .. }
+            | MotionRequest::Run { effort, .. } => Some(effort),
+            MotionRequest::Rest
+            | MotionRequest::Lead(_)
+            | MotionRequest::Acknowledge
+            | MotionRequest::Pause
+            | MotionRequest::Resume
+            | MotionRequest::Stop => None,
         }
     }
 }
@@ -366,7 +378,7 @@ impl Permit {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn check(&self, wish: Wish, target: Option<i32>) -> Result<(), Refusal> {
+    pub fn check(&self, wish: MotionRequest, target: Option<i32>) -> Result<(), Refusal> {
         if !wish.moves() {
             return Ok(());
         }
@@ -376,7 +388,7 @@ impl Permit {
         if wish.effort().is_some_and(Effort::is_none) {
             return Err(Refusal::NoEffort);
         }
-        if matches!(wish, Wish::Run { end: RunEnd::Endless, .. }) && !self.endless {
+        if matches!(wish, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {
             return Err(Refusal::Endless);
         }
         match (target, self.limits) {

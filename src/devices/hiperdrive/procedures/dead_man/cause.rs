@@ -1,6 +1,6 @@
 //! Why what is under way ends before its time.
 
-use super::{DEAF, DeadMan, Ended, Intent, Lock, Motive, Permit, Refusal, Stage, Wish};
+use super::{DEAF, DeadMan, Ended, Intent, Lock, MotionRequest, Motive, Permit, Refusal, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, StatusBit};
 use crate::units::Moment;
 
@@ -32,11 +32,13 @@ impl DeadMan {
             return;
         }
         match (self.stage, intent.wish) {
-            (Stage::Go { acknowledged, .. }, Wish::Pause) => {
+            (Stage::Go { acknowledged, .. }, MotionRequest::Pause) => {
                 (act.number, act.said) = (intent.number, intent.wish);
                 self.stage = Stage::Paused { since: mark, acknowledged };
             }
-            (Stage::Paused { acknowledged, .. }, Wish::Resume) if permit.locks.is_empty() && !permit.doubted => {
+            (Stage::Paused { acknowledged, .. }, MotionRequest::Resume)
+                if permit.locks.is_empty() && !permit.doubted =>
+            {
                 (act.number, act.said) = (intent.number, intent.wish);
                 self.stage = Stage::Go { since: mark, acknowledged, stands: None };
             }
@@ -50,8 +52,8 @@ impl DeadMan {
         let state = status.state();
         let deaf = self.heard.is_none_or(|(at, _)| now.since(at) > DEAF);
         let (down, acknowledges) = match (self.stage, act.said) {
-            (Stage::Lead(lead), Wish::Lead(_)) => (lead.only_down(state), lead.goal() == super::Goal::Off),
-            (_, Wish::Acknowledge) => (false, true),
+            (Stage::Lead(lead), MotionRequest::Lead(_)) => (lead.only_down(state), lead.goal() == super::Goal::Off),
+            (_, MotionRequest::Acknowledge) => (false, true),
             _ => (false, false),
         };
         let moves = self.stage.has_motion();
@@ -85,11 +87,14 @@ impl DeadMan {
     }
 
     /// What is wanted is not this act any more.
-    fn overtaken(&self, number: u64, said: Wish, intent: &Intent, permit: &Permit) -> Option<Ended> {
-        let rests = matches!(intent.wish, Wish::Rest | Wish::Stop | Wish::Pause | Wish::Resume);
+    fn overtaken(&self, number: u64, said: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
+        let rests = matches!(
+            intent.wish,
+            MotionRequest::Rest | MotionRequest::Stop | MotionRequest::Pause | MotionRequest::Resume
+        );
         if intent.drive == self.drive && intent.number == number && intent.wish == said {
             None
-        } else if intent.wish == Wish::Resume && permit.doubted {
+        } else if intent.wish == MotionRequest::Resume && permit.doubted {
             Some(Ended::Refused(Refusal::Locked(Lock::Outdated)))
         } else if rests || intent.number < number {
             Some(Ended::Stopped)

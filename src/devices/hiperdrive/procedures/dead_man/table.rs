@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::{DeadMan, Effort, Goal, Intent, Lock, Permit, Phase, Wish};
+use super::{DeadMan, Effort, Goal, Intent, Lock, MotionRequest, Permit, Phase};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, StatusWord};
 use crate::units::Moment;
 
@@ -42,7 +42,7 @@ impl Bench {
         }
     }
 
-    fn act(&mut self, wish: Wish) {
+    fn act(&mut self, wish: MotionRequest) {
         self.intent = Intent { wish, number: self.intent.number + 1, refreshed: self.now, ..self.intent };
     }
 
@@ -61,14 +61,14 @@ impl Bench {
 
     /// In this phase of the table.
     fn in_phase(name: &str) -> Self {
-        let job = Wish::Move { target: 5000, effort: Effort::JOG };
-        let jog = Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
+        let job = MotionRequest::Move { target: 5000, effort: Effort::JOG };
+        let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
         let is_below = matches!(name, "at rest" | "leading" | "up to a motion");
         let mut bench = Bench::new(if is_below { READY } else { ENABLED });
         bench.cycles(3);
         match name {
             "at rest" => {}
-            "leading" => bench.act(Wish::Lead(Goal::Enabled)),
+            "leading" => bench.act(MotionRequest::Lead(Goal::Enabled)),
             "up to a motion" | "moving (run)" | "stopping" => bench.act(jog),
             _ => bench.act(job),
         }
@@ -80,12 +80,12 @@ impl Bench {
         }
         match name {
             "paused" => {
-                bench.act(Wish::Pause);
+                bench.act(MotionRequest::Pause);
                 bench.status = STANDING;
                 bench.cycles(3);
             }
             "stopping" => {
-                bench.act(Wish::Stop);
+                bench.act(MotionRequest::Stop);
                 bench.cycles(2);
             }
             _ => {}
@@ -107,7 +107,7 @@ impl Bench {
     fn play(&mut self, event: &str) {
         let paused = matches!(self.man.phase(), Phase::Paused { .. });
         match event.split(['(', ',']).next().unwrap_or_default().trim() {
-            "released" => self.act(Wish::Stop),
+            "released" => self.act(MotionRequest::Stop),
             "not said again for 250 ms" => {
                 self.refreshes = false;
                 // The packet after 250 ms is the first that may end it.
@@ -115,7 +115,7 @@ impl Bench {
                 let moves = self.man.ended().is_none() || matches!(self.man.phase(), Phase::Stopping(_));
                 assert!(moves, "not before");
             }
-            "another act" => self.act(Wish::Lead(Goal::Operational)),
+            "another act" => self.act(MotionRequest::Lead(Goal::Operational)),
             "the drive is not heard" => {
                 self.heard = false;
                 self.man.fall_deaf(self.now);

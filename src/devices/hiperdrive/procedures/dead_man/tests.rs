@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 
-use super::{DeadMan, Effort, Ended, Goal, Intent, Lock, Outside, Permit, Phase, RUNG, Refusal, Side, Wish};
+use super::{DeadMan, Effort, Ended, Goal, Intent, Lock, MotionRequest, Outside, Permit, Phase, RUNG, Refusal, Side};
 use crate::devices::hiperdrive::protocol::{
     Actual, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
 };
@@ -22,34 +22,35 @@ struct Tick {
     /// `None`: nothing was heard. Status word and position.
     heard: Option<(u16, i32)>,
     /// A new act, of this drive or another.
-    act: Option<(bool, Wish)>,
+    act: Option<(bool, MotionRequest)>,
     /// It is said that the act is wanted still.
     refreshed: bool,
     locked: bool,
     endless: bool,
     /// The number falls back, or the wish changes under its number.
-    meddled: Option<Wish>,
+    meddled: Option<MotionRequest>,
 }
 
-fn wish() -> impl Strategy<Value = Wish> {
+fn wish() -> impl Strategy<Value = MotionRequest> {
     let direction = prop_oneof![Just(Direction::Clockwise), Just(Direction::Counterclockwise)];
     let effort = prop_oneof![3 => Just(FULL), 1 => Just(Effort::NONE)];
     let end = prop_oneof![Just(RunEnd::RangeEnd), Just(RunEnd::Endless)];
     prop_oneof![
-        Just(Wish::Rest),
-        Just(Wish::Stop),
-        Just(Wish::Pause),
-        Just(Wish::Resume),
-        Just(Wish::Acknowledge),
-        (0usize..4).prop_map(|goal| Wish::Lead(Goal::ALL[goal])),
-        (any::<i32>(), effort.clone()).prop_map(|(target, effort)| Wish::Move { target: target % 2000, effort }),
-        (any::<i32>(), effort.clone()).prop_map(|(by, effort)| Wish::Step { by: by % 500, effort }),
-        (direction.clone(), effort.clone()).prop_map(|(direction, effort)| Wish::Jog {
+        Just(MotionRequest::Rest),
+        Just(MotionRequest::Stop),
+        Just(MotionRequest::Pause),
+        Just(MotionRequest::Resume),
+        Just(MotionRequest::Acknowledge),
+        (0usize..4).prop_map(|goal| MotionRequest::Lead(Goal::ALL[goal])),
+        (any::<i32>(), effort.clone())
+            .prop_map(|(target, effort)| MotionRequest::Move { target: target % 2000, effort }),
+        (any::<i32>(), effort.clone()).prop_map(|(by, effort)| MotionRequest::Step { by: by % 500, effort }),
+        (direction.clone(), effort.clone()).prop_map(|(direction, effort)| MotionRequest::Jog {
             direction,
             effort,
             outward: false
         }),
-        (direction, end, effort).prop_map(|(direction, end, effort)| Wish::Run { direction, end, effort }),
+        (direction, end, effort).prop_map(|(direction, end, effort)| MotionRequest::Run { direction, end, effort }),
     ]
 }
 
@@ -106,12 +107,12 @@ fn nothing_begins_with_a_word_that_stands() {
 fn out_of_speed_mode_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
     let permit = Permit::within(-1000, 1000);
-    let jog = Wish::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
+    let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
     let mut status = 0x2A37;
     let mut words = Vec::new();
     for at in 0..100u64 {
         let now = Moment::START + Duration::from_millis(at * 10);
-        let wish = if at < 20 { jog } else { Wish::Stop };
+        let wish = if at < 20 { jog } else { MotionRequest::Stop };
         let intent = Intent { drive: DriveNumber::FIRST, wish, number: 1 + u64::from(at >= 20), refreshed: now };
         let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.word();
         // It acknowledges a run with bit 12, and forgets it below operational alone.
@@ -133,15 +134,15 @@ fn out_of_speed_mode_through_ready() {
 #[test]
 fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
     let permit = Permit::within(-1000, 1000);
-    for (waits, next) in [(true, Wish::Resume), (false, Wish::Pause)] {
+    for (waits, next) in [(true, MotionRequest::Resume), (false, MotionRequest::Pause)] {
         let mut man = DeadMan::new(DriveNumber::FIRST, 0);
         let mut now = Moment::START;
-        let mut look = |man: &mut DeadMan, number: u64, wish: Wish, status: u16| {
+        let mut look = |man: &mut DeadMan, number: u64, wish: MotionRequest, status: u16| {
             now = now + Duration::from_millis(10);
             let intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: now };
             man.next(now, heard(Some((status, 0))), &intent, &permit).control
         };
-        let job = Wish::Move { target: 500, effort: FULL };
+        let job = MotionRequest::Move { target: 500, effort: FULL };
         for status in [0x2A37, 0x2A37, 0x2A37, 0x1A37, 0x1A37] {
             look(&mut man, 1, job, status);
         }
@@ -149,7 +150,7 @@ fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
         let mut number = 1;
         if waits {
             number = 2;
-            look(&mut man, number, Wish::Pause, 0x1A37);
+            look(&mut man, number, MotionRequest::Pause, 0x1A37);
             assert!(matches!(man.phase(), Phase::Paused { .. }));
         }
         // The one between them was a stop.
@@ -174,7 +175,7 @@ impl Looks {
         Looks { man, now: Moment::START, intent, permit: Permit::within(-1000, 1000) }
     }
 
-    fn act(&mut self, wish: Wish) {
+    fn act(&mut self, wish: MotionRequest) {
         self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
     }
 
@@ -189,14 +190,14 @@ impl Looks {
     }
 }
 
-const CLOCKWISE: Wish = Wish::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
+const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
 
 /// Issue 21.3: parameters that somebody doubts while a drive is still led to where it may move are read before it does; what
 /// moves goes on, and what waits does not begin again.
 #[test]
 fn a_doubt_keeps_a_motion_from_its_beginning() {
     let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
-    for wish in [CLOCKWISE, Wish::Move { target: 500, effort: FULL }] {
+    for wish in [CLOCKWISE, MotionRequest::Move { target: 500, effort: FULL }] {
         let mut looks = Looks::new();
         looks.look(3, 0x2A31, 0);
         looks.act(wish);
@@ -208,16 +209,16 @@ fn a_doubt_keeps_a_motion_from_its_beginning() {
         assert!(looks.look(100, 0x2A37, 0).control.is_standing());
     }
     let mut looks = Looks::new();
-    looks.act(Wish::Move { target: 500, effort: FULL });
+    looks.act(MotionRequest::Move { target: 500, effort: FULL });
     looks.look(5, 0x2A37, 0);
     looks.look(5, 0x1A37, 100);
     looks.permit.doubted = true;
     looks.look(5, 0x1A37, 200);
     assert!(matches!(looks.man.phase(), Phase::Moving(_)), "{:?}", looks.man.ended());
-    looks.act(Wish::Pause);
+    looks.act(MotionRequest::Pause);
     looks.look(3, 0x3A37, 200);
     assert!(matches!(looks.man.phase(), Phase::Paused { .. }), "{:?}", looks.man.ended());
-    looks.act(Wish::Resume);
+    looks.act(MotionRequest::Resume);
     assert!(looks.look(1, 0x3A37, 200).control.is_standing());
     assert_eq!(looks.man.ended(), Some((2, doubted)));
 }
@@ -229,7 +230,7 @@ fn a_drive_that_gets_outside_before_it_moves_does_not_begin() {
     for (wish, direction) in [
         (CLOCKWISE, Direction::Clockwise),
         (
-            Wish::Jog { direction: Direction::Counterclockwise, effort: FULL, outward: false },
+            MotionRequest::Jog { direction: Direction::Counterclockwise, effort: FULL, outward: false },
             Direction::Counterclockwise,
         ),
     ] {
@@ -265,7 +266,7 @@ fn near_both_limits_bit_15_does_not_tell_the_way_in() {
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = Looks::new();
     looks.permit = Permit::within(-100_000, 100_000);
-    looks.act(Wish::Step { by: 100, effort: FULL });
+    looks.act(MotionRequest::Step { by: 100, effort: FULL });
     looks.look(24, 0x2A37, 0);
     assert_eq!(looks.man.phase(), Phase::Idle);
     let sent = looks.look(20, 0x2A37, 50_000);
@@ -291,7 +292,7 @@ proptest! {
             if let Some((own, wish)) = act {
                 let other = DriveNumber::new(2).unwrap();
                 // A pause and its end carry a job on; any other act, and a gap of time, ends the one before.
-                let carries = matches!(wish, Wish::Pause | Wish::Resume) && own && !intent.is_stale(now);
+                let carries = matches!(wish, MotionRequest::Pause | MotionRequest::Resume) && own && !intent.is_stale(now);
                 over = if carries { over } else { intent.number };
                 let drive = if own { DriveNumber::FIRST } else { other };
                 intent = Intent { drive, wish, number: intent.number + 1, refreshed: now };

@@ -12,7 +12,7 @@
 //! Within one degree beyond a limit the motion ended at the end of its range: a drive repeats a position no better than
 //! ±1° (manual, technical data; reference 5).
 
-use super::{DeadMan, Ended, Lock, Motion, Motive, Permit, Refusal, SHORT, Stage, Wish};
+use super::{DeadMan, Ended, Lock, Motion, MotionRequest, Motive, Permit, Refusal, SHORT, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
 
@@ -132,7 +132,7 @@ impl Watch {
             }),
             _ => false,
         };
-        let freed = matches!(motion.wish, Wish::Jog { outward: true, .. }) && outside.is_some();
+        let freed = matches!(motion.wish, MotionRequest::Jog { outward: true, .. }) && outside.is_some();
         Watch { outside, best, waits_at: None, freed, at_end }
     }
 
@@ -191,11 +191,11 @@ impl Permit {
     ///
     /// # Errors
     /// [`Refusal::Outward`], [`Refusal::Unclear`].
-    pub fn check_place(&self, wish: Wish, actual: Actual) -> Result<(), Refusal> {
+    pub fn check_place(&self, wish: MotionRequest, actual: Actual) -> Result<(), Refusal> {
         let direction = match wish {
-            Wish::Jog { outward: true, .. } | Wish::Run { end: RunEnd::Endless, .. } => return Ok(()),
-            Wish::Jog { direction, .. } | Wish::Run { direction, .. } => Some(direction),
-            Wish::Move { .. } | Wish::Step { .. } => None,
+            MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),
+            MotionRequest::Jog { direction, .. } | MotionRequest::Run { direction, .. } => Some(direction),
+            MotionRequest::Move { .. } | MotionRequest::Step { .. } => None,
             _ => return Ok(()),
         };
         let (Some((low, high)), Some(outside), position) = (self.limits, self.outside(actual), actual.position) else {

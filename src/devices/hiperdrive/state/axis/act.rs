@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Entries, Place};
+use super::{Entries, TestTarget};
 use crate::app::Language;
 
 /// What is to be done for it.
@@ -42,7 +42,7 @@ pub enum Button {
     /// The limits are to be as wide as the drive turns.
     Widen,
     /// A test move.
-    Go(Place),
+    Go(TestTarget),
     /// The cyclic connection.
     Take,
     /// It is closed.

@@ -3,7 +3,7 @@
 use super::entries::{Entries, typed};
 use super::standstill::Shift;
 use super::supply::Power;
-use super::{Ask, Axis, Change, Confirmed, End, Outcome, Over, Place, Seen, Step, Travel};
+use super::{Ask, Axis, Change, Confirmed, End, Outcome, Over, Seen, Step, TestTarget, Travel};
 
 impl Axis {
     /// What is typed has changed.
@@ -107,7 +107,7 @@ impl Axis {
     }
 
     /// A test move was begun by this act.
-    pub(crate) fn went(&mut self, place: Place, target: i32, act: u64) {
+    pub(crate) fn went(&mut self, place: TestTarget, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
         }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::supply::{MARK, Power, Restart, is_marked, mark};
-use super::{Ask, Axis, Button, Place, Seen, Step, differences, words};
+use super::{Ask, Axis, Button, Seen, Step, TestTarget, differences, words};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::protocol::State;
@@ -234,7 +234,7 @@ impl Axis {
             }
             Step::Test => {
                 let reached = |place| self.outcome(place).is_some_and(|own| own.is_good());
-                lacks(Place::ALL.into_iter().all(reached), "hd_axis.needs_test")
+                lacks(TestTarget::ALL.into_iter().all(reached), "hd_axis.needs_test")
             }
             Step::Save => lacks(self.saved, "hd_axis.needs_save"),
             Step::PowerCycle => match self.power {
@@ -257,7 +257,7 @@ impl Axis {
     ///
     /// # Errors
     /// Without limits.
-    pub fn target(&self, place: Place, seen: &Seen) -> Result<i32, Text> {
+    pub fn target(&self, place: TestTarget, seen: &Seen) -> Result<i32, Text> {
         let (low, high) = seen.limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         Ok(place.between(low, high))
     }

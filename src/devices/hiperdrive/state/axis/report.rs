@@ -1,6 +1,6 @@
 //! The end of a run as it is written down, to be kept and printed: plain text that fits a page, lengths in millimetres.
 
-use super::{Axis, End, Place, Reached, Seen, Step, words};
+use super::{Axis, End, Reached, Seen, Step, TestTarget, words};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -50,9 +50,9 @@ fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
     {
         page.line(INDENT, &found);
     }
-    if step == Step::Test && Place::ALL.into_iter().any(|place| axis.outcome(place).is_some()) {
+    if step == Step::Test && TestTarget::ALL.into_iter().any(|place| axis.outcome(place).is_some()) {
         page.line(INDENT, &words::effort("hd_axis.report_effort"));
-        for place in Place::ALL {
+        for place in TestTarget::ALL {
             let Some(outcome) = axis.outcome(place) else { continue };
             let line = TEXTS.text("hd_axis.report_place").with_text("place", words::place(place));
             page.line(INDENT, &line.with_text("outcome", words::outcome(&outcome, seen)));

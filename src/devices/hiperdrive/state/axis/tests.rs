@@ -195,7 +195,7 @@ fn until_test() -> (Axis, Seen) {
     (axis, seen)
 }
 
-fn go(axis: &mut Axis, seen: &mut Seen, place: Place, ends: i32) {
+fn go(axis: &mut Axis, seen: &mut Seen, place: TestTarget, ends: i32) {
     let Ask::Move(target) = axis.ask(Button::Go(place), seen).unwrap() else { panic!("no move") };
     let act = seen.ended.map_or(1, |(act, _)| act + 1);
     axis.went(place, target, act);
@@ -209,7 +209,7 @@ fn go(axis: &mut Axis, seen: &mut Seen, place: Place, ends: i32) {
 
 fn until_power() -> (Axis, Seen) {
     let (mut axis, mut seen) = until_test();
-    for (place, ends) in [(Place::Middle, 500), (Place::Lower, -1001), (Place::Upper, 2002)] {
+    for (place, ends) in [(TestTarget::Middle, 500), (TestTarget::Lower, -1001), (TestTarget::Upper, 2002)] {
         assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_test");
         go(&mut axis, &mut seen, place, ends);
     }
@@ -281,11 +281,11 @@ fn nothing_is_pressed_that_cannot_be_done() {
         ("stale", Seen { stale: true, ..seen.clone() }, "hd_axis.unread"),
         ("no control", seen.clone(), "hd_axis.no_control"),
     ] {
-        assert_eq!(why(&axis, &changed, Button::Go(Place::Middle)), id, "{label}");
+        assert_eq!(why(&axis, &changed, Button::Go(TestTarget::Middle)), id, "{label}");
     }
     let (mut axis, mut seen) = until_test();
     seen.moves = true;
-    for button in [Button::Do, Button::Widen, Button::Go(Place::Lower), Button::Give, Button::Recall] {
+    for button in [Button::Do, Button::Widen, Button::Go(TestTarget::Lower), Button::Give, Button::Recall] {
         assert_eq!(why(&axis, &seen, button), "hd_axis.moving", "{button:?}");
     }
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.moving");
@@ -295,7 +295,7 @@ fn nothing_is_pressed_that_cannot_be_done() {
     assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.give_first");
     // While a write is under way nothing else is done.
     axis.begin(Ask::Save, &seen);
-    assert_eq!(why(&axis, &seen, Button::Go(Place::Lower)), "hd_axis.busy");
+    assert_eq!(why(&axis, &seen, Button::Go(TestTarget::Lower)), "hd_axis.busy");
     go_on(&mut axis, &seen);
     axis.back(&seen);
     assert_eq!(axis.step(), Step::Test);
@@ -330,18 +330,18 @@ fn what_is_taught_has_to_hold_the_axis() {
 fn a_test_that_did_not_arrive_does_not_count() {
     let (mut axis, mut seen) = until_test();
     // 1° of 400 steps are 1.1: two.
-    go(&mut axis, &mut seen, Place::Middle, 503);
-    assert!(!axis.outcome(Place::Middle).unwrap().is_good());
-    go(&mut axis, &mut seen, Place::Middle, 498);
-    assert!(axis.outcome(Place::Middle).unwrap().is_good());
-    let Ask::Move(target) = axis.ask(Button::Go(Place::Upper), &seen).unwrap() else { panic!("no move") };
-    axis.went(Place::Upper, target, 9);
+    go(&mut axis, &mut seen, TestTarget::Middle, 503);
+    assert!(!axis.outcome(TestTarget::Middle).unwrap().is_good());
+    go(&mut axis, &mut seen, TestTarget::Middle, 498);
+    assert!(axis.outcome(TestTarget::Middle).unwrap().is_good());
+    let Ask::Move(target) = axis.ask(Button::Go(TestTarget::Upper), &seen).unwrap() else { panic!("no move") };
+    axis.went(TestTarget::Upper, target, 9);
     // An earlier act says nothing of this one.
     axis.look(&seen);
-    assert_eq!((axis.going(), axis.outcome(Place::Upper)), (Some(Place::Upper), None));
+    assert_eq!((axis.going(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
     seen.ended = Some((9, Ended::Stopped));
     axis.look(&seen);
-    assert!(axis.outcome(Place::Upper).is_some_and(|own| !own.is_good()) && axis.may_go_on(&seen).is_err());
+    assert!(axis.outcome(TestTarget::Upper).is_some_and(|own| !own.is_good()) && axis.may_go_on(&seen).is_err());
 }
 
 #[test]
@@ -350,7 +350,7 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     axis.cancel(&seen, "");
     assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
     assert!(axis.changes().len() == 8 && axis.reached(Step::Test) == Reached::Ahead);
-    assert_eq!(axis.ask(Button::Go(Place::Lower), &seen).unwrap_err().id(), "hd_axis.over");
+    assert_eq!(axis.ask(Button::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
     assert_eq!(press(&mut axis, &mut seen, Button::Recall), Ask::Restore(vec![(152, 0)]));
     // The place has the position that it got.

@@ -1,6 +1,6 @@
 //! What the steps of an axis set-up are called, what to do in them, and what was found.
 
-use super::{Axis, Change, Outcome, Place, Power, Reached, Restart, Seen, Step};
+use super::{Axis, Change, Outcome, Power, Reached, Restart, Seen, Step, TestTarget};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -105,7 +105,7 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
             Some(TEXTS.text("hd_axis.found_lower").with_text("position", mm(axis.entries.lower(ruler).ok()?)))
         }
         Step::Test => {
-            let good = Place::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
+            let good = TestTarget::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
             let worst = good.clone().map(|own| own.missed().abs()).max()?;
             let text = TEXTS.text("hd_axis.found_test").with("count", good.count());
             Some(text.with_text("missed", millimetres(ruler, worst)))
@@ -222,11 +222,11 @@ pub fn unexplained(axis: &Axis, seen: &Seen) -> Option<Text> {
 }
 
 /// What a place of the test is called.
-pub fn place(place: Place) -> Text {
+pub fn place(place: TestTarget) -> Text {
     TEXTS.text(match place {
-        Place::Middle => "hd_axis.middle",
-        Place::Lower => "hd_axis.to_lower",
-        Place::Upper => "hd_axis.to_upper",
+        TestTarget::Middle => "hd_axis.middle",
+        TestTarget::Lower => "hd_axis.to_lower",
+        TestTarget::Upper => "hd_axis.to_upper",
     })
 }
 

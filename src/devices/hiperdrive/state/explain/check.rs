@@ -5,12 +5,12 @@ use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
 use crate::buses::ethernet_ip::protocol::AddressSource;
-use crate::devices::hiperdrive::procedures::check::{Finding, Line, Step};
+use crate::devices::hiperdrive::procedures::check::{Finding, HiperdriveStepResult, Step};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
 /// The lines of a check.
-pub fn check(lines: &[Line]) -> Vec<CheckLine> {
+pub fn check(lines: &[HiperdriveStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
 

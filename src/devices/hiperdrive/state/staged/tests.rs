@@ -1,6 +1,6 @@
 //! Edits, steps and drafts of a HIPERDRIVE.
 
-use super::{Differs, Edit, EditError, Kept, LimitsStay, Mark, Staged};
+use super::{Differs, Edit, EditError, LimitsStay, Mark, SavedEdit, Staged};
 use crate::app::PendingEdits;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, ParameterNumber, PositionScale, Range};
@@ -118,13 +118,21 @@ fn a_draft_waits_for_what_it_is_about() {
     let mut first = staged();
     first.edit(&Edit::Set(number(166), 200)).unwrap();
     let kept = first.kept();
-    assert_eq!(kept, [Kept(166, Some(200))]);
+    assert_eq!(kept, [SavedEdit(166, Some(200))]);
     let mut later = Staged::default();
-    later.take_draft(kept.into_iter().chain([Kept(266, Some(7)), Kept(198, Some(0)), Kept(9999, Some(1))]));
+    later.take_draft(kept.into_iter().chain([
+        SavedEdit(266, Some(7)),
+        SavedEdit(198, Some(0)),
+        SavedEdit(9999, Some(1)),
+    ]));
     assert!(!later.is_dirty());
     later.refresh(read());
     assert_eq!(later.edited(), image(&[(166, 200)]));
-    assert_eq!(later.kept(), [Kept(166, Some(200)), Kept(266, Some(7))], "the second drive may be plugged in again");
+    assert_eq!(
+        later.kept(),
+        [SavedEdit(166, Some(200)), SavedEdit(266, Some(7))],
+        "the second drive may be plugged in again"
+    );
 }
 
 #[test]
@@ -158,5 +166,5 @@ fn what_somebody_should_look_at_is_marked() {
     assert_eq!(profile.edit(&Edit::Leave(number(166))), Ok(true));
     assert_eq!(profile.edit(&Edit::Set(number(266), 100)), Ok(true), "a profile can be made to say it");
     assert_eq!(profile.edit(&Edit::Set(number(170), 1)), Err(EditError::NotAValue(number(170))), "it is not kept");
-    assert_eq!(profile.kept(), [Kept(166, None), Kept(266, Some(100))]);
+    assert_eq!(profile.kept(), [SavedEdit(166, None), SavedEdit(266, Some(100))]);
 }

@@ -2,16 +2,16 @@
 
 use egui::{RichText, Ui, vec2};
 
-use super::Shown;
+use super::AxisPicture;
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::axis::{Action as Run, Button, Entries, Place, Step, words};
+use crate::devices::hiperdrive::state::axis::{Action as Run, Button, Entries, Step, TestTarget, words};
 use crate::devices::hiperdrive::state::{Motor, TEXTS};
 use crate::devices::hiperdrive::views::jog::pad_ui;
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_entry};
 use crate::ui::widgets::HoldButton;
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Width of a number, and height of the buttons that are held.
 const NUMBER: f32 = 112.0;
@@ -21,72 +21,72 @@ const GO: f32 = 172.0;
 
 pub(super) fn content_ui(
     ui: &mut Ui,
-    skin: &Skin,
-    shown: &Shown<'_>,
+    theme: &Theme,
+    shown: &AxisPicture<'_>,
     entries: &mut Entries,
     actions: &mut Vec<Action>,
 ) {
     let step = shown.axis.step();
     if step.moves() {
-        control(ui, skin, shown, actions);
+        control(ui, theme, shown, actions);
     }
     if step.jogs() {
-        pads(ui, skin, shown, actions);
+        pads(ui, theme, shown, actions);
     }
     match step {
         Step::Scale => {
-            number(ui, skin, "hd_axis.pitch", &mut entries.pitch);
-            number(ui, skin, "hd_axis.resolution", &mut entries.resolution);
+            number(ui, theme, "hd_axis.pitch", &mut entries.pitch);
+            number(ui, theme, "hd_axis.resolution", &mut entries.resolution);
         }
-        Step::Confirm => limits(ui, skin, shown, actions),
-        Step::Reference => number(ui, skin, "hd_axis.reference", &mut entries.reference),
-        Step::Lower => number(ui, skin, "hd_axis.lower", &mut entries.lower),
-        Step::Upper => number(ui, skin, "hd_axis.upper", &mut entries.upper),
-        Step::Test => test(ui, skin, shown, actions),
-        Step::PowerCycle => power(ui, skin, shown, actions),
+        Step::Confirm => limits(ui, theme, shown, actions),
+        Step::Reference => number(ui, theme, "hd_axis.reference", &mut entries.reference),
+        Step::Lower => number(ui, theme, "hd_axis.lower", &mut entries.lower),
+        Step::Upper => number(ui, theme, "hd_axis.upper", &mut entries.upper),
+        Step::Test => test(ui, theme, shown, actions),
+        Step::PowerCycle => power(ui, theme, shown, actions),
         Step::Request | Step::Jog | Step::Save => {}
     }
     if matches!(step, Step::Request | Step::Scale | Step::Reference | Step::Lower | Step::Upper | Step::Save) {
-        ui.add_space(skin.space.inside);
-        ui.horizontal_wrapped(|ui| buttons(ui, skin, shown, actions));
+        ui.add_space(theme.space.inside);
+        ui.horizontal_wrapped(|ui| buttons(ui, theme, shown, actions));
     }
 }
 
 /// What the step does, in one line as far as there is room.
-fn buttons(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if matches!(step, Step::Lower | Step::Upper) {
         let allowed = shown.axis.may_take_place(shown.seen);
-        if allowed_button(ui, skin, &allowed, icons::TARGET, &say(skin, "hd_axis.take_place")).clicked() {
+        if allowed_button(ui, theme, &allowed, icons::TARGET, &say(theme, "hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
     }
     if step != Step::Lower {
-        let word = skin.words(&words::button(step));
-        shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        let word = theme.words(&words::button(step));
+        shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
     if step == Step::Request {
-        super::recall(ui, skin, shown, actions);
+        super::recall(ui, theme, shown, actions);
     }
-    super::skip(ui, skin, shown, actions);
+    super::skip(ui, theme, shown, actions);
 }
 
 /// What comes of the entries, and what came of the step so far. Nothing of it can be clicked.
-pub(super) fn messages_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let step = shown.axis.step();
     if step.jogs() {
-        said(ui, skin, shown);
+        said(ui, theme, shown);
     }
     match step {
-        Step::Scale => scale(ui, skin, shown, entries),
-        Step::Reference => reference(ui, skin, shown, entries),
+        Step::Scale => scale(ui, theme, shown, entries),
+        Step::Reference => reference(ui, theme, shown, entries),
         Step::Test => {
-            for own in Place::ALL {
+            for own in TestTarget::ALL {
                 let Some(outcome) = shown.axis.outcome(own) else { continue };
-                let ink = if outcome.is_good() { skin.palette.good } else { skin.palette.bad };
-                let place = skin.words(&words::place(own));
-                let words = skin.words(&words::outcome(&outcome, shown.seen));
-                row(ui, skin, &place, RichText::new(words).color(ink));
+                let ink = if outcome.is_good() { theme.palette.good } else { theme.palette.bad };
+                let place = theme.words(&words::place(own));
+                let words = theme.words(&words::outcome(&outcome, shown.seen));
+                row(ui, theme, &place, RichText::new(words).color(ink));
             }
         }
         _ => {}
@@ -94,25 +94,25 @@ pub(super) fn messages_ui(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: 
 }
 
 /// Without the cyclic connection nothing moves, nor in a fault.
-fn control(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+fn control(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = say(skin, "hd_axis.take");
-        shown.button(ui, skin, Button::Take, (icons::PLUGS_CONNECTED, &word), actions);
-        let word = say(skin, "hd_axis.acknowledge");
-        shown.button(ui, skin, Button::Acknowledge, (icons::CHECK, &word), actions);
+        let word = say(theme, "hd_axis.take");
+        shown.button(ui, theme, Button::Take, (icons::PLUGS_CONNECTED, &word), actions);
+        let word = say(theme, "hd_axis.acknowledge");
+        shown.button(ui, theme, Button::Acknowledge, (icons::CHECK, &word), actions);
     });
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
 }
 
-fn may_jog(shown: &Shown<'_>, direction: Direction) -> Result<(), Text> {
+fn may_jog(shown: &AxisPicture<'_>, direction: Direction) -> Result<(), Text> {
     shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_jog(shown.axis.drive(), direction))
 }
 
 /// Why the pads do nothing, or what the drive does by them.
-fn said(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
+fn said(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_words(shown.axis.drive()) {
-        super::line(ui, skin, Severity::Error, &outside);
+        super::line(ui, theme, Severity::Error, &outside);
     }
     if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
@@ -120,117 +120,117 @@ fn said(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>) {
         // That stands above already.
         && shown.axis.may_go_on(shown.seen).err().as_ref() != Some(&why)
     {
-        super::warning(ui, skin, &why);
+        super::warning(ui, theme, &why);
     }
     if let Some(said) = shown.unit.said(shown.axis.drive()) {
-        let ink = if said.is_well { skin.palette.muted } else { skin.palette.warn };
-        paragraph(ui, RichText::new(skin.words(&said.words)).color(ink));
+        let ink = if said.is_well { theme.palette.muted } else { theme.palette.warn };
+        paragraph(ui, RichText::new(theme.words(&said.words)).color(ink));
     }
 }
 
 /// The two buttons that are held, slow and weak.
-fn pads(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let width = ((ui.available_width() - skin.space.between) / 2.0).max(0.0);
-    let caption = skin.words(&words::effort("hd_axis.jog_hold"));
+fn pads(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+    let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
+    let caption = theme.words(&words::effort("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
         for (direction, word, label) in
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
         {
-            let (label, enabled) = (say(skin, label), may_jog(shown, direction).is_ok());
+            let (label, enabled) = (say(theme, label), may_jog(shown, direction).is_ok());
             let button = HoldButton { word, caption: &caption, label: &label, enabled };
             let press = Motor::SlowJogPress { direction, repeated: false };
             let about = (shown.unit.session.id, shown.axis.drive());
-            pad_ui(ui, skin, about, press, (&button, vec2(width, PAD)), actions);
+            pad_ui(ui, theme, about, press, (&button, vec2(width, PAD)), actions);
         }
     });
-    ui.add_space(skin.space.inside);
+    ui.add_space(theme.space.inside);
 }
 
-fn number(ui: &mut Ui, skin: &Skin, id: &'static str, text: &mut String) {
-    let word = say(skin, id);
-    entry(ui, skin, &word, |ui| text_entry(ui, text, NUMBER, &word, ""));
+fn number(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String) {
+    let word = say(theme, id);
+    entry(ui, theme, &word, |ui| text_entry(ui, text, NUMBER, &word, ""));
 }
 
 /// Pitch and resolution, and what they come to before they are written.
-fn scale(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     if entries.pitch.trim().is_empty() {
         return;
     }
     let preview = match entries.preview(shown.seen) {
         Ok(preview) => preview,
-        Err(why) => return problem(ui, skin, Some(&why)),
+        Err(why) => return problem(ui, theme, Some(&why)),
     };
     let ruler = Some(preview.ruler);
     let range = |low: Text, high: Text| TEXTS.text("hd_axis.range").with_text("low", low).with_text("high", high);
     let mm = |steps: i32| words::millimetres(ruler, steps.into());
     let scale = format!("{} / {}", preview.scale.numerator(), preview.scale.denominator());
-    row(ui, skin, &say(skin, "hd_axis.preview_scale"), skin.mono(scale));
-    row(ui, skin, &say(skin, "hd_axis.preview_steps"), skin.mono(skin.plain(preview.scale.steps_per_turn())));
-    row(ui, skin, &say(skin, "hd_axis.preview_grain"), skin.mono(skin.words(&mm(64))));
-    let whole = skin.words(&range(mm(preview.lower), mm(preview.upper)));
-    row(ui, skin, &say(skin, "hd_axis.preview_range"), skin.mono(whole));
+    row(ui, theme, &say(theme, "hd_axis.preview_scale"), theme.mono(scale));
+    row(ui, theme, &say(theme, "hd_axis.preview_steps"), theme.mono(theme.plain(preview.scale.steps_per_turn())));
+    row(ui, theme, &say(theme, "hd_axis.preview_grain"), theme.mono(theme.words(&mm(64))));
+    let whole = theme.words(&range(mm(preview.lower), mm(preview.upper)));
+    row(ui, theme, &say(theme, "hd_axis.preview_range"), theme.mono(whole));
     if let (Some((low, high)), true) = (preview.unchanged, shown.seen.scale != Some(preview.scale)) {
         let value = |own: f64| TEXTS.text("hd_axis.millimetres").with_number("value", own, 0);
         let text = TEXTS.text("hd_axis.preview_unchanged_value");
         let text = text.with_text("low", value(low)).with_text("high", value(high));
         row(
             ui,
-            skin,
-            &say(skin, "hd_axis.preview_unchanged"),
-            RichText::new(skin.words(&text)).color(skin.palette.warn),
+            theme,
+            &say(theme, "hd_axis.preview_unchanged"),
+            RichText::new(theme.words(&text)).color(theme.palette.warn),
         );
     }
 }
 
 /// The limits that somebody has to have looked at.
-fn limits(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+fn limits(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
-        skin.words(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
+        theme.words(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
     };
-    ui.label(skin.value(shown.seen.limits.map_or_else(|| say(skin, "hd_axis.none"), range)));
-    ui.add_space(skin.space.inside);
+    ui.label(theme.value(shown.seen.limits.map_or_else(|| say(theme, "hd_axis.none"), range)));
+    ui.add_space(theme.space.inside);
     ui.horizontal_wrapped(|ui| {
-        let word = say(skin, "hd_axis.confirm");
-        shown.button(ui, skin, Button::Confirm, (icons::EYE, &word), actions);
-        let word = say(skin, "hd_axis.widen");
-        shown.button(ui, skin, Button::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
+        let word = say(theme, "hd_axis.confirm");
+        shown.button(ui, theme, Button::Confirm, (icons::EYE, &word), actions);
+        let word = say(theme, "hd_axis.widen");
+        shown.button(ui, theme, Button::Widen, (icons::ARROWS_OUT_LINE_HORIZONTAL, &word), actions);
     });
 }
 
-fn reference(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, entries: &Entries) {
+fn reference(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let ruler = shown.seen.ruler();
     match entries.reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
             let text =
                 TEXTS.text("hd_axis.becomes").with_text("position", words::millimetres(ruler, own.becomes.into()));
-            paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
+            paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
         }
         Ok(_) => {}
-        Err(why) => problem(ui, skin, Some(&why)),
+        Err(why) => problem(ui, theme, Some(&why)),
     }
 }
 
 /// Three places, and whether they were reached.
-fn test(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
-    let mm = |steps: i32| skin.words(&words::millimetres(shown.seen.ruler(), steps.into()));
-    for own in Place::ALL {
-        let word = skin.words(&words::place(own));
-        entry(ui, skin, &word, |ui| {
+fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+    let mm = |steps: i32| theme.words(&words::millimetres(shown.seen.ruler(), steps.into()));
+    for own in TestTarget::ALL {
+        let word = theme.words(&words::place(own));
+        entry(ui, theme, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
-            let go = format!("{} {}", say(skin, "hd_axis.go"), target.map(&mm).unwrap_or_default());
+            let go = format!("{} {}", say(theme, "hd_axis.go"), target.map(&mm).unwrap_or_default());
             // What comes of the three stands below each other.
             let size = vec2(GO, ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.set_min_width(GO);
-                shown.button(ui, skin, Button::Go(own), (icons::PLAY, &go), actions);
+                shown.button(ui, theme, Button::Go(own), (icons::PLAY, &go), actions);
             });
             if shown.axis.going() == Some(own) {
-                ui.label(skin.label(say(skin, "hd_axis.goes")));
+                ui.label(theme.label(say(theme, "hd_axis.goes")));
             } else if let Some(outcome) = shown.axis.outcome(own) {
                 let (icon, ink) = match outcome.is_good() {
-                    true => (icons::CHECK, skin.palette.good),
-                    false => (icons::X, skin.palette.bad),
+                    true => (icons::CHECK, theme.palette.good),
+                    false => (icons::X, theme.palette.bad),
                 };
                 ui.label(RichText::new(icon).color(ink));
             }
@@ -239,19 +239,19 @@ fn test(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) 
 }
 
 /// The supply: of a virtual device it is switched here, of a real one by hand.
-fn power(ui: &mut Ui, skin: &Skin, shown: &Shown<'_>, actions: &mut Vec<Action>) {
+fn power(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = skin.words(&words::button(Step::PowerCycle));
-        shown.button(ui, skin, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
-        let word = say(skin, "hd_axis.give");
-        shown.button(ui, skin, Button::Give, (icons::PLUGS, &word), actions);
+        let word = theme.words(&words::button(Step::PowerCycle));
+        shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
+        let word = say(theme, "hd_axis.give");
+        shown.button(ui, theme, Button::Give, (icons::PLUGS, &word), actions);
         if shown.seen.is_virtual {
-            let word = say(skin, "hd_axis.power_cycle");
-            shown.button(ui, skin, Button::PowerCycle, (icons::POWER, &word), actions);
+            let word = say(theme, "hd_axis.power_cycle");
+            shown.button(ui, theme, Button::PowerCycle, (icons::POWER, &word), actions);
         } else {
-            let word = say(skin, "hd_axis.restarted");
-            shown.button(ui, skin, Button::Restarted, (icons::POWER, &word), actions);
+            let word = say(theme, "hd_axis.restarted");
+            shown.button(ui, theme, Button::Restarted, (icons::POWER, &word), actions);
         }
-        super::skip(ui, skin, shown, actions);
+        super::skip(ui, theme, shown, actions);
     });
 }

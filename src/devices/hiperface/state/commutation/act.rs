@@ -4,7 +4,7 @@ use super::outcome::may_read;
 use super::{Action, Slot};
 use crate::app::Severity;
 use crate::app::services::Services;
-use crate::app::session::{OnLine, WithMemory};
+use crate::app::session::{SessionEvents, WithMemory};
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 

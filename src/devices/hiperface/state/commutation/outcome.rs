@@ -1,7 +1,7 @@
 //! What comes of the readings: the mean of both sides, the offset, what a second vector says, the bytes of method 1 and
 //! the position of method 2.
 
-use super::{Commutation, Inputs, Kind, Place, Slot, Source, Storage};
+use super::{Commutation, Inputs, Kind, OffsetLocation, Slot, Source, Storage};
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::{ElectricalAngle, position_to_set};
 use crate::analysis::quality::Verdict;
@@ -145,7 +145,7 @@ impl Commutation {
         if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
             return Err(TEXTS.text("commutation.second_refuses"));
         }
-        let Place { field, address } = self.place(staged)?;
+        let OffsetLocation { field, address } = self.place(staged)?;
         let bytes = match self.form.storage {
             Storage::Number => offset.angle.bits().to_be_bytes().to_vec(),
             Storage::Record => {

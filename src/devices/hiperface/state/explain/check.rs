@@ -6,11 +6,11 @@ use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
 use crate::devices::hiperface::procedures::LineQuality;
-use crate::devices::hiperface::procedures::check::{Finding, Line, Step};
+use crate::devices::hiperface::procedures::check::{Finding, HiperfaceStepResult, Step};
 use crate::devices::hiperface::state::TEXTS;
 
 /// The lines of a check.
-pub fn check(lines: &[Line]) -> Vec<CheckLine> {
+pub fn check(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
 

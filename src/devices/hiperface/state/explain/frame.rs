@@ -5,20 +5,20 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::bits::hex;
 use crate::devices::hiperface::protocol::{
-    Arguments, BROADCAST, Command, DataFieldStatus, EncoderTypes, Frame, LineSettings, Reply, RequestError, Said,
+    Arguments, BROADCAST, Command, DataFieldStatus, EncoderTypes, Frame, FrameFact, LineSettings, Reply, RequestError,
     SerialLabel, StatusCode, TypeLabel,
 };
 use crate::devices::hiperface::state::TEXTS;
 
 /// One thing that a frame says.
-pub fn frame(said: &Said) -> Text {
+pub fn frame(said: &FrameFact) -> Text {
     match said {
-        Said::Heading { address, command } => heading(*address, *command),
-        Said::Request(arguments) => request(arguments),
-        Said::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", no_request(*error)),
-        Said::Refused(code) => TEXTS.text("frame.refused").with_text("code", kind_and_code(*code)),
-        Said::Code(code) => kind_and_code(*code),
-        Said::Reply(reply) => TEXTS.text("frame.reply").with_text("words", answer(reply)),
+        FrameFact::Heading { address, command } => heading(*address, *command),
+        FrameFact::Request(arguments) => request(arguments),
+        FrameFact::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", no_request(*error)),
+        FrameFact::Refused(code) => TEXTS.text("frame.refused").with_text("code", kind_and_code(*code)),
+        FrameFact::Code(code) => kind_and_code(*code),
+        FrameFact::Reply(reply) => TEXTS.text("frame.reply").with_text("words", answer(reply)),
     }
 }
 

@@ -25,7 +25,7 @@ fn watched(microseconds: u64, value: i64) -> Sample {
     Sample::Watched(WatchedReading { at, what, value: Ok(value), codes: Vec::new() })
 }
 
-fn line<'a>(record: &'a Record, heading: &str) -> &'a Line {
+fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {
     record.track.recorder.lines().iter().find(|line| line.heading == heading).unwrap()
 }
 

@@ -11,87 +11,87 @@ use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, paragraph, primary, row, verdict_ui,
 };
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
-pub(super) fn offset_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
-    card(ui, skin, TEXTS.text("commutation.offset"), |ui| {
+pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+    card(ui, theme, TEXTS.text("commutation.offset"), |ui| {
         let offset = match encoder.commutation.offset(encoder.geometry()) {
             Ok(offset) => offset,
             Err(why) => {
-                ui.label(skin.value("–").color(skin.palette.muted));
-                return paragraph(ui, skin.label(skin.words(&why)));
+                ui.label(theme.value("–").color(theme.palette.muted));
+                return paragraph(ui, theme.label(theme.words(&why)));
             }
         };
         let degrees = |id, degrees, decimals| TEXTS.text(id).with_number("degrees", degrees, decimals);
-        ui.label(skin.value(skin.words(&degrees("commutation.offset_value", offset.angle.degrees(), 4))));
-        row(ui, skin, &say(skin, "commutation.as_number"), skin.mono(format!("{:08X}h", offset.angle.bits())));
-        row(ui, skin, &say(skin, "commutation.shaft"), skin.mono(format!("{}°", skin.number(offset.shaft_deg, 4))));
+        ui.label(theme.value(theme.words(&degrees("commutation.offset_value", offset.angle.degrees(), 4))));
+        row(ui, theme, &say(theme, "commutation.as_number"), theme.mono(format!("{:08X}h", offset.angle.bits())));
+        row(ui, theme, &say(theme, "commutation.shaft"), theme.mono(format!("{}°", theme.number(offset.shaft_deg, 4))));
         if let Some(resolution) = offset.resolution_deg {
             let text = degrees("commutation.resolution_value", resolution, 2);
-            row(ui, skin, &say(skin, "commutation.resolution"), skin.mono(skin.words(&text)));
+            row(ui, theme, &say(theme, "commutation.resolution"), theme.mono(theme.words(&text)));
         }
         if !encoder.commutation.is_confirmed(encoder.geometry()) {
-            verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.unconfirmed"));
+            verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.unconfirmed"));
         }
     });
 }
 
-pub(super) fn field_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("commutation.method_one"), |ui| {
-        paragraph(ui, skin.label(say(skin, "commutation.method_one_words")));
-        entry(ui, skin, &say(skin, "commutation.storage"), |ui| {
+pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("commutation.method_one"), |ui| {
+        paragraph(ui, theme.label(say(theme, "commutation.method_one_words")));
+        entry(ui, theme, &say(theme, "commutation.storage"), |ui| {
             let ways = [(Storage::Record, "commutation.record"), (Storage::Number, "commutation.number")];
             choice(
                 ui,
-                &say(skin, "commutation.storage"),
+                &say(theme, "commutation.storage"),
                 &mut form.storage,
-                ways.map(|(way, id)| (way, say(skin, id))),
+                ways.map(|(way, id)| (way, say(theme, id))),
             );
         });
         if form.storage == Storage::Number {
-            verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.number_words"));
+            verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.number_words"));
         }
         let place = encoder.commutation.place(&encoder.staged).ok();
-        entry(ui, skin, &say(skin, "commutation.field"), |ui| {
+        entry(ui, theme, &say(theme, "commutation.field"), |ui| {
             let fields = encoder.staged.device().iter().map(|field| (Some(field.number), field.number.to_string()));
             let shown = form.field.or(place.map(|place| place.field));
             let mut chosen = shown;
-            choice(ui, &say(skin, "commutation.field"), &mut chosen, fields);
+            choice(ui, &say(theme, "commutation.field"), &mut chosen, fields);
             if chosen != shown {
                 form.field = chosen;
             }
         });
         let proposed = place.map(|place| place.address.to_string()).unwrap_or_default();
-        number(ui, skin, "commutation.address", &mut form.address, &proposed);
+        number(ui, theme, "commutation.address", &mut form.address, &proposed);
         let bytes = encoder.commutation.bytes(encoder.geometry(), &encoder.staged);
         if let Ok((_, _, bytes)) = &bytes {
             // Eight a line: sixteen do not fit beside the other column.
             let lines: Vec<String> = bytes.chunks(8).map(crate::bits::hex).collect();
-            skin.sunken().show(ui, |ui| ui.label(skin.mono(lines.join("\n"))));
+            theme.sunken().show(ui, |ui| ui.label(theme.mono(lines.join("\n"))));
         }
         for found in stored(&encoder.staged) {
-            found_ui(ui, skin, &found);
+            found_ui(ui, theme, &found);
         }
         if let Some(words) = encoder.commutation.replaced(encoder.geometry(), &encoder.staged) {
-            verdict_ui(ui, skin, Verdict::Warn, &words);
+            verdict_ui(ui, theme, Verdict::Warn, &words);
         }
         ui.horizontal_wrapped(|ui| {
             let allowed = bytes.as_ref().map(|_| ()).map_err(Clone::clone);
-            if allowed_button(ui, skin, &allowed, icons::MEMORY, &say(skin, "commutation.store")).clicked() {
+            if allowed_button(ui, theme, &allowed, icons::MEMORY, &say(theme, "commutation.store")).clicked() {
                 actions.push(ask(encoder, Assistant::Store));
             }
             let ready = encoder.session.is_ready() && encoder.staged.is_dirty();
-            if primary(ui, skin, ready, icons::LIST_CHECKS, &say(skin, "commutation.review")).clicked() {
+            if primary(ui, theme, ready, icons::LIST_CHECKS, &say(theme, "commutation.review")).clicked() {
                 actions.push(Action::Command(encoder.session.id, DeviceCommand::Review));
             }
         });
         if let (Err(why), true) = (&bytes, encoder.commutation.offset(encoder.geometry()).is_ok()) {
-            paragraph(ui, RichText::new(skin.words(why)).color(skin.palette.bad));
+            paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.bad));
         }
     });
 }
 
-fn found_ui(ui: &mut Ui, skin: &Skin, found: &Stored) {
+fn found_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
     let text = match found.record {
         Ok(record) => TEXTS
             .text("commutation.found")
@@ -101,67 +101,67 @@ fn found_ui(ui: &mut Ui, skin: &Skin, found: &Stored) {
     };
     let text = text.with("field", found.field).with("address", found.address);
     ui.horizontal_wrapped(|ui| {
-        ui.label(skin.label(say(skin, "commutation.found_title")));
+        ui.label(theme.label(say(theme, "commutation.found_title")));
         let colour = match (found.record.is_err(), found.edited) {
-            (true, _) => skin.palette.bad,
-            (false, true) => skin.palette.staged,
-            (false, false) => skin.palette.text,
+            (true, _) => theme.palette.bad,
+            (false, true) => theme.palette.staged,
+            (false, false) => theme.palette.text,
         };
-        ui.label(RichText::new(skin.words(&text)).color(colour));
+        ui.label(RichText::new(theme.words(&text)).color(colour));
         if found.edited {
-            ui.label(RichText::new(say(skin, "commutation.found_edited")).color(skin.palette.staged).underline());
+            ui.label(RichText::new(say(theme, "commutation.found_edited")).color(theme.palette.staged).underline());
         }
     });
 }
 
-pub(super) fn position_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("commutation.method_two"), |ui| {
-        paragraph(ui, skin.label(say(skin, "commutation.method_two_words")));
+pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+    card(ui, theme, TEXTS.text("commutation.method_two"), |ui| {
+        paragraph(ui, theme.label(say(theme, "commutation.method_two_words")));
         if let Ok(inputs) = form.inputs(encoder.geometry()) {
             let text = TEXTS
                 .text("commutation.step_value")
                 .with_number("mechanical", inputs.motor.mechanical_step_deg(), 4)
                 .with_number("electrical", inputs.motor.electrical_step_deg(), 2);
-            row(ui, skin, &say(skin, "commutation.step"), skin.mono(skin.words(&text)));
+            row(ui, theme, &say(theme, "commutation.step"), theme.mono(theme.words(&text)));
         }
-        number(ui, skin, "commutation.period", &mut form.period, "0");
+        number(ui, theme, "commutation.period", &mut form.period, "0");
         let setting = encoder.commutation.setting(encoder.geometry());
         match &setting {
             Ok(setting) => {
                 let value = format!("{} = {:X}h", setting.value, setting.value);
-                row(ui, skin, &say(skin, "commutation.position"), skin.mono(value));
+                row(ui, theme, &say(theme, "commutation.position"), theme.mono(value));
                 let left = TEXTS.text("commutation.remaining_value").with_number("degrees", setting.remaining_deg, 2);
-                row(ui, skin, &say(skin, "commutation.remaining"), skin.mono(skin.words(&left)));
+                row(ui, theme, &say(theme, "commutation.remaining"), theme.mono(theme.words(&left)));
                 if setting.verdict == Verdict::Warn {
-                    verdict_ui(ui, skin, Verdict::Warn, &TEXTS.text("commutation.weak"));
+                    verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.weak"));
                 }
             }
             Err(why) if encoder.commutation.offset(encoder.geometry()).is_ok() => {
-                verdict_ui(ui, skin, Verdict::Fault, why);
+                verdict_ui(ui, theme, Verdict::Fault, why);
             }
             Err(_) => {}
         }
         let allowed = setting.map(|_| ());
         let ready = if encoder.session.is_ready() { allowed } else { Err(TEXTS.text("commutation.not_ready")) };
-        if allowed_button(ui, skin, &ready, icons::CROSSHAIR, &say(skin, "commutation.set")).clicked() {
+        if allowed_button(ui, theme, &ready, icons::CROSSHAIR, &say(theme, "commutation.set")).clicked() {
             actions.push(ask(encoder, Assistant::Set));
         }
     });
 }
 
-pub(super) fn report_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder) {
+pub(super) fn report_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let lines: Vec<String> = encoder
         .commutation
         .report(&encoder.session.name(), encoder.geometry())
         .iter()
-        .map(|line| skin.words(line))
+        .map(|line| theme.words(line))
         .collect();
     let copy = |ui: &mut Ui| {
-        if icon_button(ui, true, icons::COPY, &say(skin, "commutation.copy")).clicked() {
+        if icon_button(ui, true, icons::COPY, &say(theme, "commutation.copy")).clicked() {
             ui.ctx().copy_text(lines.join("\n"));
         }
     };
-    card_with(ui, skin, TEXTS.text("commutation.report"), copy, |ui| {
+    card_with(ui, theme, TEXTS.text("commutation.report"), copy, |ui| {
         for line in &lines {
             ui.add(egui::Label::new(line).wrap().selectable(true));
         }

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use super::held::{Held, Look, STAYS_FOR};
+use super::held::{CycleResult, Held, STAYS_FOR};
 use super::{Error, Master};
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::procedures::handshake::is_echo;
@@ -69,7 +69,7 @@ impl Master<'_> {
         let holds = self.holds(command, tried);
         let patience = self.patience + holds.unwrap_or_default();
         let mut rests = Held::new(self.recorded);
-        self.until(command, Awaited::Echo, patience, |Look { now, word, same }| {
+        self.until(command, Awaited::Echo, patience, |CycleResult { now, word, same }| {
             let reply = Reply::parse(word);
             rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {

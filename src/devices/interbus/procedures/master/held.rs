@@ -76,7 +76,7 @@ impl Held {
 
 /// What a cycle brought.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct CycleResult {
     /// When.
     pub(super) now: Moment,
     /// IN.

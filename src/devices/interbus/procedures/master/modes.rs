@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::Master;
-use super::held::Look;
+use super::held::CycleResult;
 use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
@@ -281,7 +281,7 @@ impl Master<'_> {
     /// told from the echo that comes next.
     fn stop_asking(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
-        let ended = self.until(Command::Normal, Awaited::Run, patience, |Look { word, same, .. }| {
+        let ended = self.until(Command::Normal, Awaited::Run, patience, |CycleResult { word, same, .. }| {
             let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
             (!asks && same.stands()).then_some(Ok(()))
         });

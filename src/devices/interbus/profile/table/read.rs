@@ -14,7 +14,7 @@ const MOST_ROWS: usize = 1000;
 const SHOWN: usize = 24;
 
 /// A line, split.
-struct Line {
+struct TableLine {
     /// Counted from 1.
     number: u64,
     cells: Vec<String>,
@@ -63,7 +63,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
 
 impl CamTable {
     /// The columns, from the first line where it is a header.
-    fn columns(&mut self, options: &TableOptions, first: &Line, lines: &[Line]) -> Columns {
+    fn columns(&mut self, options: &TableOptions, first: &TableLine, lines: &[TableLine]) -> Columns {
         let cells: Vec<&str> = first.cells.iter().map(String::as_str).collect();
         let count = lines.iter().map(|line| line.cells.len()).max().unwrap_or_default();
         // A line without any number names something.
@@ -140,13 +140,13 @@ impl CamTable {
 }
 
 /// The lines with something in them.
-fn split(text: &str, delimiter: Delimiter) -> Vec<Line> {
+fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     let mut lines = Vec::new();
     for (line, number) in text.lines().zip(1..) {
         // A line is a row: a quote that is never closed takes one line with it, not all.
         let cells = cells(&mut ReaderBuilder::new().delimiter(delimiter.byte()).build(), line);
         if cells.iter().any(|cell| !cell.is_empty()) {
-            lines.push(Line { number, cells });
+            lines.push(TableLine { number, cells });
         }
     }
     lines
@@ -177,7 +177,7 @@ fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
     cells.collect()
 }
 
-fn draft(options: &TableOptions, columns: &Columns, line: &Line, comma: bool) -> Result<Draft, TableProblem> {
+fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: bool) -> Result<Draft, TableProblem> {
     let at = |column| columns.place(column).map_or(1, |place| place as u64 + 1);
     let wrong = |column, what| TableProblem { line: line.number, column: at(column), what };
     let cell = |column| columns.place(column).and_then(|place| line.cells.get(place)).map_or("", String::as_str);

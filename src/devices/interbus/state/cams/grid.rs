@@ -1,6 +1,6 @@
 //! The lines of a chart: round steps, and round units of the machine.
 
-use super::View;
+use super::VisibleRange;
 use crate::devices::interbus::profile::{Scale, Unit};
 
 /// A line across the chart, at the beginning of a position.
@@ -31,7 +31,7 @@ pub fn rounded(at_least: f64) -> f64 {
 }
 
 /// Lines that are at least so many steps apart.
-pub fn ticks(scale: &Scale, view: &View, range: u32, apart: f64) -> Vec<Tick> {
+pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
     let one = scale.steps_in_unit();
     let unit = round_units(scale.unit(), apart / one);
     let decimals = decimals(unit);

@@ -3,7 +3,8 @@
 mod session;
 
 use super::{
-    Chart, Hold, Lamp, Snap, Stretch, View, drawn, moved, next_line, pulled, rounded, snap, stretches, ticks, words,
+    Chart, Hold, Lamp, Snap, Stretch, VisibleRange, drawn, moved, next_line, pulled, rounded, snap, stretches, ticks,
+    words,
 };
 use crate::app::Language;
 use crate::devices::interbus::profile::{Direction, Edge, Image, Names, Parameters, Scale};
@@ -129,13 +130,13 @@ fn grids_are_round() {
     {
         assert!((rounded(at_least) - expected).abs() < 1e-12, "{at_least}");
     }
-    let seen = |scale: &Scale, view: &View, apart| {
+    let seen = |scale: &Scale, view: &VisibleRange, apart| {
         ticks(scale, view, 8192, apart)
             .iter()
             .map(|tick| (tick.position.round() as u32, tick.value))
             .collect::<Vec<_>>()
     };
-    let whole = View::whole(8192);
+    let whole = VisibleRange::whole(8192);
     let expected = [(0, 0.0), (2000, 2000.0), (4000, 4000.0), (6000, 6000.0), (8000, 8000.0)];
     assert_eq!(seen(&Scale::default(), &whole, 1500.0), expected);
     let degrees = Scale::degrees(8192.0, 0).unwrap();
@@ -154,14 +155,14 @@ fn grids_are_round() {
 
 #[test]
 fn a_view_stays_within_the_range() {
-    let whole = View::whole(1000);
+    let whole = VisibleRange::whole(1000);
     assert!(whole.is_whole(1000));
     let near = whole.zoomed(10.0, 900.0, 1000);
     assert_eq!((near.first(), near.span()), (810.0, 100.0));
     assert!((near.part(900.0) - 0.9).abs() < 1e-12 && near.position(0.5) == 860.0);
     assert_eq!(near.panned(500.0, 1000).first(), 900.0);
     assert_eq!(near.panned(-5000.0, 1000).first(), 0.0);
-    assert_eq!(near.within(50), View::whole(50));
+    assert_eq!(near.within(50), VisibleRange::whole(50));
     assert_eq!(near.zoomed(1e9, 850.0, 1000).span(), 8.0);
     assert_eq!(near.zoomed(f64::NAN, 850.0, 1000), near);
     assert_eq!(near.zoomed(0.001, 850.0, 1000), whole);

@@ -3,12 +3,12 @@
 use super::{encoder, implausible, refusal, startup, word};
 use crate::app::Text;
 use crate::app::check::CheckLine;
-use crate::devices::interbus::procedures::check::{Finding, Line, Step};
+use crate::devices::interbus::procedures::check::{Finding, InterbusStepResult, Step};
 use crate::devices::interbus::protocol::Reply;
 use crate::devices::interbus::state::TEXTS;
 
 /// The lines of a check.
-pub fn check(lines: &[Line]) -> Vec<CheckLine> {
+pub fn check(lines: &[InterbusStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
 

@@ -41,7 +41,7 @@ fn says(text: &Text, facts: &[&str]) {
 #[test]
 fn every_error_of_an_encoder_says_what_to_do() {
     let asked = Asked::Input { register: 16 };
-    let standing = |found, is| Standing { out: 0x2080_0003, parameterising: true, found, is };
+    let standing = |found, is| LeftState { out: 0x2080_0003, parameterising: true, found, is };
     let set = Command::Set(Parameter::Steps, value(8193));
     let time_out = |awaited| Error::TimeOut { awaited, sent: 0x0200_2000, input: 0x12, milliseconds: 2000 };
     let cases = [
@@ -165,7 +165,7 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
         assert!(lines.len() == 3 && lines[2].contains("b.ron") && lines[2].contains(what), "{lines:?}");
         assert!(lines[0].contains("1 of 3") && lines[1].contains("runs again") && lines[1].contains("shift"));
     }
-    let standing = Standing { out: 0, parameterising: true, found: None, is: None };
+    let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
     let lines = told(2, Left::Unknown(standing), ChangeKind::Restore);
     assert!(lines[1].contains("lead-back"), "{lines:?}");
 }
@@ -173,7 +173,7 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
 /// Issue 22.5: whatever completes it comes behind leading the encoder back.
 #[test]
 fn what_completes_a_write_comes_after_leading_back() {
-    let standing = Standing { out: 0, parameterising: true, found: None, is: None };
+    let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
     for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
         let done = Written { ops: 1, write_cycles: 1, written: 1, verified: 1 };
         let last = |left| {
@@ -226,7 +226,7 @@ fn operations_are_told_one_by_one() {
 #[test]
 fn a_wire_that_is_gone_is_a_loss_and_silence_is_none() {
     let gone = || Error::Link(LinkError::new("plc:502", LinkErrorKind::Lost));
-    let standing = Standing { out: 0, parameterising: false, found: None, is: None };
+    let standing = LeftState { out: 0, parameterising: false, found: None, is: None };
     for error in [gone(), Error::NotLedBack { cause: Box::new(gone()), standing }] {
         assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
     }

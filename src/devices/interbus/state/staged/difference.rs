@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::{CamNumber, Parameter, ProgramNumber};
 
 /// Something that has one value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum ValueId {
     /// A parameter.
     Parameter(Parameter),
     /// The shift of the window.
@@ -21,7 +21,7 @@ pub enum Place {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
     /// What it is of.
-    pub place: Place,
+    pub place: ValueId,
     /// Now; `None`: a profile does not say it.
     pub from: Option<u32>,
     /// As it is wanted; `None`: it is not to be said any more.
@@ -32,35 +32,39 @@ pub struct Differs {
 const SET: [Parameter; 5] =
     [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
 
-impl Place {
+impl ValueId {
     /// All of them: the parameters, the shift, and by program and cam.
-    pub fn all() -> impl Iterator<Item = Place> {
+    pub fn all() -> impl Iterator<Item = ValueId> {
         let cams = ProgramNumber::all().flat_map(|program| CamNumber::all().map(move |cam| (program, cam)));
         let cams = cams.flat_map(|(program, cam)| {
-            [Place::Edge(program, cam, Edge::Start), Place::Edge(program, cam, Edge::Stop), Place::On(program, cam)]
+            [
+                ValueId::Edge(program, cam, Edge::Start),
+                ValueId::Edge(program, cam, Edge::Stop),
+                ValueId::On(program, cam),
+            ]
         });
-        SET.into_iter().map(Place::Parameter).chain([Place::Shift]).chain(cams)
+        SET.into_iter().map(ValueId::Parameter).chain([ValueId::Shift]).chain(cams)
     }
 }
 
 impl Wanted {
     /// The value of something; `None`: nothing is known of it.
-    pub fn value(&self, place: Place) -> Option<u32> {
+    pub fn value(&self, place: ValueId) -> Option<u32> {
         match place {
-            Place::Parameter(parameter) => self.image.parameters.value(parameter),
-            Place::Shift => self.image.shift.map(|shift| u32::from(shift.get())),
-            Place::Edge(program, cam, edge) => self.cam(program, cam).map(|own| match edge {
+            ValueId::Parameter(parameter) => self.image.parameters.value(parameter),
+            ValueId::Shift => self.image.shift.map(|shift| u32::from(shift.get())),
+            ValueId::Edge(program, cam, edge) => self.cam(program, cam).map(|own| match edge {
                 Edge::Start => own.start.get(),
                 Edge::Stop => own.stop.get(),
             }),
-            Place::On(program, cam) => self.image.program(program).map(|_| u32::from(self.is_on(program, cam))),
+            ValueId::On(program, cam) => self.image.program(program).map(|_| u32::from(self.is_on(program, cam))),
         }
     }
 }
 
 impl Staged {
     /// How something is wanted otherwise than it is; `None` where it is not.
-    pub fn differs(&self, place: Place) -> Option<Differs> {
+    pub fn differs(&self, place: ValueId) -> Option<Differs> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.value(place), wanted.value(place));
         (from != to).then_some(Differs { place, from, to })
@@ -68,7 +72,7 @@ impl Staged {
 
     /// All that is wanted otherwise, but names.
     pub fn differences(&self) -> Vec<Differs> {
-        Place::all().filter_map(|place| self.differs(place)).collect()
+        ValueId::all().filter_map(|place| self.differs(place)).collect()
     }
 
     /// A cam is wanted otherwise; not its name. One that a profile did not mention and that does not work is not.

@@ -8,7 +8,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Progra
 
 /// An edit that is kept: what is wanted, whatever led to it. Numbers as the manual has them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Kept {
+pub enum SavedEdit {
     /// Steps and turns, which are one gear.
     Gear(u32, u32),
     /// 3 clockwise, 4 counterclockwise.
@@ -33,7 +33,7 @@ pub enum Kept {
 
 impl Staged {
     /// The edits, for a draft on disk; also those that wait for their program to be read.
-    pub fn edits(&self) -> Vec<Kept> {
+    pub fn edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
             keep_parameters(base, wanted, &mut kept);
@@ -47,7 +47,7 @@ impl Staged {
 
     /// Takes edits from a draft, as one step. Those whose program was not read wait for it; those that are none
     /// fall away.
-    pub fn take_draft(&mut self, draft: impl IntoIterator<Item = Kept>) {
+    pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
             return;
@@ -69,89 +69,89 @@ impl Staged {
     }
 }
 
-fn keep_parameters(base: &Wanted, wanted: &Wanted, kept: &mut Vec<Kept>) {
+fn keep_parameters(base: &Wanted, wanted: &Wanted, kept: &mut Vec<SavedEdit>) {
     let (was, is) = (&base.image.parameters, &wanted.image.parameters);
     if (was.steps, was.revolutions) != (is.steps, is.revolutions) {
-        kept.push(Kept::Gear(is.steps, is.revolutions));
+        kept.push(SavedEdit::Gear(is.steps, is.revolutions));
     }
     let changed = |parameter| is.value(parameter).filter(|value| was.value(parameter) != Some(*value));
-    kept.extend(changed(Parameter::Direction).map(Kept::Direction));
-    kept.extend(changed(Parameter::Preset).map(Kept::Preset));
-    kept.extend(changed(Parameter::ZeroShift).map(Kept::ZeroShift));
+    kept.extend(changed(Parameter::Direction).map(SavedEdit::Direction));
+    kept.extend(changed(Parameter::Preset).map(SavedEdit::Preset));
+    kept.extend(changed(Parameter::ZeroShift).map(SavedEdit::ZeroShift));
     let shift = wanted.image.shift.filter(|_| wanted.image.shift != base.image.shift);
-    kept.extend(shift.map(|shift| Kept::Shift(shift.get())));
+    kept.extend(shift.map(|shift| SavedEdit::Shift(shift.get())));
 }
 
-fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &mut Vec<Kept>) {
+fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &mut Vec<SavedEdit>) {
     let number = program.get();
     let name = |names: &Wanted| names.names.program(program).to_owned();
     if name(base) != name(wanted) {
-        kept.push(Kept::ProgramName(number, name(wanted)));
+        kept.push(SavedEdit::ProgramName(number, name(wanted)));
     }
     for cam in CamNumber::all() {
         let now = wanted.cam(program, cam);
         if now != base.cam(program, cam) {
             kept.push(match now {
-                Some(Cam { start, stop }) => Kept::Cam(number, cam.get(), start.get(), stop.get()),
-                None => Kept::NoCam(number, cam.get()),
+                Some(Cam { start, stop }) => SavedEdit::Cam(number, cam.get(), start.get(), stop.get()),
+                None => SavedEdit::NoCam(number, cam.get()),
             });
         }
         let on = wanted.is_on(program, cam);
         if on != base.is_on(program, cam) {
-            kept.push(Kept::On(number, cam.get(), on));
+            kept.push(SavedEdit::On(number, cam.get(), on));
         }
         if base.name(program, cam) != wanted.name(program, cam) {
             let name = wanted.name(program, cam).unwrap_or_default();
-            kept.push(Kept::Name(number, cam.get(), name.to_owned()));
+            kept.push(SavedEdit::Name(number, cam.get(), name.to_owned()));
         }
     }
 }
 
-impl Kept {
+impl SavedEdit {
     /// Puts it into what is wanted; not where a number of it is none. What lies beyond the measuring range is put there all
     /// the same, as it was left.
     fn put(self, wanted: &mut Wanted, ground: Ground) {
         let parameters = &mut wanted.image.parameters;
         match self {
-            Kept::Gear(steps, revolutions) => {
+            SavedEdit::Gear(steps, revolutions) => {
                 if let Ok(gear) = Gear::new(steps, revolutions) {
                     (parameters.steps, parameters.revolutions) = (gear.steps(), gear.turns());
                 }
             }
-            Kept::Direction(code) => {
+            SavedEdit::Direction(code) => {
                 parameters.direction = Direction::of_code(code).unwrap_or(parameters.direction);
             }
-            Kept::Preset(preset) => parameters.preset = Value::new(preset).map_or(parameters.preset, Value::get),
-            Kept::ZeroShift(shift) => {
+            SavedEdit::Preset(preset) => parameters.preset = Value::new(preset).map_or(parameters.preset, Value::get),
+            SavedEdit::ZeroShift(shift) => {
                 parameters.zero_shift = Value::new(shift).map_or(parameters.zero_shift, Value::get)
             }
-            Kept::Shift(shift) => wanted.image.shift = WindowShift::new(shift).or(wanted.image.shift),
-            Kept::Cam(_, cam, start, stop) => {
+            SavedEdit::Shift(shift) => wanted.image.shift = WindowShift::new(shift).or(wanted.image.shift),
+            SavedEdit::Cam(_, cam, start, stop) => {
                 let edges = Value::new(start).zip(Value::new(stop)).map(|(start, stop)| Cam { start, stop });
                 let own = self.program().and_then(|number| edit::program_mut(wanted, number, ground).ok());
                 if let Some((own, edges)) = own.and_then(|own| own.cams.get_mut(usize::from(cam))).zip(edges) {
                     *own = Some(edges);
                 }
             }
-            Kept::NoCam(_, cam) => {
+            SavedEdit::NoCam(_, cam) => {
                 let own = self.program().and_then(|number| edit::program_mut(wanted, number, ground).ok());
                 if let Some(own) = own.and_then(|own| own.cams.get_mut(usize::from(cam))) {
                     *own = None;
                 }
             }
-            Kept::On(_, cam, on) => {
+            SavedEdit::On(_, cam, on) => {
                 let own = self.program().and_then(|number| edit::program_mut(wanted, number, ground).ok());
                 if let Some((own, cam)) = own.zip(CamNumber::new(cam)) {
                     own.set_on(cam, on);
                 }
             }
-            Kept::Name(_, cam, ref name) => {
+            SavedEdit::Name(_, cam, ref name) => {
                 let place = self.program().zip(CamNumber::new(cam));
                 if let Some(((program, cam), name)) = place.zip(edit::checked_name(name).ok()) {
                     wanted.names.set_cam(program, cam, name);
                 }
             }
-            Kept::ProgramName(_, ref name) => {
+            SavedEdit::ProgramName(_, ref name) => {
                 if let Some((program, name)) = self.program().zip(edit::checked_name(name).ok()) {
                     wanted.names.set_program(program, name);
                 }
@@ -161,12 +161,16 @@ impl Kept {
 
     fn program(&self) -> Option<ProgramNumber> {
         match self {
-            Kept::Cam(program, ..)
-            | Kept::NoCam(program, _)
-            | Kept::On(program, ..)
-            | Kept::Name(program, ..)
-            | Kept::ProgramName(program, _) => ProgramNumber::new(*program),
-            Kept::Gear(..) | Kept::Direction(_) | Kept::Preset(_) | Kept::ZeroShift(_) | Kept::Shift(_) => None,
+            SavedEdit::Cam(program, ..)
+            | SavedEdit::NoCam(program, _)
+            | SavedEdit::On(program, ..)
+            | SavedEdit::Name(program, ..)
+            | SavedEdit::ProgramName(program, _) => ProgramNumber::new(*program),
+            SavedEdit::Gear(..)
+            | SavedEdit::Direction(_)
+            | SavedEdit::Preset(_)
+            | SavedEdit::ZeroShift(_)
+            | SavedEdit::Shift(_) => None,
         }
     }
 
@@ -174,12 +178,12 @@ impl Kept {
     fn is_of_unread(&self, wanted: &Wanted, ground: Ground) -> bool {
         ground == Ground::Encoder
             && match self {
-                Kept::Shift(_) => wanted.image.shift.is_none(),
-                Kept::Cam(..) | Kept::NoCam(..) | Kept::On(..) => {
+                SavedEdit::Shift(_) => wanted.image.shift.is_none(),
+                SavedEdit::Cam(..) | SavedEdit::NoCam(..) | SavedEdit::On(..) => {
                     self.program().is_some_and(|program| wanted.image.program(program).is_none())
                 }
-                Kept::Gear(..) | Kept::Direction(_) | Kept::Preset(_) | Kept::ZeroShift(_) => false,
-                Kept::Name(..) | Kept::ProgramName(..) => false,
+                SavedEdit::Gear(..) | SavedEdit::Direction(_) | SavedEdit::Preset(_) | SavedEdit::ZeroShift(_) => false,
+                SavedEdit::Name(..) | SavedEdit::ProgramName(..) => false,
             }
     }
 }

@@ -1,6 +1,6 @@
 //! Edits, steps and drafts of a K3 encoder.
 
-use super::{Differs, Edit, EditError, Kept, Mark, Place, Staged, Wanted};
+use super::{Differs, Edit, EditError, Mark, SavedEdit, Staged, ValueId, Wanted};
 use crate::app::PendingEdits;
 use crate::devices::interbus::profile::{Direction, Edge, Filled, Image, Names, Parameters};
 use crate::devices::interbus::protocol::{
@@ -60,9 +60,9 @@ fn an_edit_stands_beside_the_encoder() {
     assert_eq!(staged.edit(&Edit::Direction(Direction::Counterclockwise)), Ok(false), "nothing is other than before");
     let differs = |place, from, to| Differs { place, from: Some(from), to: Some(to) };
     let expected = [
-        differs(Place::Parameter(Parameter::Direction), 3, 4),
-        differs(Place::Edge(number(1), cam(3), Edge::Stop), 350, 399),
-        differs(Place::On(number(1), cam(7)), 0, 1),
+        differs(ValueId::Parameter(Parameter::Direction), 3, 4),
+        differs(ValueId::Edge(number(1), cam(3), Edge::Stop), 350, 399),
+        differs(ValueId::On(number(1), cam(7)), 0, 1),
     ];
     assert_eq!(staged.differences(), expected);
     assert!(staged.is_edited(number(1), cam(3)) && !staged.is_edited(number(1), cam(4)));
@@ -230,18 +230,23 @@ fn a_draft_comes_back_and_waits_for_what_was_not_read() {
         staged.edit(&edit).unwrap();
     }
     let expected = [
-        Kept::Gear(360, 1),
-        Kept::Shift(3),
-        Kept::On(1, 0, false),
-        Kept::Cam(1, 3, 300, 399),
-        Kept::Name(1, 3, "feed".to_owned()),
+        SavedEdit::Gear(360, 1),
+        SavedEdit::Shift(3),
+        SavedEdit::On(1, 0, false),
+        SavedEdit::Cam(1, 3, 300, 399),
+        SavedEdit::Name(1, 3, "feed".to_owned()),
     ];
     let kept = staged.edits();
     assert_eq!(kept, expected);
 
     let mut other = Staged::default();
-    let none =
-        [Kept::Cam(9, 0, 1, 2), Kept::Cam(1, 8, 1, 2), Kept::Direction(7), Kept::Preset(1 << 25), Kept::Shift(26)];
+    let none = [
+        SavedEdit::Cam(9, 0, 1, 2),
+        SavedEdit::Cam(1, 8, 1, 2),
+        SavedEdit::Direction(7),
+        SavedEdit::Preset(1 << 25),
+        SavedEdit::Shift(26),
+    ];
     other.take_draft(kept.iter().cloned().chain(none));
     assert_eq!(other.edits().len(), 10, "nothing is lost before anything was read");
     other.refresh_parameters(parameters(1000, 1));
@@ -256,10 +261,10 @@ fn a_draft_comes_back_and_waits_for_what_was_not_read() {
 
 #[test]
 fn drafts_are_text() {
-    let kept = vec![Kept::Gear(360, 1), Kept::NoCam(2, 7), Kept::Name(1, 3, "feed".to_owned())];
+    let kept = vec![SavedEdit::Gear(360, 1), SavedEdit::NoCam(2, 7), SavedEdit::Name(1, 3, "feed".to_owned())];
     let text = ron::to_string(&kept).unwrap();
     assert_eq!(text, "[Gear(360,1),NoCam(2,7),Name(1,3,\"feed\")]");
-    assert_eq!(ron::from_str::<Vec<Kept>>(&text).unwrap(), kept);
+    assert_eq!(ron::from_str::<Vec<SavedEdit>>(&text).unwrap(), kept);
 }
 
 #[test]
@@ -273,7 +278,7 @@ fn a_profile_can_be_made_to_say_what_it_does_not_say() {
     assert_eq!(staged.program(number(2)).unwrap().cams.iter().flatten().count(), 1);
     assert_eq!(staged.edit(&Edit::Shift(WindowShift::new(3).unwrap())), Ok(true));
     let kept = staged.edits();
-    assert_eq!(kept, [Kept::Shift(3), Kept::Cam(2, 4, 900, 99), Kept::On(2, 4, true)]);
+    assert_eq!(kept, [SavedEdit::Shift(3), SavedEdit::Cam(2, 4, 900, 99), SavedEdit::On(2, 4, true)]);
     let mut other = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
     other.take_draft(kept);
     assert_eq!(other.wanted(), staged.wanted());
@@ -289,7 +294,7 @@ fn names_are_saved_and_not_written() {
     encoder.edit(&Edit::ProgramName { program: number(1), name: "size 2".to_owned() }).unwrap();
     assert!(!encoder.is_dirty() && !encoder.is_program_edited(number(1)) && encoder.can_undo());
     let kept = encoder.edits();
-    assert_eq!(kept, [Kept::ProgramName(1, "size 2".to_owned()), Kept::Name(1, 0, "feed".to_owned())]);
+    assert_eq!(kept, [SavedEdit::ProgramName(1, "size 2".to_owned()), SavedEdit::Name(1, 0, "feed".to_owned())]);
     let mut other = staged();
     other.take_draft(kept);
     assert_eq!(other.wanted(), encoder.wanted());

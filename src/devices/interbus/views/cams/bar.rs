@@ -2,25 +2,25 @@
 
 use egui::{RichText, Ui};
 
-use super::View as Page;
+use super::CamsUiState as Page;
 use crate::app::{Action, Language, Text};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::words;
 use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem, text_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct CamBarUiState {
     by: String,
     refused: Option<Text>,
 }
 
 pub(super) fn bar_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     program: ProgramNumber,
     view: &mut Page,
@@ -28,69 +28,69 @@ pub(super) fn bar_ui(
 ) {
     let marks = encoder.staged.wanted().map(|wanted| wanted.marks()).unwrap_or_default();
     ui.horizontal_wrapped(|ui| {
-        ui.label(skin.label(say(skin, "ib_cams.program")));
+        ui.label(theme.label(say(theme, "ib_cams.program")));
         for own in ProgramNumber::all() {
             let says = encoder.staged.program(own);
             let ink = match says {
-                None => skin.palette.muted,
-                _ if marks.iter().any(|mark| mark.program() == Some(own)) => skin.palette.warn,
-                _ if encoder.staged.is_program_edited(own) => skin.palette.staged,
-                _ => skin.palette.text,
+                None => theme.palette.muted,
+                _ if marks.iter().any(|mark| mark.program() == Some(own)) => theme.palette.warn,
+                _ if encoder.staged.is_program_edited(own) => theme.palette.staged,
+                _ => theme.palette.text,
             };
             let text = RichText::new(own.get().to_string()).color(ink);
             let response = ui.add(egui::Button::selectable(own == program, text).min_size([30.0, 28.0].into()));
             let word = TEXTS.text("ib_startup.program").with("program", own.get());
-            if name(response, true, &skin.words(&word)).clicked() {
+            if name(response, true, &theme.words(&word)).clicked() {
                 view.program = Some(own);
             }
         }
         if encoder.staged.program(program).is_some() {
-            whole(ui, skin, encoder, program, &mut view.bar, actions);
+            whole(ui, theme, encoder, program, &mut view.bar, actions);
         }
-        tables(ui, skin, encoder, program, actions);
+        tables(ui, theme, encoder, program, actions);
     });
     let own: Vec<_> = marks.into_iter().filter(|mark| mark.program() == Some(program)).collect();
     for words in words::marks(&own) {
         ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::WARNING).color(skin.palette.warn));
-            paragraph(ui, skin.words(&words));
+            ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+            paragraph(ui, theme.words(&words));
         });
     }
-    problem(ui, skin, encoder.refusal.as_ref());
+    problem(ui, theme, encoder.refusal.as_ref());
 }
 
 /// A program copied, mirrored, shifted.
 fn whole(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     program: ProgramNumber,
-    view: &mut View,
+    view: &mut CamBarUiState,
     actions: &mut Vec<Action>,
 ) {
     let id = encoder.session.id;
     let mut put = |edit: Edit| actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
-    icon_menu(ui, icons::PENCIL_SIMPLE, &say(skin, "ib_cams.whole"), |ui| {
+    icon_menu(ui, icons::PENCIL_SIMPLE, &say(theme, "ib_cams.whole"), |ui| {
         ui.set_max_width(300.0);
-        ui.label(skin.heading(say(skin, "ib_cams.copy")));
+        ui.label(theme.heading(say(theme, "ib_cams.copy")));
         ui.horizontal_wrapped(|ui| {
             for to in ProgramNumber::all().filter(|to| *to != program) {
                 let word = to.get().to_string();
                 let text = TEXTS.text("ib_cams.copy_to").with("program", to.get());
-                if name(ui.button(&word), true, &skin.words(&text)).clicked() {
+                if name(ui.button(&word), true, &theme.words(&text)).clicked() {
                     put(Edit::Copy { from: program, to });
                 }
             }
         });
-        ui.add_space(skin.space.inside);
-        ui.label(skin.heading(say(skin, "ib_cams.move")));
-        if button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &say(skin, "ib_cams.mirror")).clicked() {
+        ui.add_space(theme.space.inside);
+        ui.label(theme.heading(say(theme, "ib_cams.move")));
+        if button(ui, icons::ARROWS_OUT_LINE_HORIZONTAL, &say(theme, "ib_cams.mirror")).clicked() {
             put(Edit::Mirror(program));
         }
-        let word = say(skin, "ib_cams.by");
-        entry(ui, skin, &word, |ui| {
+        let word = say(theme, "ib_cams.by");
+        entry(ui, theme, &word, |ui| {
             text_entry(ui, &mut view.by, 80.0, &word, "-100");
-            if button(ui, icons::CHECK, &say(skin, "ib_cams.rotate")).clicked() {
+            if button(ui, icons::CHECK, &say(theme, "ib_cams.rotate")).clicked() {
                 match forms::offset(&view.by) {
                     Ok(by) => {
                         view.refused = None;
@@ -100,29 +100,29 @@ fn whole(
                 }
             }
         });
-        problem(ui, skin, view.refused.as_ref());
-        paragraph(ui, skin.caption(say(skin, "ib_cams.move_words")));
+        problem(ui, theme, view.refused.as_ref());
+        paragraph(ui, theme.caption(say(theme, "ib_cams.move_words")));
     });
 }
 
 /// Tables of cams, in and out.
-fn tables(ui: &mut Ui, skin: &Skin, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+fn tables(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    icon_menu(ui, icons::TABLE, &say(skin, "ib_cams.tables"), |ui| {
+    icon_menu(ui, icons::TABLE, &say(theme, "ib_cams.tables"), |ui| {
         ui.set_max_width(300.0);
-        if button(ui, icons::FOLDER_OPEN, &say(skin, "ib_table.open")).clicked() {
+        if button(ui, icons::FOLDER_OPEN, &say(theme, "ib_table.open")).clicked() {
             actions.push(Action::device(id, Interbus::AskTable(program)));
             ui.close();
         }
-        if button(ui, icons::COPY, &say(skin, "ib_table.paste")).clicked() {
+        if button(ui, icons::COPY, &say(theme, "ib_table.paste")).clicked() {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::RequestPaste);
             ui.close();
         }
-        if button(ui, icons::FLOPPY_DISK, &say(skin, "ib_table.save")).clicked() {
+        if button(ui, icons::FLOPPY_DISK, &say(theme, "ib_table.save")).clicked() {
             actions
-                .push(Action::device(id, Interbus::AskSaveTable { decimal_comma: skin.language == Language::German }));
+                .push(Action::device(id, Interbus::AskSaveTable { decimal_comma: theme.language == Language::German }));
             ui.close();
         }
-        paragraph(ui, skin.caption(say(skin, "ib_table.words")));
+        paragraph(ui, theme.caption(say(theme, "ib_table.words")));
     });
 }

@@ -4,15 +4,15 @@ use egui::{RichText, Ui};
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
-use crate::devices::interbus::state::cams::{Chart, View as Stretch};
+use crate::devices::interbus::state::cams::{Chart, VisibleRange as Stretch};
 use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, Preview, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
 use crate::ui::controls::{card_with, icon_button, name, paragraph};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is looked at, and how.
-pub(super) struct View {
+pub(super) struct CamChartUiState {
     ring: bool,
     snaps: bool,
     /// The part of the range that is seen; `None`: all of it.
@@ -20,9 +20,9 @@ pub(super) struct View {
     selected: Option<CamNumber>,
 }
 
-impl Default for View {
+impl Default for CamChartUiState {
     fn default() -> Self {
-        View { ring: false, snaps: true, stretch: None, selected: None }
+        CamChartUiState { ring: false, snaps: true, stretch: None, selected: None }
     }
 }
 
@@ -31,30 +31,30 @@ const RING: f32 = 420.0;
 
 pub(super) fn card_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     chart: &Chart,
-    view: &mut View,
+    view: &mut CamChartUiState,
     actions: &mut Vec<Action>,
 ) {
-    let View { ring: is_ring, snaps, stretch, selected } = *view;
+    let CamChartUiState { ring: is_ring, snaps, stretch, selected } = *view;
     let aside = |ui: &mut Ui| {
         for (own, id) in [(true, "ib_cams.ring"), (false, "ib_cams.lanes")] {
-            let word = say(skin, id);
+            let word = say(theme, id);
             if name(ui.add(egui::Button::selectable(is_ring == own, &word)), true, &word).clicked() {
                 view.ring = own;
             }
         }
-        ui.checkbox(&mut view.snaps, say(skin, "ib_cams.snap")).on_hover_text(say(skin, "ib_cams.snap_words"));
-        let word = say(skin, "ib_cams.whole_range");
+        ui.checkbox(&mut view.snaps, say(theme, "ib_cams.snap")).on_hover_text(say(theme, "ib_cams.snap_words"));
+        let word = say(theme, "ib_cams.whole_range");
         if !is_ring && icon_button(ui, stretch.is_some(), icons::CORNERS_OUT, &word).clicked() {
             view.stretch = None;
         }
     };
     let mut event = None;
     let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
-    card_with(ui, skin, TEXTS.text("ib_cams.title"), aside, |ui| {
-        let label = skin.words(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
+    card_with(ui, theme, TEXTS.text("ib_cams.title"), aside, |ui| {
+        let label = theme.words(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
         let sends = encoder.record.last().filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
         let model = CamChart {
             label: &label,
@@ -69,16 +69,16 @@ pub(super) fn card_ui(
         ui.push_id(chart.program.get(), |ui| {
             event = if is_ring {
                 let side = ui.available_width().min(RING);
-                ui.vertical_centered(|ui| cam_ring(ui, skin, &model, side)).inner
+                ui.vertical_centered(|ui| cam_ring(ui, theme, &model, side)).inner
             } else {
                 let stretch = stretch.unwrap_or_else(|| Stretch::whole(chart.range));
-                cam_lanes(ui, skin, &model, stretch)
+                cam_lanes(ui, theme, &model, stretch)
             };
         });
         if sends.is_some() {
-            agreement(ui, skin, &encoder.preview);
+            agreement(ui, theme, &encoder.preview);
         }
-        paragraph(ui, skin.caption(say(skin, "ib_cams.chart_words")));
+        paragraph(ui, theme.caption(say(theme, "ib_cams.chart_words")));
     });
     let program = chart.program;
     match event {
@@ -98,12 +98,12 @@ pub(super) fn card_ui(
 }
 
 /// How the outputs that came agree with the cams that the encoder holds.
-fn agreement(ui: &mut Ui, skin: &Skin, preview: &Preview) {
+fn agreement(ui: &mut Ui, theme: &Theme, preview: &Preview) {
     let Preview { same, other, last, .. } = preview;
     let Some(last) = last else {
         if *same > 0 {
             let text = TEXTS.text("ib_cams.agree").with("words", same);
-            paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.good));
+            paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.good));
         }
         return;
     };
@@ -115,5 +115,5 @@ fn agreement(ui: &mut Ui, skin: &Skin, preview: &Preview) {
         .with("position", last.position)
         .with("own", bits(last.own))
         .with("expected", bits(last.expected));
-    paragraph(ui, RichText::new(skin.words(&text)).color(skin.palette.warn));
+    paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
 }

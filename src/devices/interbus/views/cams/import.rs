@@ -8,7 +8,7 @@ use crate::devices::interbus::state::cams::{table_words, words};
 use crate::devices::interbus::state::{Action as Interbus, Encoder, Import, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, card, paragraph, primary};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// Height of the list of problems and roundings.
 const LIST: f32 = 200.0;
@@ -26,52 +26,52 @@ pub(super) fn pasted(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions
     }
 }
 
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, import: &Import, actions: &mut Vec<Action>) {
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Import, actions: &mut Vec<Action>) {
     let Import { origin, table, .. } = import;
     let id = encoder.session.id;
-    card(ui, skin, TEXTS.text("ib_table.title"), |ui| {
+    card(ui, theme, TEXTS.text("ib_table.title"), |ui| {
         let programs = table.filled().len();
         let text = TEXTS
             .text("ib_table.read")
             .with_text("origin", origin.clone())
             .with("rows", table.rows.len())
             .with("programs", programs);
-        paragraph(ui, skin.words(&text));
-        paragraph(ui, skin.caption(skin.words(&table_words::layout(table))));
+        paragraph(ui, theme.words(&text));
+        paragraph(ui, theme.caption(theme.words(&table_words::layout(table))));
         egui::ScrollArea::vertical().id_salt("table").max_height(LIST).show(ui, |ui| {
             for problem in &table.problems {
-                line(ui, icons::X_CIRCLE, skin.palette.bad, skin.words(&table_words::problem(problem)));
+                line(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&table_words::problem(problem)));
             }
             for note in &table.notes {
-                line(ui, icons::INFO, skin.palette.accent, skin.words(&table_words::note(note)));
+                line(ui, icons::INFO, theme.palette.accent, theme.words(&table_words::note(note)));
             }
             for row in table.rounded() {
-                let words = skin.words(&table_words::rounding(row, &encoder.scale));
-                line(ui, icons::RULER, skin.palette.muted, words);
+                let words = theme.words(&table_words::rounding(row, &encoder.scale));
+                line(ui, icons::RULER, theme.palette.muted, words);
             }
             if table.problems.is_empty() && table.rounded().next().is_none() {
-                paragraph(ui, skin.label(say(skin, "ib_table.exact")));
+                paragraph(ui, theme.label(say(theme, "ib_table.exact")));
             }
         });
         for filled in table.filled() {
             if encoder.staged.program(filled.program).is_none() && encoder.profile().is_none() {
                 let unread = crate::devices::interbus::state::EditError::NotRead(filled.program);
-                line(ui, icons::WARNING, skin.palette.warn, skin.words(&words::refused(&unread)));
+                line(ui, icons::WARNING, theme.palette.warn, theme.words(&words::refused(&unread)));
             }
         }
         // A line that is left out would switch its cam off.
         let is_whole = table.problems.is_empty();
         if !is_whole {
-            paragraph(ui, skin.label(say(skin, "ib_table.mend")));
+            paragraph(ui, theme.label(say(theme, "ib_table.mend")));
         }
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         ui.horizontal(|ui| {
-            if primary(ui, skin, is_whole && !table.rows.is_empty(), icons::CHECK, &say(skin, "ib_table.take"))
+            if primary(ui, theme, is_whole && !table.rows.is_empty(), icons::CHECK, &say(theme, "ib_table.take"))
                 .clicked()
             {
                 actions.push(Action::device(id, Interbus::TakeTable(true)));
             }
-            if button(ui, icons::X, &say(skin, "ib_table.leave")).clicked() {
+            if button(ui, icons::X, &say(theme, "ib_table.leave")).clicked() {
                 actions.push(Action::device(id, Interbus::TakeTable(false)));
             }
         });

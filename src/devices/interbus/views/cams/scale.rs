@@ -6,59 +6,65 @@ use crate::app::{Action, Text};
 use crate::devices::interbus::profile::{Scale, Unit};
 use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, forms};
 use crate::devices::interbus::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::controls::{card, choice, entry, paragraph, problem, settled_entry};
 
 /// What is typed and does not count yet.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct CamScaleUiState {
     steps: Option<(String, Option<Text>)>,
     zero: Option<(String, Option<Text>)>,
 }
 
 const NUMBER: f32 = 112.0;
 
-pub(super) fn card_ui(ui: &mut Ui, skin: &Skin, encoder: &Encoder, view: &mut View, actions: &mut Vec<Action>) {
-    card(ui, skin, TEXTS.text("ib_scale.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "ib_scale.words")));
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    view: &mut CamScaleUiState,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, theme, TEXTS.text("ib_scale.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "ib_scale.words")));
         let (scale, range) = (&encoder.scale, encoder.range());
         let id = encoder.session.id;
         let mut set = |scale: Scale| actions.push(Action::device(id, Interbus::SetScale(scale)));
-        let word = say(skin, "ib_scale.unit");
+        let word = say(theme, "ib_scale.unit");
         let mut unit = scale.unit();
-        entry(ui, skin, &word, |ui| {
+        entry(ui, theme, &word, |ui| {
             let units = [
                 (Unit::Steps, "ib_scale.steps"),
                 (Unit::Degrees, "ib_scale.degrees"),
                 (Unit::Millimetres, "ib_scale.millimetres"),
             ];
-            if choice(ui, &word, &mut unit, units.map(|(unit, id)| (unit, say(skin, id)))) {
+            if choice(ui, &word, &mut unit, units.map(|(unit, id)| (unit, say(theme, id)))) {
                 set(forms::usual_scale(unit, scale.zero(), range));
             }
         });
         if let Some(steps) = forms::steps_of(scale) {
             let word = say(
-                skin,
+                theme,
                 match scale.unit() {
                     Unit::Degrees => "ib_scale.steps_in_turn",
                     _ => "ib_scale.steps_in_millimetre",
                 },
             );
-            entry(ui, skin, &word, |ui| {
-                settled_entry(ui, &mut view.steps, &skin.plain(steps), NUMBER, &word, |text| {
+            entry(ui, theme, &word, |ui| {
+                settled_entry(ui, &mut view.steps, &theme.plain(steps), NUMBER, &word, |text| {
                     set(forms::scale(scale.unit(), text, scale.zero())?);
                     Ok(())
                 });
             });
-            problem(ui, skin, view.steps.as_ref().and_then(|own| own.1.as_ref()));
+            problem(ui, theme, view.steps.as_ref().and_then(|own| own.1.as_ref()));
         }
-        let word = say(skin, "ib_scale.zero");
-        entry(ui, skin, &word, |ui| {
+        let word = say(theme, "ib_scale.zero");
+        entry(ui, theme, &word, |ui| {
             settled_entry(ui, &mut view.zero, &scale.zero().to_string(), NUMBER, &word, |text| {
                 set(forms::with_zero(scale, text, range)?);
                 Ok(())
             });
         });
-        problem(ui, skin, view.zero.as_ref().and_then(|own| own.1.as_ref()));
+        problem(ui, theme, view.zero.as_ref().and_then(|own| own.1.as_ref()));
     });
 }

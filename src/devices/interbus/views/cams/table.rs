@@ -13,11 +13,11 @@ use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 use crate::devices::interbus::state::cams::{Chart, Lane, words};
 use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, forms};
 use crate::ui::controls::{card, name, paragraph, problem, settled_entry};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is typed and does not count yet.
 #[derive(Default)]
-pub(super) struct View {
+pub(super) struct CamTableUiState {
     drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
 }
 
@@ -41,31 +41,31 @@ const MARGIN: f32 = 16.0;
 
 pub(super) fn card_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     chart: &Chart,
-    view: &mut View,
+    view: &mut CamTableUiState,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, skin, TEXTS.text("ib_cams.table"), |ui| {
+    card(ui, theme, TEXTS.text("ib_cams.table"), |ui| {
         let wide = ui.available_width() > 680.0;
         ui.horizontal(|ui| {
             let heads =
                 [(CAM, "ib_cams.cam"), (NAME, "ib_cams.name"), (NUMBER, "ib_cams.start"), (NUMBER, "ib_cams.stop")];
             for (width, id) in heads {
-                cell(ui, width, |ui| ui.label(skin.caption(say(skin, id))));
+                cell(ui, width, |ui| ui.label(theme.caption(say(theme, id))));
             }
         });
         for lane in &chart.lanes {
-            ui.horizontal(|ui| row(ui, skin, encoder, (chart, lane), wide, view, actions));
+            ui.horizontal(|ui| row(ui, theme, encoder, (chart, lane), wide, view, actions));
         }
         for lane in &chart.lanes {
             for column in [Column::Name, Column::Start, Column::Stop] {
                 let draft = view.drafts.get(&(chart.program, lane.cam, column));
-                problem(ui, skin, draft.and_then(|draft| draft.as_ref()?.1.as_ref()));
+                problem(ui, theme, draft.and_then(|draft| draft.as_ref()?.1.as_ref()));
             }
         }
-        paragraph(ui, skin.caption(say(skin, "ib_cams.table_words")));
+        paragraph(ui, theme.caption(say(theme, "ib_cams.table_words")));
     });
 }
 
@@ -81,26 +81,26 @@ fn cell<R>(ui: &mut Ui, width: f32, content: impl FnOnce(&mut Ui) -> R) -> R {
 
 fn row(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     encoder: &Encoder,
     (chart, lane): (&Chart, &Lane),
     wide: bool,
-    view: &mut View,
+    view: &mut CamTableUiState,
     actions: &mut Vec<Action>,
 ) {
     let (id, program, cam) = (encoder.session.id, chart.program, lane.cam);
     let mut put = |edit: Edit| actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
-    let ink = if lane.edited { skin.palette.staged } else { skin.palette.text };
+    let ink = if lane.edited { theme.palette.staged } else { theme.palette.text };
     let mut on = lane.on;
     let response = cell(ui, CAM, |ui| ui.checkbox(&mut on, RichText::new(cam.get().to_string()).color(ink)));
-    if name(response, true, &skin.words(&words::bare(cam))).clicked() {
+    if name(response, true, &theme.words(&words::bare(cam))).clicked() {
         put(Edit::Switch { program, cam, on });
     }
     let word = TEXTS.text("ib_cams.name_of").with("cam", cam.get());
     let draft = view.drafts.entry((program, cam, Column::Name)).or_default();
     let shown = lane.name.as_deref().unwrap_or_default();
     cell(ui, NAME, |ui| {
-        settled_entry(ui, draft, shown, NAME - MARGIN, &skin.words(&word), |text| {
+        settled_entry(ui, draft, shown, NAME - MARGIN, &theme.words(&word), |text| {
             put(Edit::Name { program, cam, name: text.to_owned() });
             Ok(())
         })
@@ -109,7 +109,7 @@ fn row(
         let draft = view.drafts.entry((program, cam, column)).or_default();
         let shown =
             chart.edge(cam, edge).map_or_else(String::new, |own| forms::typed(own, &encoder.scale, chart.range));
-        let word = skin.words(&words::edge(lane, edge));
+        let word = theme.words(&words::edge(lane, edge));
         cell(ui, NUMBER, |ui| {
             settled_entry(ui, draft, &shown, NUMBER - MARGIN, &word, |text| {
                 let to = forms::position(text, &encoder.scale, chart.range)?;
@@ -123,11 +123,11 @@ fn row(
         });
     }
     for trouble in words::troubles(chart, lane) {
-        ui.label(RichText::new(icons::WARNING).color(skin.palette.warn)).on_hover_text(skin.words(&trouble));
+        ui.label(RichText::new(icons::WARNING).color(theme.palette.warn)).on_hover_text(theme.words(&trouble));
     }
     if wide && let Some(edges) = lane.edges {
         let text = words::stretch(edges, &encoder.scale, chart.range);
-        let ink = if lane.on { skin.label(skin.words(&text)) } else { skin.caption(skin.words(&text)) };
+        let ink = if lane.on { theme.label(theme.words(&text)) } else { theme.caption(theme.words(&text)) };
         ui.add(egui::Label::new(ink).truncate());
     }
 }

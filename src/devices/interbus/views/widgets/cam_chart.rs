@@ -7,9 +7,9 @@ use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect
 use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
-use crate::devices::interbus::state::cams::{self, Chart, Hold, Snap, View, words};
+use crate::devices::interbus::state::cams::{self, Chart, Hold, Snap, VisibleRange, words};
 use crate::devices::interbus::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::widgets::series;
 
 /// A program.
@@ -52,7 +52,7 @@ pub(crate) enum CamEvent {
     /// Another cam.
     Selected(CamNumber),
     /// Another part of the measuring range.
-    Viewed(View),
+    Viewed(VisibleRange),
 }
 
 /// Something that is dragged, from one drawing to the next.
@@ -67,8 +67,8 @@ pub(super) struct Drag {
 }
 
 /// The colour of a cam.
-pub(super) fn ink(skin: &Skin, cam: CamNumber) -> Color32 {
-    series(skin, usize::from(cam.get()))
+pub(super) fn ink(theme: &Theme, cam: CamNumber) -> Color32 {
+    series(theme, usize::from(cam.get()))
 }
 
 impl CamChart<'_> {
@@ -164,7 +164,7 @@ impl CamChart<'_> {
     pub(super) fn tell_edge(
         &self,
         ui: &Ui,
-        skin: &Skin,
+        theme: &Theme,
         response: &Response,
         hold: Hold,
         label: &Text,
@@ -173,9 +173,9 @@ impl CamChart<'_> {
         let at = self.chart.edge(cam, edge)?;
         let last = self.chart.last();
         response.widget_info(|| {
-            let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), skin.words(label));
+            let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), theme.words(label));
             info.role = Role::Slider;
-            info.current_text_value = Some(skin.words(&words::position(at, self.scale, self.chart.range)));
+            info.current_text_value = Some(theme.words(&words::position(at, self.scale, self.chart.range)));
             info
         });
         if !self.movable {
@@ -212,15 +212,15 @@ impl CamChart<'_> {
     }
 
     /// What stands under the pointer beside an edge or a cam.
-    pub(super) fn tip(&self, skin: &Skin, response: Response, hold: Hold) {
+    pub(super) fn tip(&self, theme: &Theme, response: Response, hold: Hold) {
         let Some(lane) = self.chart.lane(hold.cam()) else { return };
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-            ui.label(skin.words(&words::cam(lane)));
-            ui.label(skin.words(&words::lane(lane, self.scale, self.chart.range)));
+            ui.label(theme.words(&words::cam(lane)));
+            ui.label(theme.words(&words::lane(lane, self.scale, self.chart.range)));
             for trouble in words::troubles(self.chart, lane) {
-                ui.label(egui::RichText::new(skin.words(&trouble)).color(skin.palette.bad));
+                ui.label(egui::RichText::new(theme.words(&trouble)).color(theme.palette.bad));
             }
             if self.movable {
                 let hint = match hold {
@@ -228,28 +228,28 @@ impl CamChart<'_> {
                     Hold::Whole(_) => "cams.hint_whole",
                     Hold::New(_) => "cams.hint_new",
                 };
-                ui.label(skin.caption(say(skin, hint)));
+                ui.label(theme.caption(say(theme, hint)));
             }
         });
     }
 
     /// Where something would come to, in words at a place; never outside the room there is.
-    pub(super) fn ghost(&self, skin: &Skin, painter: &Painter, drag: &Drag, near: Pos2) {
+    pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;
         let words = match drag.hold {
             Hold::Edge(_, edge) => words::position(cams::of_edge(to, edge).get(), self.scale, range),
             Hold::Whole(_) | Hold::New(_) => words::stretch(to, self.scale, range),
         };
-        let font = FontId::proportional(skin.sizes.caption);
-        let galley = painter.layout_no_wrap(skin.words(&words), font, skin.palette.on_accent.into());
-        let size = galley.size() + Vec2::new(skin.space.between, 4.0);
+        let font = FontId::proportional(theme.sizes.caption);
+        let galley = painter.layout_no_wrap(theme.words(&words), font, theme.palette.on_accent.into());
+        let size = galley.size() + Vec2::new(theme.space.between, 4.0);
         let room = painter.clip_rect();
         let left = (near.x - size.x / 2.0).min(room.right() - size.x).max(room.left());
         let top = (near.y - size.y / 2.0).max(room.top());
         let label = Rect::from_min_size(egui::pos2(left, top), size);
-        painter.rect_filled(label, skin.space.inside, skin.palette.accent);
-        painter.galley(label.center() - galley.size() / 2.0, galley, skin.palette.on_accent.into());
+        painter.rect_filled(label, theme.space.inside, theme.palette.accent);
+        painter.galley(label.center() - galley.size() / 2.0, galley, theme.palette.on_accent.into());
     }
 }
 

@@ -22,36 +22,36 @@ use egui::{Id, Sense, Ui, WidgetInfo};
 
 use super::cam_chart::{self, CamChart, CamEvent, Drag};
 use crate::devices::interbus::profile::Unit;
-use crate::devices::interbus::state::cams::{Chart, Snap, View};
-use crate::ui::Skin;
+use crate::devices::interbus::state::cams::{Chart, Snap, VisibleRange};
+use crate::ui::Theme;
 
-use place::Place;
+use place::PlotArea;
 
 /// What everything here needs.
 struct Lanes<'a> {
     ui: &'a Ui,
-    skin: &'a Skin,
+    theme: &'a Theme,
     model: &'a CamChart<'a>,
     /// The program that is drawn.
     shown: &'a Chart,
-    place: &'a Place,
+    place: &'a PlotArea,
     base: Id,
 }
 
 /// Draws a part of the range and says what was done. One chart a `Ui`: another needs an id of its own (`push_id`).
-pub(crate) fn cam_lanes(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, view: View) -> Option<CamEvent> {
+pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: VisibleRange) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
     let preview = model.shown(drag);
     let shown = preview.as_ref().unwrap_or(model.chart);
     let range = model.chart.range;
     let view = view.within(range);
-    let size = Place::size(ui.available_width(), model.scale.unit() != Unit::Steps);
+    let size = PlotArea::size(ui.available_width(), model.scale.unit() != Unit::Steps);
     let (outer, response) = ui.allocate_exact_size(size, Sense::hover());
-    let place = Place::new(outer, view, skin.space.between);
+    let place = PlotArea::new(outer, view, theme.space.between);
     response.widget_info(|| WidgetInfo::labeled(Role::Group, true, model.label));
 
-    let lanes = Lanes { ui, skin, model, shown, place: &place, base };
+    let lanes = Lanes { ui, theme, model, shown, place: &place, base };
     let looked = lanes.look(range);
     lanes.paint(drag);
     let pulled = lanes.grips(drag);

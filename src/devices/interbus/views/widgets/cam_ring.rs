@@ -19,8 +19,8 @@ use super::cam_chart::{self, CamChart, CamEvent, Drag, ink};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Program, Value};
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::cams::{Chart, Hold, Lane, Snap, View, ticks, words};
-use crate::ui::Skin;
+use crate::devices::interbus::state::cams::{Chart, Hold, Lane, Snap, VisibleRange, ticks, words};
+use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
 /// The least side of the square.
@@ -86,7 +86,7 @@ impl Dial {
 /// What everything here needs.
 struct Ring<'a> {
     ui: &'a Ui,
-    skin: &'a Skin,
+    theme: &'a Theme,
     model: &'a CamChart<'a>,
     shown: &'a Chart,
     dial: Dial,
@@ -94,7 +94,7 @@ struct Ring<'a> {
 }
 
 /// Draws it and says what was done. One ring a `Ui`: another needs an id of its own (`push_id`).
-pub(crate) fn cam_ring(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
+pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
     let preview = model.shown(drag);
@@ -103,14 +103,14 @@ pub(crate) fn cam_ring(ui: &mut Ui, skin: &Skin, model: &CamChart<'_>, side: f32
     response.widget_info(|| WidgetInfo::labeled(Role::Group, true, model.label));
     let range = f64::from(model.chart.range.max(1));
     let dial = Dial { middle: rect.center(), radius: rect.width() / 2.0 - NUMBERS, range };
-    let ring = Ring { ui, skin, model, shown, dial, base };
+    let ring = Ring { ui, theme, model, shown, dial, base };
     if ui.is_rect_visible(rect) {
         ring.paint();
     }
     let whole = ring.disc(rect, drag);
     let edges = ring.edges(drag);
     if let Some(drag) = drag {
-        model.ghost(skin, ui.painter(), &drag, rect.center());
+        model.ghost(theme, ui.painter(), &drag, rect.center());
     }
     if drag.is_some() && !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
         ui.data_mut(|data| data.remove::<Drag>(base));
@@ -143,7 +143,7 @@ impl Ring<'_> {
         let event = hold.and_then(|hold| self.pulled(&response, hold, drag));
         let clicked = response.clicked().then(|| response.interact_pointer_pos().and_then(|at| self.dial.cam(at)));
         if let Some(hold) = hovered.and_then(under).filter(|_| drag.is_none()) {
-            self.model.tip(self.skin, response, hold);
+            self.model.tip(self.theme, response, hold);
         }
         event.or(clicked.flatten().map(CamEvent::Selected))
     }
@@ -164,7 +164,7 @@ impl Ring<'_> {
         let sense = if self.model.movable { Sense::click_and_drag() } else { Sense::click() };
         let response = self.ui.interact(rect, self.base.with("edge").with(hold), sense);
         let label = TEXTS.text("cams.on_ring").with_text("edge", words::edge(lane, edge));
-        let mut event = self.model.tell_edge(self.ui, self.skin, &response, hold, &label);
+        let mut event = self.model.tell_edge(self.ui, self.theme, &response, hold, &label);
         let apart = self.snap().apart.unwrap_or(1.0);
         event = event.or(self.model.keys(self.ui, &response, hold, apart));
         if response.clicked() || response.drag_started() {
@@ -180,7 +180,7 @@ impl Ring<'_> {
         }
         self.paint_grip(lane.cam, edge, is_active, response.has_focus());
         if drag.is_none() {
-            self.model.tip(self.skin, response, hold);
+            self.model.tip(self.theme, response, hold);
         }
         event
     }
@@ -208,13 +208,13 @@ impl Ring<'_> {
     }
 
     fn paint(&self) {
-        let (skin, dial, painter) = (self.skin, self.dial, self.ui.painter());
+        let (theme, dial, painter) = (self.theme, self.dial, self.ui.painter());
         for lane in &self.shown.lanes {
-            let stroke = Stroke::new(1.0, skin.palette.line);
+            let stroke = Stroke::new(1.0, theme.palette.line);
             painter.circle_stroke(dial.middle, dial.circle(lane.cam), stroke);
         }
         if let Some(cam) = self.model.selected {
-            let wide = Stroke::new(dial.pitch(), Color32::from(skin.palette.accent).gamma_multiply(0.12));
+            let wide = Stroke::new(dial.pitch(), Color32::from(theme.palette.accent).gamma_multiply(0.12));
             // A stroke lies outside its circle.
             painter.circle_stroke(dial.middle, dial.circle(cam) - dial.pitch() / 2.0, wide);
         }
@@ -224,7 +224,7 @@ impl Ring<'_> {
         }
         if let Some(position) = self.model.position.filter(|position| *position < self.shown.range) {
             let at = f64::from(position) + 0.5;
-            let stroke = Stroke::new(1.5, skin.palette.text);
+            let stroke = Stroke::new(1.5, theme.palette.text);
             let inner = dial.radius * INNER * 0.5;
             painter.line_segment([dial.at(at, inner), dial.at(at, dial.radius + 3.0)], stroke);
             painter.circle_filled(dial.at(at, inner), 3.0, stroke.color);
@@ -232,43 +232,44 @@ impl Ring<'_> {
     }
 
     fn numbers(&self) {
-        let (skin, dial, painter) = (self.skin, self.dial, self.ui.painter());
+        let (theme, dial, painter) = (self.theme, self.dial, self.ui.painter());
         let range = self.shown.range;
         let scale = self.model.scale;
-        let lines = ticks(scale, &View::whole(range), range, dial.range / LINES);
+        let lines = ticks(scale, &VisibleRange::whole(range), range, dial.range / LINES);
         for tick in lines.iter().filter(|tick| tick.position < dial.range - dial.range / LINES / 2.0) {
             let at = |radius| dial.at(tick.position, radius);
-            painter.line_segment([at(dial.radius * INNER), at(dial.radius + 3.0)], Stroke::new(1.0, skin.palette.line));
-            let words = skin.words(&words::tick(tick.value, tick.decimals, scale.unit()));
+            painter
+                .line_segment([at(dial.radius * INNER), at(dial.radius + 3.0)], Stroke::new(1.0, theme.palette.line));
+            let words = theme.words(&words::tick(tick.value, tick.decimals, scale.unit()));
             let galley =
-                painter.layout_no_wrap(words, FontId::monospace(skin.sizes.caption), skin.palette.muted.into());
+                painter.layout_no_wrap(words, FontId::monospace(theme.sizes.caption), theme.palette.muted.into());
             // Outside the circle on whichever side it is.
             let out = (at(dial.radius) - dial.middle) / dial.radius.max(1.0);
             let middle = at(dial.radius + 5.0) + out * galley.size() / 2.0;
-            painter.galley(middle - galley.size() / 2.0, galley, skin.palette.muted.into());
+            painter.galley(middle - galley.size() / 2.0, galley, theme.palette.muted.into());
         }
     }
 
     fn arc(&self, painter: &Painter, lane: &Lane) {
-        let (skin, dial) = (self.skin, self.dial);
+        let (theme, dial) = (self.theme, self.dial);
         let thick = (dial.pitch() - 3.0).max(2.0);
         let (width, colour) =
-            if lane.on { (thick, ink(skin, lane.cam)) } else { (1.5, Color32::from(skin.palette.muted)) };
+            if lane.on { (thick, ink(theme, lane.cam)) } else { (1.5, Color32::from(theme.palette.muted)) };
         for stretch in lane.stretches(self.shown.range) {
             let (from, to) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
             let count = (((to - from) / dial.range * 128.0).ceil() as usize).clamp(2, 128);
             let point = |at: usize| dial.at(from + (to - from) * at as f64 / count as f64, dial.circle(lane.cam));
             painter.add(Shape::line((0..=count).map(point).collect(), PathStroke::new(width, colour)));
             if lane.clashes {
-                let marked = PathStroke::new(2.0, Color32::from(skin.palette.bad));
+                let marked = PathStroke::new(2.0, Color32::from(theme.palette.bad));
                 painter.add(Shape::line((0..=count).map(point).collect(), marked));
             }
         }
         let cam = pos_of_name(dial, lane.cam);
-        let font = FontId::monospace((skin.sizes.caption).min(dial.pitch()));
-        let ink = if lane.on { skin.palette.text } else { skin.palette.muted };
+        let font = FontId::monospace((theme.sizes.caption).min(dial.pitch()));
+        let ink = if lane.on { theme.palette.text } else { theme.palette.muted };
         let label = Rect::from_center_size(cam, Vec2::splat(dial.pitch().min(13.0)));
-        painter.rect_filled(label, CornerRadius::same(2), skin.palette.raised);
+        painter.rect_filled(label, CornerRadius::same(2), theme.palette.raised);
         painter.text(cam, Align2::CENTER_CENTER, lane.cam.get().to_string(), font, ink.into());
     }
 
@@ -277,14 +278,14 @@ impl Ring<'_> {
         let Some(place) = self.place(self.shown, cam, edge).filter(|_| active || focused || is_selected) else {
             return;
         };
-        let (skin, painter) = (self.skin, self.ui.painter());
+        let (theme, painter) = (self.theme, self.ui.painter());
         let lit = active || focused;
         let radius = if lit { 5.0 } else { 3.5 };
-        painter.circle_filled(place, radius + 1.0, skin.palette.raised);
-        painter.circle_filled(place, radius, if lit { skin.palette.accent } else { skin.palette.text });
+        painter.circle_filled(place, radius + 1.0, theme.palette.raised);
+        painter.circle_filled(place, radius, if lit { theme.palette.accent } else { theme.palette.text });
         if focused {
             let around = Rect::from_center_size(place, Vec2::splat(2.0 * radius + 2.0));
-            focus_ring(painter, skin, around, CornerRadius::same(6));
+            focus_ring(painter, theme, around, CornerRadius::same(6));
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::app::Text;
 use crate::devices::interbus::protocol::{CamBit, CamOutput, Value, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::views::say;
-use crate::ui::Skin;
+use crate::ui::Theme;
 use crate::ui::widgets::{BitCell, series};
 
 /// A word.
@@ -72,12 +72,12 @@ impl Kind {
         }
     }
 
-    fn ink(self, skin: &Skin) -> Color32 {
+    fn ink(self, theme: &Theme) -> Color32 {
         match self {
-            Kind::Invalid => skin.palette.bad.into(),
-            Kind::Zero => skin.palette.muted.into(),
-            Kind::Window => series(skin, 1),
-            Kind::Cams => series(skin, 2),
+            Kind::Invalid => theme.palette.bad.into(),
+            Kind::Zero => theme.palette.muted.into(),
+            Kind::Window => series(theme, 1),
+            Kind::Cams => series(theme, 2),
         }
     }
 }
@@ -204,11 +204,11 @@ impl Cells {
 }
 
 /// Draws it.
-pub(crate) fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
+pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     let cells = Cells::new(ui.available_width());
     let (outer, response) = ui.allocate_exact_size(cells.size(), Sense::hover());
     let cells = cells.at(outer.min);
-    let told: Vec<String> = layout.groups().iter().map(|group| tells(skin, layout, *group)).collect();
+    let told: Vec<String> = layout.groups().iter().map(|group| tells(theme, layout, *group)).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, layout.label);
         info.current_text_value = Some(told.join(", "));
@@ -216,12 +216,12 @@ pub(crate) fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
     });
     let base = response.id;
     for bit in (0..BITS).rev() {
-        word_bit(ui, skin, layout, bit, cells.word(bit));
+        word_bit(ui, theme, layout, bit, cells.word(bit));
         let own = ui.interact(cells.word(bit), base.with(bit), Sense::hover());
-        own.on_hover_text(skin.words(&layout.says(bit)));
+        own.on_hover_text(theme.words(&layout.says(bit)));
     }
     for (group, words) in layout.groups().into_iter().zip(&told) {
-        name(ui, skin, layout, &cells, group);
+        name(ui, theme, layout, &cells, group);
         let Some(run) = cells.runs(group.high, group.low).into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))
         else {
             continue;
@@ -231,13 +231,13 @@ pub(crate) fn word_layout(ui: &mut Ui, skin: &Skin, layout: &WordLayout<'_>) {
         own.widget_info(|| WidgetInfo::labeled(Role::Label, true, words));
         own.on_hover_text(words);
     }
-    position(ui.painter(), skin, layout, &cells);
-    ui.add(egui::Label::new(skin.caption(say(skin, "cams.word_of_position"))).wrap());
+    position(ui.painter(), theme, layout, &cells);
+    ui.add(egui::Label::new(theme.caption(say(theme, "cams.word_of_position"))).wrap());
 }
 
 /// A group with its place in the word and, where a word has come, its bits.
-fn tells(skin: &Skin, layout: &WordLayout<'_>, group: Group) -> String {
-    let name = skin.words(&layout.name(group));
+fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
+    let name = theme.words(&layout.name(group));
     let place = if group.high == group.low {
         TEXTS.text("cams.word_place").with("bit", group.high)
     } else {
@@ -245,14 +245,14 @@ fn tells(skin: &Skin, layout: &WordLayout<'_>, group: Group) -> String {
     };
     let bits: Option<String> =
         (group.low..=group.high).rev().map(|bit| layout.is_set(bit).map(|set| if set { '1' } else { '0' })).collect();
-    let place = skin.words(&place);
+    let place = theme.words(&place);
     match bits {
         Some(bits) => format!("{name}, {place}: {bits}"),
         None => format!("{name}, {place}"),
     }
 }
 
-fn word_bit(ui: &Ui, skin: &Skin, layout: &WordLayout<'_>, bit: u8, rect: Rect) {
+fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect) {
     let kind = Kind::of(layout.bit(bit));
     let blank = match layout.bit(bit) {
         CamBit::Invalid => "!".to_owned(),
@@ -262,49 +262,49 @@ fn word_bit(ui: &Ui, skin: &Skin, layout: &WordLayout<'_>, bit: u8, rect: Rect) 
     let set = layout.is_set(bit);
     let is_wrong = set == Some(true) && matches!(kind, Kind::Invalid | Kind::Zero);
     let painter = ui.painter();
-    BitCell { ink: kind.ink(skin), bit: set, blank: &blank, alarm: is_wrong }.paint(painter, skin, rect);
-    let font = FontId::monospace(skin.sizes.caption);
+    BitCell { ink: kind.ink(theme), bit: set, blank: &blank, alarm: is_wrong }.paint(painter, theme, rect);
+    let font = FontId::monospace(theme.sizes.caption);
     let above = pos2(rect.center().x, rect.top() - NUMBERS / 2.0);
-    painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, skin.palette.muted.into());
+    painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, theme.palette.muted.into());
 }
 
 /// A bracket below a group with its name, as far as that fits.
-fn name(ui: &Ui, skin: &Skin, layout: &WordLayout<'_>, cells: &Cells, group: Group) {
+fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: Group) {
     let painter = ui.painter();
-    let ink = group.kind.ink(skin);
+    let ink = group.kind.ink(theme);
     let runs = cells.runs(group.high, group.low);
     for run in &runs {
         painter.hline(run.left() + 1.0..=run.right() - 1.0, run.bottom() + 3.0, Stroke::new(2.0, ink));
     }
     let Some(run) = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width())) else { return };
-    let font = FontId::proportional(skin.sizes.caption);
-    let words = skin.words(&layout.name(group));
-    let galley = painter.layout_no_wrap(words, font, skin.palette.muted.into());
+    let font = FontId::proportional(theme.sizes.caption);
+    let words = theme.words(&layout.name(group));
+    let galley = painter.layout_no_wrap(words, font, theme.palette.muted.into());
     if galley.size().x <= run.width() {
         let at = pos2(run.center().x - galley.size().x / 2.0, run.bottom() + 5.0);
-        painter.galley(at, galley, skin.palette.muted.into());
+        painter.galley(at, galley, theme.palette.muted.into());
     }
 }
 
 /// The position's own bits: which are sent, which are left out, which the range never uses.
-fn position(painter: &Painter, skin: &Skin, layout: &WordLayout<'_>, cells: &Cells) {
+fn position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells) {
     let mask = layout.shift.mask();
     let last = layout.range.saturating_sub(1);
     let used = u32::BITS - last.leading_zeros();
     let bits = layout.word.and_then(|word| CamOutput::parse(word).ok()).map(|own| own.position_bits(layout.shift));
-    let ink = Kind::Window.ink(skin);
+    let ink = Kind::Window.ink(theme);
     for bit in (0..POSITION).rev() {
         let rect = cells.position(bit);
         let is_sent = mask >> bit & 1 == 1;
-        let font = FontId::monospace(skin.sizes.caption);
+        let font = FontId::monospace(theme.sizes.caption);
         if is_sent {
             let set = bits.map(|bits| bits >> bit & 1 == 1);
-            BitCell { ink, bit: set, blank: &bit.to_string(), alarm: false }.paint(painter, skin, rect);
+            BitCell { ink, bit: set, blank: &bit.to_string(), alarm: false }.paint(painter, theme, rect);
         } else {
             let is_used = u32::from(bit) < used;
-            let colour = if is_used { skin.palette.warn } else { skin.palette.line };
+            let colour = if is_used { theme.palette.warn } else { theme.palette.line };
             painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, colour), StrokeKind::Inside);
-            let ink = if is_used { skin.palette.text } else { skin.palette.muted };
+            let ink = if is_used { theme.palette.text } else { theme.palette.muted };
             painter.text(rect.center(), Align2::CENTER_CENTER, bit.to_string(), font, ink.into());
         }
     }

@@ -1,7 +1,7 @@
 //! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
 
 use super::*;
-use crate::devices::ssi::protocol::{Direction, Finding, Flags, Meaning, Place, Range, ungray};
+use crate::devices::ssi::protocol::{Direction, Finding, Flags, Location, Meaning, Range, ungray};
 
 fn resolve(text: &str) -> Result<Resolved, String> {
     let (key, settings) = Settings::parse(text).map_err(|error| error.to_string())?;
@@ -111,7 +111,7 @@ fn frames_of_the_reference() {
         assert_eq!(usize::from(layout.clocks()), bits.len(), "{text}");
         let reading = layout.decode(frame);
         assert_eq!((reading.position, reading.flags), (position, flags), "{text}");
-        if let Place::Shaft { turns: read, steps: rest, .. } = range.place(reading.position) {
+        if let Location::Shaft { turns: read, steps: rest, .. } = range.place(reading.position) {
             assert_eq!((read, rest), (turns, steps), "{text}");
         }
     }
@@ -197,8 +197,8 @@ fn round_axis() {
     let layout = resolve("ahm36,steps=100,revolutions=25/2").unwrap().layout;
     let range = layout.descriptor().range;
     assert_eq!(layout.coding().last(), 99);
-    assert_eq!(range.place(48), Place::Shaft { turns: 6, steps: 0, degrees: 0.0 });
-    assert_eq!(range.place(99), Place::Shaft { turns: 12, steps: 3, degrees: 135.0 });
+    assert_eq!(range.place(48), Location::Shaft { turns: 6, steps: 0, degrees: 0.0 });
+    assert_eq!(range.place(99), Location::Shaft { turns: 12, steps: 3, degrees: 135.0 });
     assert_eq!(range.position(12, 3), Some(99));
     assert_eq!((range.position(12, 4), range.position(6, 8)), (None, None));
 }

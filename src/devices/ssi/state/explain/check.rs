@@ -4,11 +4,11 @@ use super::finding as said;
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
-use crate::devices::ssi::procedures::check::{Finding, Line, Step};
+use crate::devices::ssi::procedures::check::{Finding, SsiStepResult, Step};
 use crate::devices::ssi::state::TEXTS;
 
 /// The lines of a check.
-pub fn check(lines: &[Line]) -> Vec<CheckLine> {
+pub fn check(lines: &[SsiStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
 

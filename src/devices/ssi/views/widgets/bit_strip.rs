@@ -22,8 +22,8 @@ use egui::accesskit::Role;
 use egui::{EventFilter, Id, Key, Modifiers, Rect, Sense, Ui, WidgetInfo};
 
 use crate::devices::ssi::protocol::{Meaning, Role as Carries};
-use crate::devices::ssi::state::strip::{self, Handle, Shown, Strip};
-use crate::ui::Skin;
+use crate::devices::ssi::state::strip::{self, CellState, Handle, Strip};
+use crate::ui::Theme;
 
 pub(super) use paint::ink as field_ink;
 
@@ -73,7 +73,7 @@ struct Drag {
 }
 
 /// Draws it and says what was done. One strip a `Ui`: another needs an id of its own (`push_id`).
-pub(crate) fn bit_strip(ui: &mut Ui, skin: &Skin, model: &BitStrip<'_>) -> Option<StripEvent> {
+pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Option<StripEvent> {
     let base = ui.make_persistent_id("bit_strip");
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
@@ -84,12 +84,12 @@ pub(crate) fn bit_strip(ui: &mut Ui, skin: &Skin, model: &BitStrip<'_>) -> Optio
     let room = ui.available_width();
     let rows = Rows::new(room, model.strip.layout().clocks());
     let told = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
-    let (tags, levels) = names::tags(ui, skin, shown, &rows, told);
+    let (tags, levels) = names::tags(ui, theme, shown, &rows, told);
     let clocks = shown.layout().clocks();
     let sized = rows.clone().at(egui::Pos2::ZERO, &levels);
     let (outer, _) = ui.allocate_exact_size(sized.size(clocks), Sense::hover());
     let rows = rows.at(outer.min, &levels);
-    let view = View { ui, skin, model, shown, cells: &cells, rows: &rows, base };
+    let view = StripContext { ui, theme, model, shown, cells: &cells, rows: &rows, base };
 
     let chosen = view.choose();
     view.fields(&tags);
@@ -100,19 +100,19 @@ pub(crate) fn bit_strip(ui: &mut Ui, skin: &Skin, model: &BitStrip<'_>) -> Optio
 }
 
 /// What everything here needs.
-struct View<'a> {
+struct StripContext<'a> {
     ui: &'a Ui,
-    skin: &'a Skin,
+    theme: &'a Theme,
     model: &'a BitStrip<'a>,
     /// The frame that is drawn.
     shown: &'a Strip,
     /// Its bits, where they are known.
-    cells: &'a [Shown],
+    cells: &'a [CellState],
     rows: &'a Rows,
     base: Id,
 }
 
-impl View<'_> {
+impl StripContext<'_> {
     /// The keyboard on the cells.
     fn choose(&self) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
@@ -153,14 +153,14 @@ impl View<'_> {
 
     /// A cell in words, with its bit.
     fn says(&self, clock: u8) -> String {
-        let words = self.skin.words(&strip::cell(self.shown, clock));
+        let words = self.theme.words(&strip::cell(self.shown, clock));
         match self.shown_at(clock) {
             Some(cell) => format!("{words} = {}", u8::from(cell.bit)),
             None => words,
         }
     }
 
-    fn shown_at(&self, clock: u8) -> Option<Shown> {
+    fn shown_at(&self, clock: u8) -> Option<CellState> {
         self.cells.get(usize::from(clock.checked_sub(1)?)).copied()
     }
 
@@ -205,8 +205,8 @@ impl View<'_> {
             let (run, _) = names::widest(self.rows, field);
             let rect = tag.rect(self.rows, Rows::lane(run)).union(Rows::lane(run));
             let response = self.ui.interact(rect, self.base.with("field").with(tag.field), Sense::hover());
-            let name = self.skin.words(&strip::field(self.shown, field));
-            let place = self.skin.words(&strip::clocks(field));
+            let name = self.theme.words(&strip::field(self.shown, field));
+            let place = self.theme.words(&strip::clocks(field));
             response.widget_info(|| {
                 let mut info = WidgetInfo::labeled(Role::Group, true, format!("{name}, {place}"));
                 let bits = (field.first..=field.last).filter_map(|clock| self.shown_at(clock));
@@ -222,7 +222,7 @@ impl View<'_> {
 }
 
 /// The worst that any of these clocks tells.
-fn tells(cells: &[Shown], clocks: std::ops::RangeInclusive<u8>) -> Option<Meaning> {
+fn tells(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<Meaning> {
     let own = clocks.filter_map(|clock| cells.get(usize::from(clock.checked_sub(1)?))?.tells);
     own.min_by_key(|meaning| *meaning == Meaning::Warning)
 }

@@ -20,9 +20,9 @@ use egui::{Color32, FontId, Galley, Painter, Rangef, Rect, Sense, Shape, Stroke,
 
 use super::bit_strip::field_ink;
 use crate::app::Text;
-use crate::devices::ssi::state::strip::{Shown, bare, short};
+use crate::devices::ssi::state::strip::{CellState, bare, short};
 use crate::devices::ssi::state::timing::{Diagram, left_out};
-use crate::ui::Skin;
+use crate::ui::Theme;
 
 use axis::Axis;
 use place::{Bar, Flag, Put};
@@ -58,20 +58,20 @@ struct Rows {
 }
 
 /// Draws it.
-pub(crate) fn timing_diagram(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
-    skin.sunken().show(ui, |ui| draw(ui, skin, model));
+pub(crate) fn timing_diagram(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
+    theme.sunken().show(ui, |ui| draw(ui, theme, model));
 }
 
-fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
+fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let diagram = model.diagram;
     let caption = |text: &Text, colour: Color32| {
-        ui.painter().layout_no_wrap(skin.words(text), FontId::proportional(skin.sizes.caption), colour)
+        ui.painter().layout_no_wrap(theme.words(text), FontId::proportional(theme.sizes.caption), colour)
     };
-    let (text, muted) = (Color32::from(skin.palette.text), Color32::from(skin.palette.muted));
+    let (text, muted) = (Color32::from(theme.palette.text), Color32::from(theme.palette.muted));
     let lines = ["ssi.timing_clock", "ssi.timing_data"].map(|id| caption(&TEXTS.text(id), muted));
     let width = ui.available_width();
-    let gutter = lines.iter().map(|line| line.size().x).fold(0.0, f32::max) + skin.space.between;
-    let room = Rangef::new(gutter + BEFORE, (width - skin.space.inside).max(gutter + 2.0 * BEFORE));
+    let gutter = lines.iter().map(|line| line.size().x).fold(0.0, f32::max) + theme.space.between;
+    let room = Rangef::new(gutter + BEFORE, (width - theme.space.inside).max(gutter + 2.0 * BEFORE));
     let axis = Axis::new(diagram.pieces(), room);
 
     let breaks = axis.breaks();
@@ -92,7 +92,7 @@ fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
     let count = |put: &[Put]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
     let heights = [count(&flags_put) * WORDS + 4.0, ROW, 8.0, ROW, WORDS + 4.0, count(&bars_put) * LANE];
     let (outer, response) = ui.allocate_exact_size(Vec2::new(width, heights.iter().sum()), Sense::hover());
-    let told: Vec<String> = diagram.spans().iter().map(|span| skin.words(&diagram.words(span))).collect();
+    let told: Vec<String> = diagram.spans().iter().map(|span| theme.words(&diagram.words(span))).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, model.label);
         info.current_text_value = Some(told.join(", "));
@@ -103,7 +103,7 @@ fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
         let row = |number: usize| Rangef::new(at(number) + 4.0, at(number + 1) - 4.0);
         let rows = Rows { flags: at(1) - 4.0, clock: row(1), data: row(3), names: at(4), lanes: at(5), bottom: at(6) };
         let painter = ui.painter().clone();
-        let picture = Picture { painter: &painter, skin, model, axis: &axis, left: outer.left(), rows: &rows };
+        let picture = Picture { painter: &painter, theme, model, axis: &axis, left: outer.left(), rows: &rows };
         for (galley, row) in lines.into_iter().zip([rows.clock, rows.data]) {
             painter.galley(pos2(outer.left(), row.center() - galley.size().y / 2.0), galley, muted);
         }
@@ -114,7 +114,7 @@ fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
         picture.breaks(&breaks);
         picture.bars(&bars, &bars_put);
         if let Some(pos) = response.hover_pos().filter(|pos| axis.at(pos.x - outer.left()).is_some()) {
-            let stroke = Stroke::new(1.0, skin.palette.accent);
+            let stroke = Stroke::new(1.0, theme.palette.accent);
             painter.vline(pos.x, rows.clock.min - 4.0..=rows.bottom, stroke);
         }
     }
@@ -122,9 +122,9 @@ fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
     if let Some(at) = under {
         response.on_hover_ui_at_pointer(|ui| {
             for (number, text) in diagram.told(at).iter().enumerate() {
-                let words = skin.words(text);
+                let words = theme.words(text);
                 if number == 0 {
-                    ui.label(skin.caption(words))
+                    ui.label(theme.caption(words))
                 } else {
                     ui.label(words)
                 };
@@ -136,7 +136,7 @@ fn draw(ui: &mut Ui, skin: &Skin, model: &TimingDiagram<'_>) {
 /// What is painted, and where.
 struct Picture<'a> {
     painter: &'a Painter,
-    skin: &'a Skin,
+    theme: &'a Theme,
     model: &'a TimingDiagram<'a>,
     axis: &'a Axis,
     left: f32,
@@ -149,7 +149,7 @@ impl Picture<'_> {
     }
 
     fn line(&self) -> Color32 {
-        self.skin.palette.muted.into()
+        self.theme.palette.muted.into()
     }
 
     /// Words of moments and of what is left out, each moment with its line through all.
@@ -158,13 +158,13 @@ impl Picture<'_> {
             let top = self.rows.flags - (put.level + 1) as f32 * WORDS;
             let at = pos2(self.left + put.left, top);
             if *is_moment {
-                let (x, faint) = (self.left + x, Stroke::new(1.0, self.skin.palette.line));
+                let (x, faint) = (self.left + x, Stroke::new(1.0, self.theme.palette.line));
                 let below = (at.x..=at.x + galley.size().x).contains(&x);
                 let ends = [pos2(x, if below { top + WORDS } else { top + 2.0 }), pos2(x, self.rows.clock.max)];
                 self.painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, self.line()), 3.0, 3.0));
                 self.painter.vline(x, self.rows.clock.max..=self.rows.bottom, faint);
             }
-            self.painter.galley(at, galley.clone(), self.skin.palette.text.into());
+            self.painter.galley(at, galley.clone(), self.theme.palette.text.into());
         }
     }
 
@@ -180,22 +180,22 @@ impl Picture<'_> {
             points.push(pos2(x, if high { row.min } else { row.max }));
         }
         points.push(pos2(self.x(self.model.diagram.end()), if high { row.min } else { row.max }));
-        self.painter.add(Shape::line(points, Stroke::new(1.5, self.skin.palette.text)));
+        self.painter.add(Shape::line(points, Stroke::new(1.5, self.theme.palette.text)));
     }
 
     /// High, the bits, low for tm, high again, and the first bits of the next burst.
     fn data(&self, from: f32) {
         let diagram = self.model.diagram;
-        let (row, stroke) = (self.rows.data, Stroke::new(1.5, self.skin.palette.text));
+        let (row, stroke) = (self.rows.data, Stroke::new(1.5, self.theme.palette.text));
         let bits = diagram.bits();
         if let Some(first) = bits.first() {
             self.painter.hline(from..=self.x(first.from), row.min, stroke);
         }
-        let shown: Vec<Shown> = self.model.frame.map(|frame| diagram.strip().shown(frame)).unwrap_or_default();
+        let shown: Vec<CellState> = self.model.frame.map(|frame| diagram.strip().shown(frame)).unwrap_or_default();
         for (number, bit) in bits.iter().enumerate() {
             let cell = diagram.strip().cells().get(number);
             let field = cell.and_then(|cell| diagram.strip().fields().get(cell.field));
-            let ink = field.map_or_else(|| self.line(), |field| field_ink(self.skin, field.kind));
+            let ink = field.map_or_else(|| self.line(), |field| field_ink(self.theme, field.kind));
             self.bit((self.x(bit.from), self.x(bit.to)), ink, shown.get(number).map(|cell| cell.bit));
         }
         let (low, least, most) = diagram.low();
@@ -231,10 +231,10 @@ impl Picture<'_> {
         ];
         self.painter.add(Shape::convex_polygon(points, ink.gamma_multiply(strength), Stroke::new(1.0, ink)));
         if let Some(bit) = bit.filter(|_| to - from >= DIGIT) {
-            let font = FontId::monospace(self.skin.sizes.caption);
+            let font = FontId::monospace(self.theme.sizes.caption);
             let at = pos2(f32::midpoint(from, to), middle);
             let digit = if bit { "1" } else { "0" };
-            self.painter.text(at, egui::Align2::CENTER_CENTER, digit, font, self.skin.palette.text.into());
+            self.painter.text(at, egui::Align2::CENTER_CENTER, digit, font, self.theme.palette.text.into());
         }
     }
 
@@ -244,16 +244,16 @@ impl Picture<'_> {
         for field in diagram.strip().fields() {
             let (from, to) = diagram.field(field);
             let (from, to) = (self.x(from), self.x(to));
-            let words = [self.skin.words(&short(diagram.strip(), field)), bare(diagram.strip(), field)];
-            let font = FontId::proportional(self.skin.sizes.caption);
-            let ink = self.skin.palette.muted;
+            let words = [self.theme.words(&short(diagram.strip(), field)), bare(diagram.strip(), field)];
+            let font = FontId::proportional(self.theme.sizes.caption);
+            let ink = self.theme.palette.muted;
             let galley = |words: String| self.painter.layout_no_wrap(words, font.clone(), ink.into());
             if let Some(galley) = words.into_iter().map(galley).find(|own| own.size().x <= to - from) {
                 let at = pos2(f32::midpoint(from, to) - galley.size().x / 2.0, self.rows.names);
                 self.painter.galley(at, galley, ink.into());
             }
             let y = self.rows.names - 1.0;
-            self.painter.hline(from + 0.5..=to - 0.5, y, Stroke::new(2.0, field_ink(self.skin, field.kind)));
+            self.painter.hline(from + 0.5..=to - 0.5, y, Stroke::new(2.0, field_ink(self.theme, field.kind)));
         }
     }
 
@@ -269,7 +269,7 @@ impl Picture<'_> {
                 pos2(middle + 4.0 - slant, bottom),
                 pos2(middle - 4.0 - slant, bottom),
             ];
-            self.painter.add(Shape::convex_polygon(points, Color32::from(self.skin.palette.sunken), Stroke::NONE));
+            self.painter.add(Shape::convex_polygon(points, Color32::from(self.theme.palette.sunken), Stroke::NONE));
             for side in [-4.0, 4.0] {
                 let ends = [pos2(middle + side + slant, top), pos2(middle + side - slant, bottom)];
                 self.painter.line_segment(ends, Stroke::new(1.0, self.line()));
@@ -279,7 +279,7 @@ impl Picture<'_> {
 
     /// Each time as a line with ends; from where it may end already, a thinner one.
     fn bars(&self, words: &[Arc<Galley>], put: &[Put]) {
-        let palette = self.skin.palette;
+        let palette = self.theme.palette;
         for ((span, galley), put) in self.model.diagram.spans().iter().zip(words).zip(put) {
             let y = self.rows.lanes + (put.level as f32 + 0.5) * LANE;
             let (from, least, to) = (self.x(span.from), self.x(span.least), self.x(span.to));

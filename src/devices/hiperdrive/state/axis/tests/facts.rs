@@ -56,8 +56,8 @@ fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
 fn what_rests_on_a_changed_fact_falls_with_it() {
     let tested = || {
         let (mut axis, mut seen) = until_test();
-        go(&mut axis, &mut seen, Place::Middle, 500);
-        assert!(axis.outcome(Place::Middle).is_some());
+        go(&mut axis, &mut seen, TestTarget::Middle, 500);
+        assert!(axis.outcome(TestTarget::Middle).is_some());
         (axis, seen)
     };
     let done = |axis: &Axis| Step::ALL.into_iter().filter(|step| axis.reached(*step) == Reached::Done).count();
@@ -76,9 +76,9 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
         change(&mut seen);
         axis.look(&seen);
         assert_eq!((axis.fallen(), done(&axis)), (Some(falls), falls.index()), "{label}");
-        assert!(axis.outcome(Place::Middle).is_none(), "{label}");
+        assert!(axis.outcome(TestTarget::Middle).is_none(), "{label}");
         assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
-        assert!(axis.ask(Button::Go(Place::Upper), &seen).is_err(), "{label}");
+        assert!(axis.ask(Button::Go(TestTarget::Upper), &seen).is_err(), "{label}");
     }
     // The same by the run itself: back to the reference, 13.44 mm beside the one before. 1500 steps become 1472.
     let (mut axis, mut seen) = tested();
@@ -95,7 +95,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     (0..2).for_each(|_| axis.back(&seen));
     axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
     next(&mut axis, &seen, Step::Upper);
-    assert!(axis.outcome(Place::Middle).is_none() && axis.may_go_on(&seen).is_err());
+    assert!(axis.outcome(TestTarget::Middle).is_none() && axis.may_go_on(&seen).is_err());
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, Step::Test);
     assert_eq!(axis.fallen(), None, "the review of their plan confirms them");
@@ -105,7 +105,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     for step in [Step::Reference, Step::Lower, Step::Upper, Step::Test] {
         next(&mut axis, &seen, step);
     }
-    assert!(axis.outcome(Place::Middle).is_some());
+    assert!(axis.outcome(TestTarget::Middle).is_some());
 }
 
 /// Issue 21.6 (b): a jump of the position, and motion that no pad makes, are no jog.
@@ -188,7 +188,7 @@ fn a_fault_is_told_and_acknowledged_in_the_run() {
         seen.error = Some(ErrorCode::BLOCK_REVERSE);
         assert!(words::fault(&seen).unwrap().words(Language::English).starts_with("Fault 8300: "));
         assert_eq!(axis.may_move(&seen).unwrap_err().id(), why);
-        assert_eq!(axis.ask(Button::Go(Place::Middle), &seen).unwrap_err().id(), why);
+        assert_eq!(axis.ask(Button::Go(TestTarget::Middle), &seen).unwrap_err().id(), why);
         assert_eq!(axis.ask(Button::Acknowledge, &seen), Ok(Ask::Acknowledge));
     }
 }

@@ -40,7 +40,7 @@ impl Lanes<'_> {
         }
         let clicked = response.clicked().then_some(CamEvent::Selected(lane.cam));
         if draws && drag.is_none() {
-            self.model.tip(self.skin, response, hold);
+            self.model.tip(self.theme, response, hold);
         }
         event.or(clicked)
     }
@@ -77,7 +77,7 @@ impl Lanes<'_> {
                 self.paint_focus(lane.cam);
             }
             if drag.is_none() {
-                self.model.tip(self.skin, response, hold);
+                self.model.tip(self.theme, response, hold);
             }
         }
         event
@@ -85,11 +85,11 @@ impl Lanes<'_> {
 
     fn tell(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
         response.widget_info(|| {
-            let label = self.skin.words(&words::cam(lane));
+            let label = self.theme.words(&words::cam(lane));
             let mut info = WidgetInfo::labeled(Role::Slider, self.ui.is_enabled(), label);
             info.value = lane.edges.map(|cam| f64::from(cam.start.get()));
             info.current_text_value =
-                Some(self.skin.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
+                Some(self.theme.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
             info
         });
         response.gained_focus().then_some(CamEvent::Selected(lane.cam))
@@ -102,7 +102,7 @@ impl Lanes<'_> {
         let id = self.base.with("edge").with(hold);
         let response = self.ui.interact(rect, id, self.sense(shown, true));
         let label = words::edge(lane, edge);
-        let mut event = self.model.tell_edge(self.ui, self.skin, &response, hold, &label);
+        let mut event = self.model.tell_edge(self.ui, self.theme, &response, hold, &label);
         event = event.or(self.model.keys(self.ui, &response, hold, self.apart()));
         if response.clicked() || response.drag_started() {
             response.request_focus();
@@ -120,7 +120,7 @@ impl Lanes<'_> {
         let state = Grip { active: is_held || response.hovered() && self.model.movable, focused: response.has_focus() };
         self.paint_grip(lane.cam, edge, state);
         if drag.is_none() {
-            self.model.tip(self.skin, response, hold);
+            self.model.tip(self.theme, response, hold);
         }
         event
     }

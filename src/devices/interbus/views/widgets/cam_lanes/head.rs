@@ -39,10 +39,10 @@ impl Lanes<'_> {
         let sense = if can { Sense::click() } else { Sense::hover() };
         let response = ui.interact(square, self.base.with("switch").with(lane.cam), sense);
         let label = TEXTS.text("cams.works_of").with_text("cam", words::bare(lane.cam));
-        let label = self.skin.words(&label);
+        let label = self.theme.words(&label);
         response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can, lane.on, label.clone()));
         let painter = ui.painter();
-        let palette = self.skin.palette;
+        let palette = self.theme.palette;
         let (fill, edge) = match (can, lane.on, response.hovered()) {
             (true, true, _) => (palette.accent, palette.accent),
             (true, false, true) => (palette.sunken, palette.accent),
@@ -54,12 +54,12 @@ impl Lanes<'_> {
         painter.rect_filled(square, corners, fill);
         painter.rect_stroke(square, corners, Stroke::new(1.0, edge), StrokeKind::Inside);
         if lane.on {
-            let font = FontId::proportional(self.skin.sizes.body);
+            let font = FontId::proportional(self.theme.sizes.body);
             let ink = if can { palette.on_accent } else { palette.surface };
             painter.text(square.center(), Align2::CENTER_CENTER, icons::CHECK, font, ink.into());
         }
         if response.has_focus() {
-            focus_ring(painter, self.skin, square, corners);
+            focus_ring(painter, self.theme, square, corners);
         }
         let pressed = response.clicked().then_some(CamEvent::Switched(lane.cam, !lane.on));
         response.on_hover_text(label);
@@ -67,14 +67,14 @@ impl Lanes<'_> {
     }
 
     fn name(&self, lane: &Lane, head: Rect) -> Option<CamEvent> {
-        let (skin, palette) = (self.skin, self.skin.palette);
+        let (theme, palette) = (self.theme, self.theme.palette);
         let left = head.left() + SWITCH;
         let rect = Rect::from_min_max(pos2(left, head.top()), pos2(head.right() - LAMP, head.bottom()));
         let response = self.ui.interact(rect, self.base.with("name").with(lane.cam), Sense::CLICK);
         let painter = self.ui.painter().with_clip_rect(rect.intersect(self.ui.clip_rect()));
         let colour = if lane.on { palette.text } else { palette.muted };
         let y = rect.center().y;
-        let font = FontId::monospace(skin.sizes.body);
+        let font = FontId::monospace(theme.sizes.body);
         painter.text(pos2(left, y), Align2::LEFT_CENTER, lane.cam.get().to_string(), font, colour.into());
         let troubled = lane.beyond || lane.clashes;
         let mark = match (troubled, lane.edited) {
@@ -84,13 +84,13 @@ impl Lanes<'_> {
         };
         let mut x = left + NUMBER;
         if let Some((icon, colour)) = mark {
-            let font = FontId::proportional(skin.sizes.body);
+            let font = FontId::proportional(theme.sizes.body);
             painter.text(pos2(x, y), Align2::LEFT_CENTER, icon, font, colour.into());
-            x += skin.sizes.body + skin.space.inside;
+            x += theme.sizes.body + theme.space.inside;
         }
         let name = lane.name.clone().unwrap_or_default();
         let ink = if lane.edited { palette.staged } else { colour };
-        let mut job = LayoutJob::simple_singleline(name, FontId::proportional(skin.sizes.body), ink.into());
+        let mut job = LayoutJob::simple_singleline(name, FontId::proportional(theme.sizes.body), ink.into());
         job.wrap = TextWrapping::truncate_at_width((rect.right() - x).max(0.0));
         let galley = painter.layout_job(job);
         let size = galley.size();
@@ -102,24 +102,24 @@ impl Lanes<'_> {
         response.on_hover_ui(|ui| {
             ui.set_max_width(300.0);
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-            ui.label(skin.words(&words::cam(lane)));
-            ui.label(skin.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
+            ui.label(theme.words(&words::cam(lane)));
+            ui.label(theme.words(&words::lane(lane, self.model.scale, self.model.chart.range)));
             if lane.edited {
-                ui.label(egui::RichText::new(say(skin, "cams.edited")).color(palette.staged));
+                ui.label(egui::RichText::new(say(theme, "cams.edited")).color(palette.staged));
             }
             for trouble in words::troubles(self.shown, lane) {
-                ui.label(egui::RichText::new(skin.words(&trouble)).color(palette.bad));
+                ui.label(egui::RichText::new(theme.words(&trouble)).color(palette.bad));
             }
         });
         clicked
     }
 
     fn lamp(&self, lane: &Lane, lamp: Lamp, head: Rect) {
-        let (skin, palette) = (self.skin, self.skin.palette);
+        let (theme, palette) = (self.theme, self.theme.palette);
         let rect = Rect::from_min_max(pos2(head.right() - LAMP, head.top()), head.max);
         let response = self.ui.interact(rect, self.base.with("lamp").with(lane.cam), Sense::hover());
-        let label = skin.words(&TEXTS.text("cams.output_of").with("cam", lane.cam.get()));
-        let value = skin.words(&words::lamp(lamp));
+        let label = theme.words(&TEXTS.text("cams.output_of").with("cam", lane.cam.get()));
+        let value = theme.words(&words::lamp(lamp));
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Image, true, label.clone());
             info.current_text_value = Some(value.clone());
@@ -127,7 +127,7 @@ impl Lanes<'_> {
         });
         let painter = self.ui.painter();
         let middle = pos2(rect.right() - 9.0, rect.center().y);
-        let colour = ink(skin, lane.cam);
+        let colour = ink(theme, lane.cam);
         match lamp.lit() {
             Some(true) => {
                 painter.circle_filled(middle, 8.0, colour.gamma_multiply(0.25));
@@ -141,8 +141,8 @@ impl Lanes<'_> {
             }
         }
         if lamp.differs() {
-            let (icon, colour) = controls::verdict(skin, crate::analysis::quality::Verdict::Warn);
-            let font = FontId::proportional(skin.sizes.body);
+            let (icon, colour) = controls::verdict(theme, crate::analysis::quality::Verdict::Warn);
+            let font = FontId::proportional(theme.sizes.body);
             painter.text(pos2(rect.left() + 7.0, middle.y), Align2::CENTER_CENTER, icon, font, colour.into());
         }
         response.on_hover_text(format!("{label}: {value}"));

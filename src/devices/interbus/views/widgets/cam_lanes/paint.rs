@@ -26,19 +26,19 @@ pub(super) struct Grip {
 impl Lanes<'_> {
     /// All but the handles.
     pub(super) fn paint(&self, drag: Option<Drag>) {
-        let (skin, place) = (self.skin, self.place);
+        let (theme, place) = (self.theme, self.place);
         let painter = self.ui.painter();
         let corners = CornerRadius::same(2);
-        painter.rect_filled(place.plot, corners, skin.palette.sunken);
+        painter.rect_filled(place.plot, corners, theme.palette.sunken);
         if let Some(cam) = self.model.selected {
             let lane = place.lane(cam).union(place.head_of(cam));
-            painter.rect_filled(lane, corners, Color32::from(skin.palette.accent).gamma_multiply(0.1));
+            painter.rect_filled(lane, corners, Color32::from(theme.palette.accent).gamma_multiply(0.1));
         }
         self.rulers();
         let within = painter.with_clip_rect(place.plot.intersect(self.ui.clip_rect()));
         for lane in &self.shown.lanes {
             let rect = place.lane(lane.cam);
-            painter.hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, skin.palette.line));
+            painter.hline(rect.x_range(), rect.bottom() - 0.5, Stroke::new(1.0, theme.palette.line));
             self.cam(&within, lane);
         }
         self.position();
@@ -49,7 +49,7 @@ impl Lanes<'_> {
 
     /// Lines and numbers: steps above, the machine's units below.
     fn rulers(&self) {
-        let (model, place, skin) = (self.model, self.place, self.skin);
+        let (model, place, theme) = (self.model, self.place, self.theme);
         let apart = APART * place.steps_in_point();
         let lines = |scale: &Scale| ticks(scale, &place.view, model.chart.range, apart);
         let plain = Scale::default();
@@ -59,7 +59,7 @@ impl Lanes<'_> {
         let painter = self.ui.painter();
         for tick in if has_units { lines(model.scale) } else { steps.clone() } {
             let x = place.x(tick.position);
-            painter.vline(x, place.plot.y_range(), Stroke::new(1.0, skin.palette.line));
+            painter.vline(x, place.plot.y_range(), Stroke::new(1.0, theme.palette.line));
             if has_units {
                 self.number(&tick, model.scale.unit(), x, place.units);
             }
@@ -70,20 +70,20 @@ impl Lanes<'_> {
     }
 
     fn number(&self, tick: &Tick, unit: Unit, x: f32, ruler: Rect) {
-        let (skin, painter) = (self.skin, self.ui.painter());
+        let (theme, painter) = (self.theme, self.ui.painter());
         let is_above = ruler.bottom() <= self.place.plot.top() + 1.0;
         let (edge, align) = if is_above { (ruler.bottom(), -1.0) } else { (ruler.top(), 1.0) };
-        painter.vline(x, egui::Rangef::point(edge).expand(2.0), Stroke::new(1.0, skin.palette.muted));
-        let words = skin.words(&words::tick(tick.value, tick.decimals, unit));
-        let font = FontId::monospace(skin.sizes.caption);
+        painter.vline(x, egui::Rangef::point(edge).expand(2.0), Stroke::new(1.0, theme.palette.muted));
+        let words = theme.words(&words::tick(tick.value, tick.decimals, unit));
+        let font = FontId::monospace(theme.sizes.caption);
         let middle = pos2(x, ruler.center().y + align);
-        painter.text(middle, Align2::CENTER_CENTER, words, font, skin.palette.muted.into());
+        painter.text(middle, Align2::CENTER_CENTER, words, font, theme.palette.muted.into());
     }
 
     /// A cam in its lane.
     fn cam(&self, painter: &Painter, lane: &Lane) {
-        let (skin, place) = (self.skin, self.place);
-        let colour = ink(skin, lane.cam);
+        let (theme, place) = (self.theme, self.place);
+        let colour = ink(theme, lane.cam);
         let range = self.shown.range;
         for stretch in lane.stretches(range) {
             let Some(bar) = place.bar(lane.cam, stretch) else { continue };
@@ -91,14 +91,14 @@ impl Lanes<'_> {
             if lane.on {
                 painter.rect_filled(bar, corners, colour.gamma_multiply(0.42));
                 if lane.clashes {
-                    hatch(painter, skin, bar, skin.palette.bad.into());
+                    hatch(painter, theme, bar, theme.palette.bad.into());
                 }
-                let edge = if lane.clashes { skin.palette.bad.into() } else { colour };
+                let edge = if lane.clashes { theme.palette.bad.into() } else { colour };
                 painter.rect_stroke(bar, corners, Stroke::new(1.5, edge), StrokeKind::Inside);
             } else if bar.width() < NARROW {
-                painter.rect_filled(bar, corners, skin.palette.muted);
+                painter.rect_filled(bar, corners, theme.palette.muted);
             } else {
-                let stroke = Stroke::new(1.0, skin.palette.muted);
+                let stroke = Stroke::new(1.0, theme.palette.muted);
                 let around = bar.shrink(0.5);
                 let path = [
                     around.left_top(),
@@ -115,8 +115,8 @@ impl Lanes<'_> {
             let lane = place.lane(lane.cam).shrink2(Vec2::new(0.0, 3.0));
             let x = place.x(f64::from(range)).min(place.plot.right());
             let end = Rect::from_x_y_ranges(x - BEYOND..=x, lane.y_range());
-            hatch(painter, skin, end, skin.palette.bad.into());
-            painter.rect_stroke(end, CornerRadius::ZERO, Stroke::new(1.0, skin.palette.bad), StrokeKind::Inside);
+            hatch(painter, theme, end, theme.palette.bad.into());
+            painter.rect_stroke(end, CornerRadius::ZERO, Stroke::new(1.0, theme.palette.bad), StrokeKind::Inside);
         }
     }
 
@@ -125,7 +125,7 @@ impl Lanes<'_> {
         if !lane.edges.is_some_and(|cam| cam.wraps()) {
             return;
         }
-        let stroke = Stroke::new(1.5, if lane.on { self.skin.palette.text } else { self.skin.palette.muted });
+        let stroke = Stroke::new(1.5, if lane.on { self.theme.palette.text } else { self.theme.palette.muted });
         for (shown, x, towards) in [(at_first, bar.left() + 4.0, -1.0), (at_last, bar.right() - 4.0, 1.0)] {
             if shown && bar.width() > 12.0 {
                 let tip = pos2(x + 1.5 * towards, bar.center().y);
@@ -144,7 +144,7 @@ impl Lanes<'_> {
         if !place.shows(x) {
             return;
         }
-        let (painter, colour) = (self.ui.painter(), Color32::from(self.skin.palette.text));
+        let (painter, colour) = (self.ui.painter(), Color32::from(self.theme.palette.text));
         painter.vline(x, place.plot.y_range(), Stroke::new(1.5, colour));
         let top = place.plot.top();
         let mark = vec![pos2(x - 5.0, top - 6.0), pos2(x + 5.0, top - 6.0), pos2(x, top + 1.0)];
@@ -154,7 +154,7 @@ impl Lanes<'_> {
     /// Where something that is dragged would come to.
     fn goal(&self, drag: &Drag) {
         let Some(to) = drag.to else { return };
-        let (skin, place) = (self.skin, self.place);
+        let (theme, place) = (self.theme, self.place);
         let lane = place.lane(drag.hold.cam());
         let x = match drag.hold {
             Hold::Edge(_, Edge::Stop) => place.x(f64::from(to.stop.get()) + 1.0),
@@ -162,10 +162,10 @@ impl Lanes<'_> {
         };
         let painter = self.ui.painter();
         if place.shows(x) {
-            painter.vline(x, place.plot.y_range(), Stroke::new(1.0, skin.palette.accent));
+            painter.vline(x, place.plot.y_range(), Stroke::new(1.0, theme.palette.accent));
         }
         let x = x.clamp(place.plot.left(), place.plot.right());
-        self.model.ghost(skin, painter, drag, pos2(x, lane.top() - 6.0));
+        self.model.ghost(theme, painter, drag, pos2(x, lane.top() - 6.0));
     }
 
     /// An edge that is pointed at or has the keyboard.
@@ -181,13 +181,13 @@ impl Lanes<'_> {
         if !self.place.shows(x) {
             return;
         }
-        let (skin, painter) = (self.skin, self.ui.painter());
+        let (theme, painter) = (self.theme, self.ui.painter());
         let size = if lit { Vec2::new(5.0, 20.0) } else { Vec2::new(4.0, 14.0) };
         let tab = Rect::from_center_size(pos2(x, self.place.lane(cam).center().y), size);
-        painter.rect_filled(tab.expand(1.0), CornerRadius::same(2), skin.palette.raised);
-        painter.rect_filled(tab, CornerRadius::same(2), if lit { skin.palette.accent } else { skin.palette.text });
+        painter.rect_filled(tab.expand(1.0), CornerRadius::same(2), theme.palette.raised);
+        painter.rect_filled(tab, CornerRadius::same(2), if lit { theme.palette.accent } else { theme.palette.text });
         if state.focused {
-            focus_ring(painter, skin, tab, CornerRadius::same(2));
+            focus_ring(painter, theme, tab, CornerRadius::same(2));
         }
     }
 
@@ -197,7 +197,7 @@ impl Lanes<'_> {
         let painter = self.ui.painter();
         for stretch in lane.stretches(self.shown.range) {
             if let Some(bar) = self.place.bar(cam, stretch) {
-                focus_ring(painter, self.skin, bar.intersect(self.place.plot), CornerRadius::same(2));
+                focus_ring(painter, self.theme, bar.intersect(self.place.plot), CornerRadius::same(2));
             }
         }
     }

@@ -3,7 +3,7 @@
 use egui::{Rect, Vec2, pos2};
 
 use crate::devices::interbus::protocol::{CamNumber, Program};
-use crate::devices::interbus::state::cams::{Stretch, View};
+use crate::devices::interbus::state::cams::{Stretch, VisibleRange};
 
 /// Height of a ruler and of a lane.
 const RULER: f32 = 20.0;
@@ -18,7 +18,7 @@ const GRIP: f32 = 9.0;
 
 /// Heads at the left, the part of the range that is to be seen at the right.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(super) struct PlotArea {
     /// What stands before the lanes.
     pub(super) head: Rect,
     /// The lanes.
@@ -27,10 +27,10 @@ pub(super) struct Place {
     pub(super) ruler: Rect,
     /// The ruler of the machine's units, empty where it has none.
     pub(super) units: Rect,
-    pub(super) view: View,
+    pub(super) view: VisibleRange,
 }
 
-impl Place {
+impl PlotArea {
     /// What all of it takes.
     pub(super) fn size(width: f32, units: bool) -> Vec2 {
         let rulers = if units { 2.0 * RULER } else { RULER };
@@ -38,13 +38,13 @@ impl Place {
     }
 
     /// In a rectangle of that size.
-    pub(super) fn new(outer: Rect, view: View, gap: f32) -> Self {
+    pub(super) fn new(outer: Rect, view: VisibleRange, gap: f32) -> Self {
         let top = outer.top() + RULER;
         let bottom = top + Program::CAMS as f32 * LANE;
         let left = outer.left() + HEAD.min(outer.width() * HEAD_PART);
         let right = (outer.right() - BEHIND).max(left + 1.0);
         let plot = Rect::from_min_max(pos2(left, top), pos2(right, bottom));
-        Place {
+        PlotArea {
             head: Rect::from_min_max(pos2(outer.left(), top), pos2(left - gap, bottom)),
             plot,
             ruler: Rect::from_min_max(pos2(left, outer.top()), pos2(right, top)),

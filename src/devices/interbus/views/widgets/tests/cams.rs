@@ -7,15 +7,15 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::devices::interbus::profile::{Direction, Image, Names, Parameters, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber, ProgramNumber, Value};
-use crate::devices::interbus::state::cams::{Chart, View};
+use crate::devices::interbus::state::cams::{Chart, VisibleRange};
 use crate::devices::interbus::state::staged::{Edit, Staged};
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
-use crate::ui::widgets::tests::{NONE, SHIFT, focus, press, skin, window};
+use crate::ui::widgets::tests::{NONE, SHIFT, focus, press, theme, window};
 
 struct Page {
     staged: Staged,
     scale: Scale,
-    view: View,
+    view: VisibleRange,
     selected: Option<CamNumber>,
     position: Option<u32>,
     own: Option<u8>,
@@ -44,7 +44,7 @@ fn page() -> Page {
     }
     let named = Edit::Name { program: program(), cam: cam(0), name: "feed".to_owned() };
     staged.edit(&named).unwrap();
-    let view = View::whole(1000);
+    let view = VisibleRange::whole(1000);
     Page { staged, scale: Scale::default(), view, selected: None, position: None, own: None, events: Vec::new() }
 }
 
@@ -61,7 +61,8 @@ fn draw(page: Page, ring: bool) -> Harness<'static, Page> {
             movable: true,
             snaps: false,
         };
-        let event = if ring { cam_ring(ui, &skin(), &model, 400.0) } else { cam_lanes(ui, &skin(), &model, page.view) };
+        let event =
+            if ring { cam_ring(ui, &theme(), &model, 400.0) } else { cam_lanes(ui, &theme(), &model, page.view) };
         let edit = match event {
             Some(CamEvent::Moved { cam, to, drawn }) => {
                 let (start, stop) = (to.start.get(), to.stop.get());
@@ -273,7 +274,7 @@ fn everything_lies_within_its_width() {
                 movable: true,
                 snaps: true,
             };
-            cam_lanes(ui, &skin(), &model, page.view);
+            cam_lanes(ui, &theme(), &model, page.view);
         });
         let left = harness.get_by_label("before").rect().left();
         for label in ["Cam 0 · feed", "Cam 0: stop", "Cam 3: start", "Cam 3: stop", "Output 7", "Cam 7 works"] {

@@ -4,13 +4,13 @@ use egui_kittest::kittest::Queryable;
 
 use crate::devices::interbus::protocol::WindowShift;
 use crate::devices::interbus::views::widgets::{WordLayout, word_layout};
-use crate::ui::widgets::tests::{skin, window};
+use crate::ui::widgets::tests::{theme, window};
 
 fn draw(shift: u8, word: Option<u32>, width: f32) -> egui_kittest::Harness<'static, ()> {
     window((), move |ui, ()| {
         ui.set_max_width(width);
         let shift = WindowShift::new(shift).unwrap();
-        word_layout(ui, &skin(), &WordLayout { label: "Word", shift, word, range: 8192 });
+        word_layout(ui, &theme(), &WordLayout { label: "Word", shift, word, range: 8192 });
     })
 }
 

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
 
 use super::rows::Rows;
-use super::{Drag, StripEvent, View, keep_arrows, paint};
+use super::{Drag, StripContext, StripEvent, keep_arrows, paint};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
 /// How far beside its edge a handle is taken hold of that belongs to the field there, and how wide that is.
@@ -12,7 +12,7 @@ const BESIDE: f32 = 5.0;
 const WIDTH: f32 = 9.0;
 
 /// All of them: what they look like, and what was done to one.
-pub(super) fn grips(view: &View<'_>, drag: Option<Drag>) -> Option<StripEvent> {
+pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
     let (ui, model) = (view.ui, view.model);
     let mut event = None;
     for handle in model.strip.handles() {
@@ -21,10 +21,10 @@ pub(super) fn grips(view: &View<'_>, drag: Option<Drag>) -> Option<StripEvent> {
         let turns = matches!(handle, Handle::Error(_) | Handle::Parity);
         let response = ui.interact(rect, id, if turns { Sense::click_and_drag() } else { Sense::drag() });
         response.widget_info(|| {
-            let label = view.skin.words(&strip::handle(model.strip, *handle));
+            let label = view.theme.words(&strip::handle(model.strip, *handle));
             let mut info = WidgetInfo::slider(ui.is_enabled(), f64::from(at), label);
             info.role = Role::Slider;
-            info.current_text_value = Some(view.skin.words(&strip::value(model.strip, *handle)));
+            info.current_text_value = Some(view.theme.words(&strip::value(model.strip, *handle)));
             info
         });
         if response.clicked() {
@@ -117,7 +117,13 @@ const fn side(handle: Handle) -> f32 {
 }
 
 /// The pointer: where it would bring the handle, and where it lets it go.
-fn pulled(view: &View<'_>, response: &Response, handle: Handle, at: u8, drag: Option<Drag>) -> Option<StripEvent> {
+fn pulled(
+    view: &StripContext<'_>,
+    response: &Response,
+    handle: Handle,
+    at: u8,
+    drag: Option<Drag>,
+) -> Option<StripEvent> {
     let (ui, model) = (view.ui, view.model);
     let (held, released) = (response.dragged(), response.drag_stopped());
     if !held && !released {
@@ -153,7 +159,7 @@ fn pulled(view: &View<'_>, response: &Response, handle: Handle, at: u8, drag: Op
 }
 
 /// The keyboard: by one clock, or as far as it goes.
-fn keys(view: &View<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
+fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
     if !response.has_focus() {
         return None;
     }
@@ -175,15 +181,15 @@ fn keys(view: &View<'_>, response: &Response, handle: Handle, at: u8) -> Option<
     (reached != at).then_some(StripEvent::Moved(handle, reached))
 }
 
-fn tip(view: &View<'_>, response: Response, handle: Handle) {
+fn tip(view: &StripContext<'_>, response: Response, handle: Handle) {
     response.on_hover_ui(|ui| {
         ui.set_max_width(280.0);
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-        let name = view.skin.words(&strip::handle(view.model.strip, handle));
-        let value = view.skin.words(&strip::value(view.model.strip, handle));
+        let name = view.theme.words(&strip::handle(view.model.strip, handle));
+        let value = view.theme.words(&strip::value(view.model.strip, handle));
         ui.label(format!("{name}: {value}"));
-        ui.label(view.skin.caption(view.skin.words(&strip::hint(handle))));
+        ui.label(view.theme.caption(view.theme.words(&strip::hint(handle))));
         let reach = strip::reach(view.model.strip, handle, view.model.following);
-        ui.label(view.skin.caption(view.skin.words(&reach)));
+        ui.label(view.theme.caption(view.theme.words(&reach)));
     });
 }

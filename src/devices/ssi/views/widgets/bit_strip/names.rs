@@ -11,7 +11,7 @@ use super::rows::{NAME, Rows};
 use crate::analysis::quality::Verdict;
 use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
-use crate::ui::{Skin, controls};
+use crate::ui::{Theme, controls};
 
 /// A name and where it is.
 pub(super) struct Tag {
@@ -107,10 +107,10 @@ impl Tag {
     }
 
     /// Paints it below its bracket.
-    pub(super) fn paint(&self, painter: &Painter, skin: &Skin, (rows, lane): (&Rows, Rect), colour: Color32) {
+    pub(super) fn paint(&self, painter: &Painter, theme: &Theme, (rows, lane): (&Rows, Rect), colour: Color32) {
         let rect = self.rect(rows, lane);
         if let Some(x) = self.leader {
-            let stroke = Stroke::new(1.0, skin.palette.line);
+            let stroke = Stroke::new(1.0, theme.palette.line);
             painter.vline(rows.left() + x, lane.center().y + 4.0..=rect.top() + 3.0, stroke);
         }
         painter.galley_with_override_text_color(rect.left_top(), self.galley.clone(), colour);
@@ -121,18 +121,18 @@ impl Tag {
 /// how high they are depends on this.
 pub(super) fn tags(
     ui: &Ui,
-    skin: &Skin,
+    theme: &Theme,
     strip: &Strip,
     rows: &Rows,
     told: impl Fn(&Field) -> Option<Meaning>,
 ) -> (Vec<Tag>, Vec<usize>) {
     let galley = |own: &Field, words: String| {
-        let size = skin.sizes.caption;
+        let size = theme.sizes.caption;
         let (font, words) = match told(own) {
-            Some(meaning) => (skin.strong(size), format!("{} {words}", controls::verdict(skin, verdict(meaning)).0)),
+            Some(meaning) => (theme.strong(size), format!("{} {words}", controls::verdict(theme, verdict(meaning)).0)),
             None => (FontId::proportional(size), words),
         };
-        let mut job = LayoutJob::simple_singleline(words, font, skin.palette.muted.into());
+        let mut job = LayoutJob::simple_singleline(words, font, theme.palette.muted.into());
         job.wrap = TextWrapping::truncate_at_width(WIDEST);
         ui.painter().layout_job(job)
     };
@@ -140,7 +140,7 @@ pub(super) fn tags(
     let mut narrow = Vec::new();
     for (index, own) in strip.fields().iter().enumerate() {
         let (run, line) = widest(rows, own);
-        let words = [skin.words(&name(strip, own)), skin.words(&short(strip, own)), bare(strip, own)];
+        let words = [theme.words(&name(strip, own)), theme.words(&short(strip, own)), bare(strip, own)];
         let fits = words.into_iter().map(|words| galley(own, words)).find(|own| own.size().x <= run.width() + 2.0);
         match fits {
             Some(galley) => {

@@ -5,30 +5,30 @@ use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2
 use super::grips::{edge, tab};
 use super::names::{Tag, verdict, widest};
 use super::rows::Rows;
-use super::{Drag, View, tells};
+use super::{Drag, StripContext, tells};
 use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::strip::{self, Field, Handle, Kind};
 use crate::ui::widgets::{BitCell, focus_ring, series};
-use crate::ui::{Skin, controls};
+use crate::ui::{Theme, controls};
 
 /// The colour of a field; none for zeros.
-pub(crate) fn ink(skin: &Skin, kind: Kind) -> Color32 {
+pub(crate) fn ink(theme: &Theme, kind: Kind) -> Color32 {
     match kind {
-        Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => skin.palette.muted.into(),
-        Kind::Turns => series(skin, 0),
-        Kind::Steps | Kind::Position => series(skin, 1),
-        Kind::Error(_) => series(skin, 5),
-        Kind::Parity => series(skin, 6),
-        Kind::Again => series(skin, 7),
+        Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => theme.palette.muted.into(),
+        Kind::Turns => series(theme, 0),
+        Kind::Steps | Kind::Position => series(theme, 1),
+        Kind::Error(_) => series(theme, 5),
+        Kind::Parity => series(theme, 6),
+        Kind::Again => series(theme, 7),
     }
 }
 
 /// The colour of what is told.
-fn colour(skin: &Skin, meaning: Meaning) -> Color32 {
-    controls::verdict(skin, verdict(meaning)).1.into()
+fn colour(theme: &Theme, meaning: Meaning) -> Color32 {
+    controls::verdict(theme, verdict(meaning)).1.into()
 }
 
-impl View<'_> {
+impl StripContext<'_> {
     /// Cells, brackets and names.
     pub(super) fn paint(&self, tags: &[Tag]) {
         let painter = self.ui.painter();
@@ -42,39 +42,39 @@ impl View<'_> {
             }
             let (run, _) = widest(self.rows, field);
             let told = tells(self.cells, field.first..=field.last).filter(|_| field.is_single());
-            let colour = told.map_or(self.skin.palette.muted.into(), |meaning| colour(self.skin, meaning));
-            tag.paint(painter, self.skin, (self.rows, Rows::lane(run)), colour);
+            let colour = told.map_or(self.theme.palette.muted.into(), |meaning| colour(self.theme, meaning));
+            tag.paint(painter, self.theme, (self.rows, Rows::lane(run)), colour);
         }
         let is_focused = self.ui.memory(|memory| memory.has_focus(self.base.with("cells")));
         let selected = self.model.selected.filter(|clock| *clock <= self.shown.layout().clocks());
         if let Some(clock) = selected {
             let cell = self.rows.cell(clock);
-            let stroke = Stroke::new(2.0, self.skin.palette.accent);
+            let stroke = Stroke::new(2.0, self.theme.palette.accent);
             painter.rect_stroke(cell, CornerRadius::same(2), stroke, StrokeKind::Inside);
         }
         if is_focused {
-            focus_ring(painter, self.skin, self.rows.cell(selected.unwrap_or(1)), CornerRadius::same(2));
+            focus_ring(painter, self.theme, self.rows.cell(selected.unwrap_or(1)), CornerRadius::same(2));
         }
     }
 
     fn cell(&self, field: &Field, clock: u8) {
-        let (skin, painter) = (self.skin, self.ui.painter());
+        let (theme, painter) = (self.theme, self.ui.painter());
         let cell = self.rows.cell(clock);
         let shown = self.shown_at(clock);
         let told = shown.and_then(|cell| cell.tells);
         let blank = self.number(clock).map_or_else(String::new, |bit| bit.to_string());
-        let ink = told.map_or_else(|| ink(skin, field.kind), |meaning| colour(skin, meaning));
+        let ink = told.map_or_else(|| ink(theme, field.kind), |meaning| colour(theme, meaning));
         let bit = shown.map(|cell| cell.bit);
-        BitCell { ink, bit, blank: &blank, alarm: told.is_some() }.paint(painter, skin, cell);
+        BitCell { ink, bit, blank: &blank, alarm: told.is_some() }.paint(painter, theme, cell);
         let is_selected = self.model.selected == Some(clock);
-        let colour = if is_selected { skin.palette.text } else { skin.palette.muted };
-        let font = FontId::monospace(skin.sizes.caption);
+        let colour = if is_selected { theme.palette.text } else { theme.palette.muted };
+        let font = FontId::monospace(theme.sizes.caption);
         painter.text(self.rows.number(clock), Align2::CENTER_CENTER, clock.to_string(), font, colour.into());
     }
 
     /// The line below a field's cells, with its ends; what is moved as a whole has a thick one.
     fn bracket(&self, field: &Field, lane: Rect) {
-        let ink = ink(self.skin, field.kind);
+        let ink = ink(self.theme, field.kind);
         let is_moved = self.model.movable
             && (field.is_single() || matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position));
         let stroke = Stroke::new(if is_moved { 3.0 } else { 1.0 }, ink);
@@ -95,9 +95,9 @@ pub(super) struct Grip {
 }
 
 /// A handle where it is drawn, with where it would go while it is dragged.
-pub(super) fn grip(view: &View<'_>, handle: Handle, state: Grip, drag: Option<Drag>) {
-    let (skin, painter) = (view.skin, view.ui.painter());
-    let accent = Color32::from(skin.palette.accent);
+pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: Option<Drag>) {
+    let (theme, painter) = (view.theme, view.ui.painter());
+    let accent = Color32::from(theme.palette.accent);
     let lit = state.active || state.focused;
     if handle.is_cell() {
         let runs = match (handle, view.shown.clock(handle)) {
@@ -114,7 +114,7 @@ pub(super) fn grip(view: &View<'_>, handle: Handle, state: Grip, drag: Option<Dr
             }
             let around = if handle == Handle::Position { lane.shrink2(Vec2::new(0.0, 3.0)) } else { run };
             if state.focused {
-                focus_ring(painter, skin, around, CornerRadius::same(2));
+                focus_ring(painter, theme, around, CornerRadius::same(2));
             }
             if drag.is_some() {
                 painter.rect_stroke(run, CornerRadius::same(2), Stroke::new(2.0, accent), StrokeKind::Inside);
@@ -129,10 +129,10 @@ pub(super) fn grip(view: &View<'_>, handle: Handle, state: Grip, drag: Option<Dr
         if lit {
             painter.vline(edge.center().x, edge.top()..=edge.bottom(), Stroke::new(1.5, accent));
         }
-        painter.rect_filled(tab.expand(1.0), CornerRadius::same(2), skin.palette.raised);
-        painter.rect_filled(tab, CornerRadius::same(2), if lit { accent } else { skin.palette.text.into() });
+        painter.rect_filled(tab.expand(1.0), CornerRadius::same(2), theme.palette.raised);
+        painter.rect_filled(tab, CornerRadius::same(2), if lit { accent } else { theme.palette.text.into() });
         if state.focused {
-            focus_ring(painter, skin, tab, CornerRadius::same(2));
+            focus_ring(painter, theme, tab, CornerRadius::same(2));
         }
     }
     if drag.is_some() {
@@ -141,20 +141,20 @@ pub(super) fn grip(view: &View<'_>, handle: Handle, state: Grip, drag: Option<Dr
 }
 
 /// Where it would go, in words beside it.
-fn ghost(view: &View<'_>, handle: Handle) {
-    let (skin, painter) = (view.skin, view.ui.painter());
+fn ghost(view: &StripContext<'_>, handle: Handle) {
+    let (theme, painter) = (view.theme, view.ui.painter());
     let Some(clock) = view.shown.clock(handle) else { return };
     let middle = match edge(view.rows, view.shown, handle).filter(|_| !handle.is_cell()) {
         Some(edge) => pos2(edge.center().x, edge.top() - 8.0),
         None => view.rows.number(clock),
     };
-    let words = skin.words(&strip::value(view.shown, handle));
-    let font = FontId::proportional(skin.sizes.caption);
-    let galley = painter.layout_no_wrap(words, font, skin.palette.on_accent.into());
-    let size = galley.size() + Vec2::new(skin.space.between, 2.0);
+    let words = theme.words(&strip::value(view.shown, handle));
+    let font = FontId::proportional(theme.sizes.caption);
+    let galley = painter.layout_no_wrap(words, font, theme.palette.on_accent.into());
+    let size = galley.size() + Vec2::new(theme.space.between, 2.0);
     let room = view.ui.clip_rect();
     let left = (middle.x - size.x / 2.0).min(room.right() - size.x).max(room.left());
     let label = Rect::from_min_size(pos2(left, middle.y - size.y / 2.0), size);
-    painter.rect_filled(label, skin.space.inside, skin.palette.accent);
-    painter.galley(label.center() - galley.size() / 2.0, galley, skin.palette.on_accent.into());
+    painter.rect_filled(label, theme.space.inside, theme.palette.accent);
+    painter.galley(label.center() - galley.size() / 2.0, galley, theme.palette.on_accent.into());
 }

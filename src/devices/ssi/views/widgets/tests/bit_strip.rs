@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use crate::devices::ssi::protocol::{ErrorBit, Families, Layout, Meaning, Settings};
 use crate::devices::ssi::state::strip::{Handle, Strip};
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
-use crate::ui::widgets::tests::{NONE, focus, press, skin, window};
+use crate::ui::widgets::tests::{NONE, focus, press, theme, window};
 
 struct Design {
     strip: Strip,
@@ -34,7 +34,7 @@ fn strip(layout: &Layout, width: f32) -> Harness<'static, Design> {
             movable: true,
             following: true,
         };
-        let event = bit_strip(ui, &skin(), &model);
+        let event = bit_strip(ui, &theme(), &model);
         match event {
             Some(StripEvent::Moved(handle, clock)) => state.strip = state.strip.moved(handle, clock, true),
             Some(StripEvent::Selected(clock)) => state.selected = Some(clock),

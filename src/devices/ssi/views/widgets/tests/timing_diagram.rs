@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use crate::devices::ssi::protocol::{Families, Reads, Settings};
 use crate::devices::ssi::state::timing::Diagram;
 use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
-use crate::ui::widgets::tests::{skin, window};
+use crate::ui::widgets::tests::{theme, window};
 
 fn diagram(clock_hz: f64, pause_us: u64) -> Diagram {
     let families = Families::built_in();
@@ -32,11 +32,11 @@ fn its_times_are_its_value() {
             let harness = window(diagram.clone(), move |ui, own: &mut Diagram| {
                 ui.set_max_width(width);
                 let frame = Some(0x091_D4B6);
-                timing_diagram(ui, &skin(), &TimingDiagram { label: "Burst", diagram: own, frame });
+                timing_diagram(ui, &theme(), &TimingDiagram { label: "Burst", diagram: own, frame });
             });
             let picture = harness.get_by_label("Burst");
             let value = picture.value().unwrap();
-            let words: Vec<String> = diagram.spans().iter().map(|span| skin().words(&diagram.words(span))).collect();
+            let words: Vec<String> = diagram.spans().iter().map(|span| theme().words(&diagram.words(span))).collect();
             assert_eq!(value, words.join(", "));
             assert!(picture.rect().width() <= width, "{}", picture.rect());
         }
@@ -46,7 +46,7 @@ fn its_times_are_its_value() {
 #[test]
 fn the_pointer_tells_the_clock() {
     let mut harness = window(diagram(400e3, 200), |ui, own: &mut Diagram| {
-        timing_diagram(ui, &skin(), &TimingDiagram { label: "Burst", diagram: own, frame: None });
+        timing_diagram(ui, &theme(), &TimingDiagram { label: "Burst", diagram: own, frame: None });
     });
     let rect = harness.get_by_label("Burst").rect();
     // The burst is a quarter of the axis to its first break at least: from its beginning on, one clock after the other.

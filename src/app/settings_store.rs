@@ -29,7 +29,7 @@ const AGAIN: Duration = Duration::from_secs(1);
 
 /// What is on disk, and whether a write is on its way.
 #[derive(Debug)]
-pub(crate) struct Keeper {
+pub(crate) struct SettingsStore {
     /// The settings here as they were when the file was last read or written.
     known: Settings,
     /// What could not be written.
@@ -76,7 +76,7 @@ pub struct SettingsWritten {
     aside: Option<(PathBuf, PathBuf)>,
 }
 
-impl Keeper {
+impl SettingsStore {
     /// Reads the settings. A disk that does not answer at once comes back as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
@@ -89,7 +89,7 @@ impl Keeper {
             }
         });
         let mut settings = Settings::of(kinds);
-        let mut keeper = Keeper {
+        let mut keeper = SettingsStore {
             known: settings.clone(),
             failed: None,
             busy: None,

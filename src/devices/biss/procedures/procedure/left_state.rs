@@ -11,7 +11,7 @@ pub struct Possible<T>(Vec<T>);
 
 /// What is known of the state of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Standing {
+pub struct LeftState {
     /// Its device mode.
     pub mode: Possible<DeviceMode>,
     /// The password is set, so that device modes can be chosen.
@@ -74,10 +74,10 @@ impl<T: Copy + PartialEq> Possible<T> {
     }
 }
 
-impl Standing {
+impl LeftState {
     /// In operation, with the password set or not.
     pub fn in_operation(password: bool) -> Self {
-        Standing {
+        LeftState {
             mode: Possible::known(DeviceMode::OPERATION),
             password: Possible::known(password),
             activity: Activity::Nothing,
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_restart_that_may_have_come_leaves_operation_possible() {
-        let mut standing = Standing::in_operation(false);
+        let mut standing = LeftState::in_operation(false);
         assert!(standing.is_in_operation());
         standing.mode = Possible::known(DeviceMode::PRESET);
         standing.password = Possible::known(true);

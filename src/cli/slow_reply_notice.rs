@@ -22,15 +22,15 @@ pub struct Pace {
 }
 
 /// Looks after a command that takes long; of one that is slow it tells once.
-pub(super) struct Patience {
+pub(super) struct SlowReplyNotice {
     pace: Option<Pace>,
     look: Instant,
 }
 
-impl Patience {
+impl SlowReplyNotice {
     /// Patience that begins now; a kind of device without a pace is never told slow.
     pub(super) fn begin(pace: Option<Pace>) -> Self {
-        Patience { pace, look: Instant::now() + WONDERS }
+        SlowReplyNotice { pace, look: Instant::now() + WONDERS }
     }
 
     /// How long to wait for news before the next look; `None`: as long as it takes.
@@ -109,11 +109,11 @@ mod tests {
         let replies = Replies::default();
         replies.note(Duration::from_millis(300));
         let pace = |replies| Pace { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };
-        let mut patience = Patience::begin(Some(pace(replies)));
+        let mut patience = SlowReplyNotice::begin(Some(pace(replies)));
         assert!(patience.words().is_none() && patience.left().is_some_and(|left| left > WONDERS / 2));
         patience.look = Instant::now();
         assert!(patience.words().is_some());
         assert!(patience.words().is_none() && patience.left().is_none());
-        assert!(Patience::begin(None).left().is_none());
+        assert!(SlowReplyNotice::begin(None).left().is_none());
     }
 }

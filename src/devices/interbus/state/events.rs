@@ -5,9 +5,9 @@ use super::encoder::Encoder;
 use super::job;
 use crate::app::review::{Review, told};
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Cut, Kind, OnLine, Saved, WithMemory};
+use crate::app::session::{EarlyEnd, Kind, Saved, SessionEvents, WithMemory};
 use crate::app::{Severity, Text};
-use crate::devices::interbus::jobs::{Doing, Interbus, InterbusJob, InterbusOutput, JobError, Remark};
+use crate::devices::interbus::jobs::{DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobError, JobStep};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::KIND;
 use crate::devices::interbus::state::TEXTS;
@@ -20,7 +20,7 @@ use crate::worker::{OpenError, Session};
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
     type Edits = Edits;
-    type Aside = Option<Motor>;
+    type SessionHandle = Option<Motor>;
     type Review = Review<Self>;
 
     fn aside(session: &Session<Self>) -> Option<Motor> {
@@ -43,7 +43,7 @@ impl Kind for Interbus {
         InterbusJob::Survey
     }
 
-    fn doing(what: &Doing) -> Text {
+    fn doing(what: &JobStep) -> Text {
         words::doing(what)
     }
 
@@ -72,7 +72,7 @@ impl Encoder {
     }
 }
 
-impl OnLine for Encoder {
+impl SessionEvents for Encoder {
     fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
         if let Some(image) = self.staged.device() {
             self.preview.follow(&image.programs);
@@ -87,7 +87,7 @@ impl OnLine for Encoder {
         self.session.trace.add(frames, missed, |entry| trace.of(entry));
     }
 
-    fn remarked(&mut self, Remark::Handshake(step): Remark, _: &mut Services) {
+    fn remarked(&mut self, DeviceMessage::Handshake(step): DeviceMessage, _: &mut Services) {
         self.shake(step);
     }
 
@@ -145,7 +145,7 @@ impl OnLine for Encoder {
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         self.cut_write(how, texts)
     }
 

@@ -6,10 +6,10 @@ use super::review::Review;
 use super::words;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Cut, Kind, OnLine, Source, WithMemory, first};
+use crate::app::session::{EarlyEnd, Kind, SessionEvents, Source, WithMemory, first};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperface::jobs::{
-    Doing, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Remark, SavedProfile, Value,
+    DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobError, JobStep, SavedProfile, Value,
 };
 use crate::devices::hiperface::procedures::{Error, Sample, Station};
 use crate::devices::hiperface::profile::{Item, Op};
@@ -23,7 +23,7 @@ use crate::worker::{EndedEarly as _, JobId, OpenError, Session};
 impl Kind for Hiperface {
     const KIND: &'static str = KIND;
     type Edits = Edits;
-    type Aside = ();
+    type SessionHandle = ();
     type Review = Review;
 
     fn aside(_session: &Session<Self>) {}
@@ -48,7 +48,7 @@ impl Kind for Hiperface {
         HiperfaceJob::Survey
     }
 
-    fn doing(what: &Doing) -> Text {
+    fn doing(what: &JobStep) -> Text {
         explained::doing(what)
     }
 
@@ -169,7 +169,7 @@ impl Encoder {
     }
 }
 
-impl OnLine for Encoder {
+impl SessionEvents for Encoder {
     fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.add_samples(samples, dropped);
     }
@@ -179,15 +179,15 @@ impl OnLine for Encoder {
         self.session.trace.add(frames, missed, |entry| meaning.of(entry));
     }
 
-    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+    fn remarked(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
-            Remark::Codes(codes) => self.announced(codes, services),
-            Remark::CodesUnheard(count) => {
+            DeviceMessage::Codes(codes) => self.announced(codes, services),
+            DeviceMessage::CodesUnheard(count) => {
                 let text = explained::codes_unheard(count);
                 services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
             }
-            Remark::Line(quality) => self.line_quality = quality,
-            Remark::Found(_) => {}
+            DeviceMessage::Line(quality) => self.line_quality = quality,
+            DeviceMessage::Found(_) => {}
         }
     }
 
@@ -252,8 +252,8 @@ impl OnLine for Encoder {
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], services: &mut Services) -> bool {
-        if let Cut::Cancelled(error) = how {
+    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
+        if let EarlyEnd::Cancelled(error) = how {
             self.follow_what_was_done(error, services);
             self.asked = None;
             self.give_up_rest();
@@ -296,7 +296,7 @@ impl OnLine for Encoder {
         if gone.is_none() && !silent && !garbled {
             self.session.answers();
         }
-        let is_shown = self.cut_write(Cut::Failed(error), &texts);
+        let is_shown = self.cut_write(EarlyEnd::Failed(error), &texts);
         match gone {
             Some(why) => {
                 if is_shown {

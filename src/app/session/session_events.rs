@@ -1,22 +1,22 @@
 //! What a line tells: samples, results of jobs, why one ended early, and its loss. What is made of a result is a kind's own
 //! matter; how the end of a job is told is the same for all.
 
-use super::{Kind, OnDesk};
-use crate::app::line::Line;
+use super::{HasSession, Kind};
+use crate::app::live_session::LiveSession;
 use crate::app::services::{JobEnd, Services};
 use crate::app::{Severity, Text, explain};
 use crate::link::TraceEntry;
 use crate::worker::{Device, EndedEarly as _, Event, JobId};
 
-type Job<T> = <<T as OnDesk>::Device as Device>::Job;
-type Output<T> = <<T as OnDesk>::Device as Device>::Output;
-type Error<T> = <<T as OnDesk>::Device as Device>::Error;
-type Remark<T> = <<T as OnDesk>::Device as Device>::Remark;
-type Sample<T> = <<T as OnDesk>::Device as Device>::Sample;
-type Doing<T> = <<T as OnDesk>::Device as Device>::Doing;
+type Job<T> = <<T as HasSession>::Device as Device>::Job;
+type Output<T> = <<T as HasSession>::Device as Device>::Output;
+type Error<T> = <<T as HasSession>::Device as Device>::Error;
+type DeviceMessage<T> = <<T as HasSession>::Device as Device>::DeviceMessage;
+type Sample<T> = <<T as HasSession>::Device as Device>::Sample;
+type JobStep<T> = <<T as HasSession>::Device as Device>::JobStep;
 
 /// How what was asked for on a line came to an early end.
-pub enum Cut<'e, E> {
+pub enum EarlyEnd<'e, E> {
     /// As the user wished.
     Cancelled(&'e E),
     /// It failed.
@@ -26,7 +26,7 @@ pub enum Cut<'e, E> {
 }
 
 /// Whoever is at the end of a line.
-pub trait OnLine: OnDesk {
+pub trait SessionEvents: HasSession {
     /// Samples, and how many were dropped before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
@@ -34,7 +34,7 @@ pub trait OnLine: OnDesk {
     fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64);
 
     /// What the device says on the way.
-    fn remarked(&mut self, remark: Remark<Self>, services: &mut Services);
+    fn remarked(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
     /// A job is done.
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
@@ -49,7 +49,7 @@ pub trait OnLine: OnDesk {
     fn line_ends(&mut self) {}
 
     /// The job that runs tells a step.
-    fn progressed(&mut self, _what: Doing<Self>) {}
+    fn progressed(&mut self, _what: JobStep<Self>) {}
 
     /// The result of a job is an answer of the device.
     fn is_answer(_output: &Output<Self>) -> bool {
@@ -57,7 +57,7 @@ pub trait OnLine: OnDesk {
     }
 
     /// What was asked for has ended early; true where that stands where it was asked for.
-    fn cut_off(&mut self, _how: Cut<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
+    fn cut_off(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
@@ -83,10 +83,10 @@ pub trait OnLine: OnDesk {
     fn hear(&mut self, services: &mut Services) {
         // What was sampled before a job comes before what the job says; what was sampled after it comes the next time.
         self.take_samples_and_frames();
-        while let Some(event) = self.session_mut().line.as_mut().and_then(Line::next) {
+        while let Some(event) = self.session_mut().line.as_mut().and_then(LiveSession::next) {
             self.take(event, services);
         }
-        if self.session().line.as_ref().is_some_and(Line::is_dead) {
+        if self.session().line.as_ref().is_some_and(LiveSession::is_dead) {
             self.lose(Text::new("session.ended"), services);
         }
     }
@@ -143,7 +143,7 @@ pub trait OnLine: OnDesk {
         services.job_ends(self.session().id, id, JobEnd::Cancelled);
         self.session_mut().save_to = None;
         let (texts, begun) = (Self::Device::why(error), error.has_begun());
-        let stands_there = self.cut_off(Cut::Cancelled(error), &texts, services);
+        let stands_there = self.cut_off(EarlyEnd::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
         self.session().say(severity, texts, stands_there, services);
         if begun {
@@ -155,7 +155,7 @@ pub trait OnLine: OnDesk {
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::why(error);
         services.job_ends(self.session().id, id, JobEnd::Failed(first(&texts)));
-        let stands_there = self.cut_off(Cut::Failed(error), &texts, services);
+        let stands_there = self.cut_off(EarlyEnd::Failed(error), &texts, services);
         self.session_mut().save_to = None;
         match Self::Device::loss(error) {
             Some(why) => self.lose(why, services),
@@ -178,7 +178,7 @@ pub trait OnLine: OnDesk {
         // What passed at last says most about why it was the last.
         self.take_samples_and_frames();
         self.forget_asked();
-        self.cut_off(Cut::Lost, std::slice::from_ref(&why), services);
+        self.cut_off(EarlyEnd::Lost, std::slice::from_ref(&why), services);
         self.session_mut().lose(why, services);
     }
 

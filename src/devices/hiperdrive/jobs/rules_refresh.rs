@@ -4,11 +4,11 @@
 use std::time::Duration;
 
 use super::session_watch::REQUEST;
-use super::{Hiperdrive, Remark};
+use super::{DeviceMessage, Hiperdrive};
 use crate::devices::hiperdrive::procedures::{Error, GROUPS, Identity, read_rule, read_rules};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::units::Moment;
-use crate::worker::Desk;
+use crate::worker::SessionContext;
 
 /// The time is cut into turns of this length, which belong to one group after the other of the parameters that rule a drive:
 /// all of them have one each second.
@@ -43,7 +43,7 @@ fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
 impl Hiperdrive {
     /// While drives may be moved: looks at what rules them where that is due. Where it cannot be read, nothing moves until it
     /// can, which is told once.
-    pub(super) fn look_at_rules(&mut self, desk: &mut Desk) {
+    pub(super) fn look_at_rules(&mut self, desk: &mut SessionContext) {
         let Some(identity) = self.control.held() else { return };
         if self.control.looks.rests.is_some_and(|until| desk.clock.now() < until) {
             return;
@@ -61,11 +61,11 @@ impl Hiperdrive {
             }
         }
         if self.control.looks.rests.take().is_some() {
-            self.remark.get_or_insert(Remark::RulesRead);
+            self.remark.get_or_insert(DeviceMessage::RulesRead);
         }
     }
 
-    fn look_at(&mut self, desk: &mut Desk, identity: &Identity, drive: DriveNumber) -> Result<(), Error> {
+    fn look_at(&mut self, desk: &mut SessionContext, identity: &Identity, drive: DriveNumber) -> Result<(), Error> {
         if self.control.actual(drive).is_some_and(|actual| !actual.status.is_present()) {
             self.control.forget(drive);
             return Ok(());
@@ -90,7 +90,7 @@ impl Hiperdrive {
         Ok(())
     }
 
-    fn cannot_look(&mut self, desk: &mut Desk, drive: DriveNumber, error: Error) {
+    fn cannot_look(&mut self, desk: &mut SessionContext, drive: DriveNumber, error: Error) {
         tracing::warn!("{error}");
         // All of it is read before anything moves again.
         self.control.motion().doubt_limits(drive);
@@ -100,12 +100,12 @@ impl Hiperdrive {
         }
         if self.control.looks.rests.replace(desk.clock.now() + REST).is_none() {
             self.control.motion().stop();
-            self.remark.get_or_insert(Remark::RulesUnread(Box::new(error)));
+            self.remark.get_or_insert(DeviceMessage::RulesUnread(Box::new(error)));
         }
     }
 
     /// Reads all that rules a drive before anything else: it is shown from now on.
-    pub(super) fn look_anew(&mut self, desk: &mut Desk, drive: DriveNumber) {
+    pub(super) fn look_anew(&mut self, desk: &mut SessionContext, drive: DriveNumber) {
         self.control.motion().doubt_limits(drive);
         self.look_at_rules(desk);
     }
@@ -114,7 +114,7 @@ impl Hiperdrive {
     ///
     /// # Errors
     /// The way.
-    pub(super) fn read_rules(&mut self, desk: &mut Desk, identity: &Identity) -> Result<(), Error> {
+    pub(super) fn read_rules(&mut self, desk: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
             let began = desk.clock.now();
             let rules = self.master(desk).shielded(|master| read_rules(master, drive.number))?;

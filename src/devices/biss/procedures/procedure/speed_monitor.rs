@@ -9,7 +9,7 @@ use crate::devices::biss::procedures::PositionReading;
 
 /// Follows positions over a stretch of time.
 #[derive(Debug)]
-pub(super) struct Gauge {
+pub(super) struct SpeedMonitor {
     /// Nanoseconds.
     window: i64,
     unwrap: Option<Unwrap>,
@@ -39,14 +39,14 @@ impl Motion {
     }
 }
 
-impl Gauge {
+impl SpeedMonitor {
     /// Parts in which the speed is looked at by itself.
     const PARTS: i32 = 4;
 
     /// Measures over this stretch of time.
     pub(super) fn over(window: Duration) -> Self {
         let window = i64::try_from(window.as_nanos()).unwrap_or(i64::MAX).max(1);
-        Gauge { window, unwrap: None, steps_per_turn: 1.0, places: VecDeque::new() }
+        SpeedMonitor { window, unwrap: None, steps_per_turn: 1.0, places: VecDeque::new() }
     }
 
     /// The next position.
@@ -135,7 +135,7 @@ mod tests {
 
     /// Positions every 20 ms for 1.2 s, at a place that `turns` tells for the time in seconds.
     fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> Motion {
-        let mut gauge = Gauge::over(Duration::from_secs(1));
+        let mut gauge = SpeedMonitor::over(Duration::from_secs(1));
         for at in (0..=1200).step_by(20) {
             gauge.next(&reading(at, turns(at as f64 / 1000.0), multiturn_bits));
             assert_eq!(gauge.motion().is_some(), at >= 1000, "{at}");
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn a_gap_begins_anew() {
-        let mut gauge = Gauge::over(Duration::from_secs(1));
+        let mut gauge = SpeedMonitor::over(Duration::from_secs(1));
         for at in (0..=1000).step_by(20) {
             gauge.next(&reading(at, 0.0, 0));
         }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use super::Theme;
+use super::ColorScheme;
 
 /// A colour, without transparency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -79,7 +79,7 @@ pub struct Palette {
 /// The whole look.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Look {
+pub struct ThemeData {
     /// Text sizes.
     pub text: TextSizes,
     /// Distances.
@@ -90,10 +90,10 @@ pub struct Look {
     light: Palette,
 }
 
-static BUILT_IN: LazyLock<Result<Look, String>> =
-    LazyLock::new(|| ron::from_str(Look::SOURCE).map_err(|error| error.to_string()));
+static BUILT_IN: LazyLock<Result<ThemeData, String>> =
+    LazyLock::new(|| ron::from_str(ThemeData::SOURCE).map_err(|error| error.to_string()));
 
-impl Look {
+impl ThemeData {
     /// The table's source.
     pub const SOURCE: &'static str = include_str!("../../assets/theme.ron");
 
@@ -101,15 +101,15 @@ impl Look {
     ///
     /// # Errors
     /// What is wrong with the table: a defect of the build, which a test keeps from shipping.
-    pub fn built_in() -> Result<&'static Look, &'static str> {
+    pub fn built_in() -> Result<&'static ThemeData, &'static str> {
         BUILT_IN.as_ref().map_err(String::as_str)
     }
 
     /// The colours of a theme.
-    pub fn palette(&self, theme: Theme) -> &Palette {
+    pub fn palette(&self, theme: ColorScheme) -> &Palette {
         match theme {
-            Theme::Dark => &self.dark,
-            Theme::Light => &self.light,
+            ColorScheme::Dark => &self.dark,
+            ColorScheme::Light => &self.light,
         }
     }
 }
@@ -157,8 +157,8 @@ mod tests {
 
     #[test]
     fn every_text_is_legible_on_every_surface() {
-        let look = Look::built_in().unwrap();
-        for theme in [Theme::Dark, Theme::Light] {
+        let look = ThemeData::built_in().unwrap();
+        for theme in [ColorScheme::Dark, ColorScheme::Light] {
             let palette = look.palette(theme);
             let Palette { text, muted, accent, staged, good, warn, bad, .. } = *palette;
             for surface in [palette.surface, palette.raised, palette.sunken] {
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn distances_are_on_the_grid() {
-        let Spaces { inside, between, groups, around } = Look::built_in().unwrap().space;
+        let Spaces { inside, between, groups, around } = ThemeData::built_in().unwrap().space;
         assert!([inside, between, groups, around].iter().all(|space| space % 4.0 == 0.0));
     }
 }

@@ -17,7 +17,7 @@ use crate::worker::{Ending, JobId, Worker};
 
 /// How long closing waits, and opening for a wire that somebody still holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
+pub struct GracePeriods {
     /// For drives: they stop and are let go.
     pub drives: Duration,
     /// For the disk.
@@ -28,9 +28,9 @@ pub struct Patience {
     pub write: Duration,
 }
 
-impl Default for Patience {
+impl Default for GracePeriods {
     fn default() -> Self {
-        Patience {
+        GracePeriods {
             drives: Brakes::PATIENCE,
             disk: Duration::from_secs(3),
             job: Duration::from_secs(10),

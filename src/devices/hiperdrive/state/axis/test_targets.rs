@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::protocol::Direction;
 /// Where a test move leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
-pub enum Place {
+pub enum TestTarget {
     /// In the middle of the range.
     Middle,
     /// To the lower limit.
@@ -42,16 +42,16 @@ pub struct Travel {
     from: Option<(u64, i32)>,
 }
 
-impl Place {
+impl TestTarget {
     /// All of them, as they are moved to.
-    pub const ALL: [Place; 3] = [Place::Middle, Place::Lower, Place::Upper];
+    pub const ALL: [TestTarget; 3] = [TestTarget::Middle, TestTarget::Lower, TestTarget::Upper];
 
     /// The steps between two limits.
     pub const fn between(self, low: i32, high: i32) -> i32 {
         match self {
-            Place::Middle => low.midpoint(high),
-            Place::Lower => low,
-            Place::Upper => high,
+            TestTarget::Middle => low.midpoint(high),
+            TestTarget::Lower => low,
+            TestTarget::Upper => high,
         }
     }
 }

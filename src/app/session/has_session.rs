@@ -3,7 +3,7 @@
 use super::{Kind, Session};
 
 /// Whoever is shown in a session. What is the same for all rests on this.
-pub trait OnDesk {
+pub trait HasSession {
     /// Its kind.
     type Device: Kind;
 

@@ -13,7 +13,7 @@ pub(super) enum Due<W> {
 }
 
 /// The paces of what is asked for.
-pub(super) struct Agenda<W> {
+pub(super) struct PollScheduler<W> {
     sample: Pace,
     watches: Vec<Watch<W>>,
     /// No value was watched since the last sample, so that one may be.
@@ -26,13 +26,13 @@ struct Watch<W> {
     pace: Pace,
 }
 
-impl<W> Default for Agenda<W> {
+impl<W> Default for PollScheduler<W> {
     fn default() -> Self {
-        Agenda { sample: Pace::default(), watches: Vec::new(), sample_was_last: false }
+        PollScheduler { sample: Pace::default(), watches: Vec::new(), sample_was_last: false }
     }
 }
 
-impl<W: Clone + PartialEq> Agenda<W> {
+impl<W: Clone + PartialEq> PollScheduler<W> {
     /// From now on these are watched; what was watched before goes on at its pace.
     pub(super) fn watch(&mut self, wished: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
@@ -127,7 +127,7 @@ mod tests {
     /// Everything takes 25 ms: what is asked for, and the milliseconds at which it begins, up to `end`.
     fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
         let start = Instant::now();
-        let mut agenda = Agenda::default();
+        let mut agenda = PollScheduler::default();
         agenda.watch(watches.iter().map(|(what, interval)| (*what, ms(*interval))).collect());
         let (mut now, mut said) = (0, Vec::new());
         loop {
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn watching_rests_with_polling_and_goes_on_through_a_new_list() {
         let start = Instant::now();
-        let mut agenda = Agenda::default();
+        let mut agenda = PollScheduler::default();
         agenda.watch(vec![('a', ms(200))]);
         assert_eq!(agenda.next(None, start), None);
         assert_eq!(agenda.next(Some(ms(100)), start + ms(10)), Some((start + ms(10), Due::Sample)));

@@ -11,16 +11,16 @@ pub(super) const CAPACITY: usize = 64;
 
 /// Events on their way out. What does not fit into the channel waits here: no more than one job tells, because the next
 /// is not taken while the channel is full.
-pub(super) struct Outbox<D: Device> {
+pub(super) struct EventSender<D: Device> {
     sender: Sender<Event<D>>,
     wake: Arc<dyn Fn() + Send + Sync>,
     waiting: Vec<Event<D>>,
     progress: Option<Event<D>>,
 }
 
-impl<D: Device> Outbox<D> {
+impl<D: Device> EventSender<D> {
     pub(super) fn new(sender: Sender<Event<D>>, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
-        Outbox { sender, wake, waiting: Vec::new(), progress: None }
+        EventSender { sender, wake, waiting: Vec::new(), progress: None }
     }
 
     pub(super) fn send(&mut self, event: Event<D>) {
@@ -94,7 +94,7 @@ mod tests {
         let wake = Arc::new(move || {
             counter.fetch_add(1, Ordering::SeqCst);
         });
-        let mut outbox = Outbox::new(sender, wake);
+        let mut outbox = EventSender::new(sender, wake);
         for job in 0..CAPACITY as u64 {
             outbox.send(Event::Started(JobId(job)));
         }

@@ -1,9 +1,9 @@
 //! The look of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the words of
-//! one language. Every view gets a [`Skin`]; no view names a colour, a size or a font of its own.
+//! one language. Every view gets a [`Theme`]; no view names a colour, a size or a font of its own.
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
-use crate::app::{Language, Look, Palette, Rgb, Spaces, Text, TextSizes, Theme};
+use crate::app::{ColorScheme, Language, Palette, Rgb, Spaces, Text, TextSizes, ThemeData};
 use crate::bits::Word;
 
 impl From<Rgb> for Color32 {
@@ -14,7 +14,7 @@ impl From<Rgb> for Color32 {
 
 /// How everything looks and which language it speaks.
 #[derive(Clone, Copy, Debug)]
-pub struct Skin {
+pub struct Theme {
     /// Colours by what they mean.
     pub palette: &'static Palette,
     /// Text sizes.
@@ -25,13 +25,13 @@ pub struct Skin {
     pub radius: CornerRadius,
     /// Language of the window.
     pub language: Language,
-    theme: Theme,
+    theme: ColorScheme,
 }
 
-impl Skin {
-    /// The skin of a theme in a language.
-    pub fn new(look: &'static Look, theme: Theme, language: Language) -> Self {
-        Skin {
+impl Theme {
+    /// The theme of a theme in a language.
+    pub fn new(look: &'static ThemeData, theme: ColorScheme, language: Language) -> Self {
+        Theme {
             palette: look.palette(theme),
             sizes: &look.text,
             space: &look.space,
@@ -114,8 +114,8 @@ impl Skin {
     /// Puts the theme on a context.
     pub fn dress(&self, ctx: &egui::Context) {
         let theme = match self.theme {
-            Theme::Dark => egui::Theme::Dark,
-            Theme::Light => egui::Theme::Light,
+            ColorScheme::Dark => egui::Theme::Dark,
+            ColorScheme::Light => egui::Theme::Light,
         };
         ctx.set_theme(theme);
         ctx.style_mut_of(theme, |style| {

@@ -6,7 +6,7 @@ use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::{trace, words};
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Kind, OnLine};
+use crate::app::session::{Kind, SessionEvents};
 use crate::app::{Severity, Text};
 use crate::buses::bridge::procedures::AdapterError;
 use crate::devices::ssi::jobs::{JobError, Ssi, SsiJob, SsiOutput};
@@ -22,7 +22,7 @@ use crate::worker::{JobId, OpenError, Session};
 impl Kind for Ssi {
     const KIND: &'static str = KIND;
     type Edits = Drafts;
-    type Aside = Option<Motor>;
+    type SessionHandle = Option<Motor>;
     /// Nothing is ever written into it.
     type Review = Infallible;
 
@@ -42,7 +42,7 @@ impl Kind for Ssi {
         SsiJob::Hello
     }
 
-    fn doing(_: &Self::Doing) -> Text {
+    fn doing(_: &Self::JobStep) -> Text {
         TEXTS.text("ssi_job.words")
     }
 
@@ -88,7 +88,7 @@ impl Encoder {
     }
 }
 
-impl OnLine for Encoder {
+impl SessionEvents for Encoder {
     fn sampled(&mut self, samples: Vec<Words>, dropped: u64) {
         self.record.add(samples, dropped);
     }

@@ -4,7 +4,7 @@
 use egui::{RichText, Ui, WidgetInfo};
 
 use super::controls::{enabled_button, icon_button, name, primary};
-use super::{Skin, icons};
+use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
@@ -23,36 +23,36 @@ pub enum Edited {
 /// Draws the foot.
 pub fn foot_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     (studio, device): (&Studio, &AnyDevice),
     edited: Edited,
     actions: &mut Vec<Action>,
 ) {
-    ui.add_space(skin.space.between);
+    ui.add_space(theme.space.between);
     let dirty = device.is_dirty();
     let width = ui.available_width();
     ui.horizontal(|ui| {
-        if icon_button(ui, device.can_undo(), icons::ARROW_U_UP_LEFT, &skin.say("memory.undo")).clicked() {
+        if icon_button(ui, device.can_undo(), icons::ARROW_U_UP_LEFT, &theme.say("memory.undo")).clicked() {
             actions.push(device.command(DeviceCommand::Undo));
         }
-        if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &skin.say("memory.redo")).clicked() {
+        if icon_button(ui, device.can_redo(), icons::ARROW_U_UP_RIGHT, &theme.say("memory.redo")).clicked() {
             actions.push(device.command(DeviceCommand::Redo));
         }
         let narrow = width < NARROW;
         let revert = if narrow { icon_button } else { enabled_button };
-        if revert(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &skin.say("memory.revert")).clicked() {
+        if revert(ui, dirty, icons::ARROW_COUNTER_CLOCKWISE, &theme.say("memory.revert")).clicked() {
             actions.push(device.command(DeviceCommand::RevertAll));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if *device.phase() == Phase::Offline {
-                if primary(ui, skin, dirty, icons::FLOPPY_DISK, &skin.say("profile_card.save")).clicked() {
+                if primary(ui, theme, dirty, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                     actions.push(Action::Save(device.id()));
                 }
-                write_into(ui, skin, studio, device, actions);
+                write_into(ui, theme, studio, device, actions);
             } else {
-                let word = skin.say("memory.review");
-                let write = primary(ui, skin, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
-                if write.on_hover_text(skin.say("memory.review_hint")).clicked() {
+                let word = theme.say("memory.review");
+                let write = primary(ui, theme, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
+                if write.on_hover_text(theme.say("memory.review_hint")).clicked() {
                     actions.push(device.command(DeviceCommand::Review));
                 }
             }
@@ -69,15 +69,15 @@ pub fn foot_ui(
                     (Source::File { .. } | Source::New { .. }, _, Edited::Values) => "values.unsaved",
                 })
                 .with("count", count);
-                edits(ui, skin, count, &skin.words(&text));
+                edits(ui, theme, count, &theme.words(&text));
             }
         });
     });
 }
 
 /// How many edits there are, in words, or as a number where the words have no room.
-fn edits(ui: &mut Ui, skin: &Skin, count: usize, words: &str) {
-    let color = skin.palette.staged;
+fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
+    let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());
     let has_room = ui.painter().layout_no_wrap(words.to_owned(), font, color.into()).size().x <= ui.available_width();
     let shown = if has_room { words.to_owned() } else { format!("{}  {count}", icons::PENCIL_SIMPLE) };
@@ -87,10 +87,10 @@ fn edits(ui: &mut Ui, skin: &Skin, count: usize, words: &str) {
 }
 
 /// A profile goes into a connected device of its kind: which one is chosen here.
-fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn write_into(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
-    let word = skin.say("memory.write_into");
+    let word = theme.say("memory.write_into");
     ui.add_enabled_ui(!targets.is_empty(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::DOWNLOAD_SIMPLE), |ui| {
             for target in &targets {
@@ -100,6 +100,6 @@ fn write_into(ui: &mut Ui, skin: &Skin, studio: &Studio, device: &AnyDevice, act
                 }
             }
         });
-        name(menu.response, true, &word).on_disabled_hover_text(skin.say("memory.no_target"));
+        name(menu.response, true, &word).on_disabled_hover_text(theme.say("memory.no_target"));
     });
 }

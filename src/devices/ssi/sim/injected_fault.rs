@@ -8,7 +8,7 @@ use crate::units::Moment;
 
 /// An error bit or a word that stands for a fault, and when it comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Trouble {
+pub(super) struct InjectedFault {
     shows: Shows,
     /// From one time that it happens to the next; none: it stands from the beginning.
     period: Option<Duration>,
@@ -26,7 +26,7 @@ enum Shows {
     Word(u64),
 }
 
-impl Trouble {
+impl InjectedFault {
     const LEAST_PERIOD: f64 = 1e-6;
     const MOST_PERIOD: f64 = 86_400.0;
 
@@ -40,7 +40,7 @@ impl Trouble {
                     Some((name, seconds)) => (name, Some(period(seconds)?)),
                     None => (item, None),
                 };
-                Some(Trouble { shows: shows(name, layout)?, period })
+                Some(InjectedFault { shows: shows(name, layout)?, period })
             })
             .collect()
     }
@@ -100,7 +100,9 @@ fn shows(name: &str, layout: &Layout) -> Option<Shows> {
 
 fn period(seconds: &str) -> Option<Duration> {
     let seconds = seconds.trim().parse().ok();
-    seconds.filter(|s| (Trouble::LEAST_PERIOD..=Trouble::MOST_PERIOD).contains(s)).map(Duration::from_secs_f64)
+    seconds
+        .filter(|s| (InjectedFault::LEAST_PERIOD..=InjectedFault::MOST_PERIOD).contains(s))
+        .map(Duration::from_secs_f64)
 }
 
 #[cfg(test)]
@@ -120,23 +122,23 @@ mod tests {
     #[test]
     fn names_are_those_of_the_layout() {
         let safe = layout("afs60s");
-        assert_eq!(Trouble::names(&safe), ["ERRDIG", "ERRSI", "ERRSYNC", "safety-fault"]);
-        let read = Trouble::read("errsi:4, ERRSYNC , Safety-Fault", &safe).unwrap();
-        let flags: Vec<Flags> = read.iter().map(Trouble::flag).collect();
+        assert_eq!(InjectedFault::names(&safe), ["ERRDIG", "ERRSI", "ERRSYNC", "safety-fault"]);
+        let read = InjectedFault::read("errsi:4, ERRSYNC , Safety-Fault", &safe).unwrap();
+        let flags: Vec<Flags> = read.iter().map(InjectedFault::flag).collect();
         assert_eq!(flags, [Flags::error(1), Flags::error(2), Flags::NONE]);
         // 21 clocks.
         assert_eq!(read[2].word(), Some(0x1F_FFFF));
-        assert_eq!(Trouble::read("overspeed-or-gap", &layout("kh53")).unwrap()[0].word(), Some(0xFF_FFFE));
-        assert_eq!(Trouble::read("", &safe), Some(Vec::new()));
+        assert_eq!(InjectedFault::read("overspeed-or-gap", &layout("kh53")).unwrap()[0].word(), Some(0xFF_FFFE));
+        assert_eq!(InjectedFault::read("", &safe), Some(Vec::new()));
         for text in ["ERRX", "ERRSI:", "ERRSI:0", "ERRSI:-1", "ERRSI:NaN", "ERRSI:1e9"] {
-            assert_eq!(Trouble::read(text, &safe), None, "{text}");
+            assert_eq!(InjectedFault::read(text, &safe), None, "{text}");
         }
     }
 
     #[test]
     fn what_a_transfer_clears_is_about_the_time_since_the_one_before() {
         let safe = layout("afs60s");
-        let one = |text| Trouble::read(text, &safe).unwrap()[0];
+        let one = |text| InjectedFault::read(text, &safe).unwrap()[0];
         let (once, often) = (one("ERRSYNC"), one("ERRSYNC:0.5"));
         assert!(once.happens(at(0), None) && !once.happens(at(1), Some(at(0))));
         assert!(!often.happens(at(499), None) && often.happens(at(500), None));

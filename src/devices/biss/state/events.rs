@@ -5,9 +5,9 @@ use super::encoder::Encoder;
 use super::words;
 use crate::app::review::{Review, told};
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{Cut, Kind, OnLine, WithMemory, first};
+use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory, first};
 use crate::app::{Severity, Text};
-use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Doing, JobError, Remark};
+use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Error, Sample};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::state::TEXTS;
@@ -20,7 +20,7 @@ use crate::worker::{OpenError, Session};
 impl Kind for Biss {
     const KIND: &'static str = KIND;
     type Edits = Edits;
-    type Aside = Option<Motor>;
+    type SessionHandle = Option<Motor>;
     type Review = Review<Self>;
 
     fn aside(session: &Session<Self>) -> Option<Motor> {
@@ -43,7 +43,7 @@ impl Kind for Biss {
         BissJob::Survey
     }
 
-    fn doing(what: &Doing) -> Text {
+    fn doing(what: &JobStep) -> Text {
         explained::doing(what)
     }
 
@@ -72,7 +72,7 @@ impl Encoder {
     }
 }
 
-impl OnLine for Encoder {
+impl SessionEvents for Encoder {
     fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.record.add(samples, dropped);
     }
@@ -82,16 +82,16 @@ impl OnLine for Encoder {
         self.session.trace.add(frames, missed, |entry| meaning.of(entry));
     }
 
-    fn progressed(&mut self, what: Doing) {
+    fn progressed(&mut self, what: JobStep) {
         let running = self.guide.as_mut().filter(|guide| guide.is_running());
-        if let (Doing::Operation { news, .. }, Some(guide)) = (what, running) {
+        if let (JobStep::Operation { news, .. }, Some(guide)) = (what, running) {
             guide.tell(*news);
         }
     }
 
-    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+    fn remarked(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
-            Remark::CrcErrors(count) => self.record.add_crc_errors(count),
+            DeviceMessage::CrcErrors(count) => self.record.add_crc_errors(count),
             remark => services.tell(Severity::Warning, explained::remark(&remark), None),
         }
     }
@@ -156,8 +156,8 @@ impl OnLine for Encoder {
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
-        let moves = matches!(how, Cut::Failed(JobError::Device(Error::Moving { .. })));
+    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+        let moves = matches!(how, EarlyEnd::Failed(JobError::Device(Error::Moving { .. })));
         let stands_there = self.cut_guide(&how, texts) || self.cut_write(how, texts);
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;

@@ -9,12 +9,12 @@ use crate::app::tab::Tab;
 
 /// Which device each tab shows.
 #[derive(Debug, Default)]
-pub(crate) struct Shown {
+pub(crate) struct Selection {
     by_tab: HashMap<Tab, SessionId>,
     last: Option<SessionId>,
 }
 
-impl Shown {
+impl Selection {
     /// The device that a tab shows.
     pub(crate) fn of(&self, tab: Tab) -> Option<SessionId> {
         self.by_tab.get(&tab).copied()

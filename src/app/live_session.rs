@@ -29,10 +29,10 @@ pub struct Running<W> {
 }
 
 /// A session on its thread.
-pub struct Line<D: Device> {
+pub struct LiveSession<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
-    running: Option<Running<D::Doing>>,
+    running: Option<Running<D::JobStep>>,
     /// The device lives in this process.
     pub is_virtual: bool,
 }
@@ -48,11 +48,11 @@ pub struct Progressing {
     pub stopping: bool,
 }
 
-impl<D: Kind> Line<D> {
+impl<D: Kind> LiveSession<D> {
     /// Takes over what was opened.
     pub(crate) fn new(opened: Opened<D>) -> Self {
         let Opened { worker, trace, is_virtual, .. } = opened;
-        Line { worker, trace, running: None, is_virtual }
+        LiveSession { worker, trace, running: None, is_virtual }
     }
 
     /// The job that runs, in words.
@@ -73,7 +73,7 @@ impl<D: Kind> Line<D> {
     }
 
     /// The job that runs.
-    pub fn running(&self) -> Option<&Running<D::Doing>> {
+    pub fn running(&self) -> Option<&Running<D::JobStep>> {
         self.running.as_ref()
     }
 

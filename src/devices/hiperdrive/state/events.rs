@@ -8,9 +8,11 @@ use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::review::{Review, told};
 use crate::app::services::Services;
-use crate::app::session::{Cut, Kind, OnLine, WithMemory};
+use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory};
 use crate::app::{Severity, Text};
-use crate::devices::hiperdrive::jobs::{Doing, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Motion, Remark};
+use crate::devices::hiperdrive::jobs::{
+    DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Motion,
+};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
@@ -32,7 +34,7 @@ const fn has_failed(state: State) -> bool {
 }
 
 /// What is kept of a session beside its thread.
-pub struct Aside {
+pub struct DriveHandle {
     /// Moves its drives.
     pub(super) motion: Motion,
     /// The virtual device.
@@ -42,11 +44,11 @@ pub struct Aside {
 impl Kind for Hiperdrive {
     const KIND: &'static str = KIND;
     type Edits = Edits;
-    type Aside = Aside;
+    type SessionHandle = DriveHandle;
     type Review = Review<Self>;
 
-    fn aside(session: &Session<Self>) -> Aside {
-        Aside { motion: session.motion(), target: session.target() }
+    fn aside(session: &Session<Self>) -> DriveHandle {
+        DriveHandle { motion: session.motion(), target: session.target() }
     }
 
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
@@ -65,7 +67,7 @@ impl Kind for Hiperdrive {
         HiperdriveJob::Survey
     }
 
-    fn doing(what: &Doing) -> Text {
+    fn doing(what: &JobStep) -> Text {
         words::doing(what)
     }
 
@@ -156,7 +158,7 @@ impl Unit {
     }
 }
 
-impl OnLine for Unit {
+impl SessionEvents for Unit {
     fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
         if dropped > 0 {
             self.record.lose(dropped);
@@ -190,15 +192,15 @@ impl OnLine for Unit {
         self.ask_on(services);
     }
 
-    fn remarked(&mut self, remark: Remark, services: &mut Services) {
+    fn remarked(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
-            Remark::ControlLost => self.control_lost(services),
-            Remark::RulesUnread(why) => {
+            DeviceMessage::ControlLost => self.control_lost(services),
+            DeviceMessage::RulesUnread(why) => {
                 self.moves.stop();
                 let texts = vec![TEXTS.text(RULES), words::device(&why)];
                 services.tell(Severity::Error, texts, Some(&self.session.name()));
             }
-            Remark::RulesRead => services.log.settle(RULES, Some(&self.session.name())),
+            DeviceMessage::RulesRead => services.log.settle(RULES, Some(&self.session.name())),
         }
     }
 
@@ -272,12 +274,12 @@ impl OnLine for Unit {
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: Cut<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
-            Cut::Failed(_) => self.moves.stop(),
+            EarlyEnd::Failed(_) => self.moves.stop(),
             // What has to be read before a drive in hand moves is read all the same, behind whatever ended it.
-            Cut::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
-            Cut::Lost => {}
+            EarlyEnd::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
+            EarlyEnd::Lost => {}
         }
         let is_told = self.cut_write(how, texts);
         let begun = matches!(self.review().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));

@@ -2,14 +2,14 @@
 
 use egui::Ui;
 
-use super::Skin;
+use super::Theme;
 use super::controls::paragraph;
 use crate::app::Catalogue;
 
 /// Draws them, with words of this catalogue; their names stand in a column of this width.
 pub(crate) fn wires_ui(
     ui: &mut Ui,
-    skin: &Skin,
+    theme: &Theme,
     texts: &'static Catalogue,
     width: f32,
     wires: &[(&str, &'static str)],
@@ -17,9 +17,9 @@ pub(crate) fn wires_ui(
     for (wire, words) in wires {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
-            let name = ui.label(skin.mono(*wire));
+            let name = ui.label(theme.mono(*wire));
             ui.add_space((width - name.rect.width()).max(0.0));
-            paragraph(ui, skin.label(skin.words(&texts.text(words))));
+            paragraph(ui, theme.label(theme.words(&texts.text(words))));
         });
     }
 }

@@ -13,7 +13,7 @@ const FILLERS: [u8; 2] = [0x00, 0xFF];
 
 /// A place for an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct OffsetLocation {
     /// The data field.
     pub field: u8,
     /// Its first byte there.
@@ -26,7 +26,7 @@ impl Commutation {
     ///
     /// # Errors
     /// In words, where nothing has room or what is typed is no address.
-    pub fn place(&self, staged: &Staged) -> Result<Place, Text> {
+    pub fn place(&self, staged: &Staged) -> Result<OffsetLocation, Text> {
         let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
         let wanted = staged.wanted();
@@ -40,7 +40,7 @@ impl Commutation {
         let address = whole(TEXTS.text("commutation.address"), &form.address, 0, 127)? as usize;
         let field = form.field.or_else(|| writable().next().map(|field| field.number));
         let field = field.ok_or_else(no_room)?;
-        Ok(Place { field, address })
+        Ok(OffsetLocation { field, address })
     }
 
     /// What putting the offset into the memory would replace, as a warning; `None` where nothing is there, or an offset.
@@ -62,9 +62,9 @@ impl Commutation {
 }
 
 /// The first block of a field of which something holds. For a bare number too: zeros among other numbers may be numbers.
-fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<Place> {
+fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
-    Some(Place { field: field.number, address: block * CommutationRecord::BYTES })
+    Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })
 }
 
 fn is_filler(bytes: &[u8]) -> bool {

@@ -8,14 +8,14 @@ use crate::app::services::Services;
 use crate::app::session::Phase;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::procedures::DriveLimits;
-use crate::devices::hiperdrive::procedures::dead_man::{Goal, Lock, Phase as Doing, Wish};
+use crate::devices::hiperdrive::procedures::dead_man::{Goal, Lock, MotionRequest, Phase as Doing};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, effective_torque};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 /// How it stands with what was asked of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct RequestState {
     /// In words.
     pub words: Text,
     /// Nobody has to do anything about it.
@@ -103,14 +103,14 @@ impl Unit {
     }
 
     /// Whether this may be asked of a drive now.
-    pub(super) fn may(&self, drive: DriveNumber, wish: Wish) -> Result<(), Text> {
+    pub(super) fn may(&self, drive: DriveNumber, wish: MotionRequest) -> Result<(), Text> {
         let asks_target = match wish {
-            Wish::Move { target, .. } => Some(target),
+            MotionRequest::Move { target, .. } => Some(target),
             _ => None,
         };
         self.may_end_what_moves(drive, wish)?;
         match wish {
-            Wish::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
+            MotionRequest::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
             _ if wish.moves() => self.may_move(drive)?,
             _ => self.may_be_led()?,
         }
@@ -122,12 +122,17 @@ impl Unit {
 
     /// Whatever is asked of a drive ends what moves just now. A stop is meant so, and a jog of the same drive; no other drive's
     /// motion ends that way, and no step or move becomes another one before its end.
-    fn may_end_what_moves(&self, drive: DriveNumber, wish: Wish) -> Result<(), Text> {
+    fn may_end_what_moves(&self, drive: DriveNumber, wish: MotionRequest) -> Result<(), Text> {
         match self.moves.mover() {
-            Some(mover) if mover != drive && wish != Wish::Stop => {
+            Some(mover) if mover != drive && wish != MotionRequest::Stop => {
                 Err(TEXTS.text("hd_refused.other_moves").with("drive", mover.get()))
             }
-            Some(_) if matches!(wish, Wish::Step { .. } | Wish::Move { .. } | Wish::Run { .. }) => {
+            Some(_)
+                if matches!(
+                    wish,
+                    MotionRequest::Step { .. } | MotionRequest::Move { .. } | MotionRequest::Run { .. }
+                ) =>
+            {
                 Err(TEXTS.text("hd_refused.still_moves"))
             }
             _ => Ok(()),
@@ -219,14 +224,14 @@ impl Unit {
     }
 
     /// What is done with a drive, or how the last act ended; `None` without a cyclic connection, and before the first.
-    pub fn said(&self, drive: DriveNumber) -> Option<Said> {
+    pub fn said(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
-            return Some(Said { words: words::phase(view.phase), is_well: true });
+            return Some(RequestState { words: words::phase(view.phase), is_well: true });
         }
         let (_, ended) = view.ended?;
         let words = words::ended(ended, |steps| self.place(drive, steps));
-        Some(Said { words, is_well: words::weight(ended) == Severity::Note })
+        Some(RequestState { words, is_well: words::weight(ended) == Severity::Note })
     }
 
     /// Why the control was lost, until somebody takes it again; `None` where nobody had it, and where it was given back.

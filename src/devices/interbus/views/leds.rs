@@ -7,61 +7,61 @@ use crate::devices::interbus::protocol::{Class, Interface, Lamp, Leds, id_code};
 use crate::devices::interbus::state::{TEXTS, words};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, name, paragraph, row, two_columns};
-use crate::ui::{Skin, icons};
+use crate::ui::{Theme, icons};
 
 /// What is lit, as somebody sees it.
-pub(super) struct View {
+pub(super) struct LedsUiState {
     leds: Leds,
 }
 
-impl Default for View {
+impl Default for LedsUiState {
     fn default() -> Self {
-        View { leds: Leds { ul: Lamp::On, ba: Lamp::On, rc: Lamp::On, rbda: Lamp::On } }
+        LedsUiState { leds: Leds { ul: Lamp::On, ba: Lamp::On, rc: Lamp::On, rbda: Lamp::On } }
     }
 }
 
 /// Width of a lamp's button.
 const LAMP: f32 = 92.0;
 
-pub(super) fn cards_ui(ui: &mut Ui, skin: &Skin, view: &mut View) {
+pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     let none: Vec<Action> = Vec::new();
-    two_columns(ui, skin, (view, none), |ui, (view, _)| lamps(ui, skin, view), |ui, _| codes(ui, skin));
+    two_columns(ui, theme, (view, none), |ui, (view, _)| lamps(ui, theme, view), |ui, _| codes(ui, theme));
 }
 
-fn lamps(ui: &mut Ui, skin: &Skin, view: &mut View) {
-    card(ui, skin, TEXTS.text("ib_leds.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "ib_leds.words")));
+fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
+    card(ui, theme, TEXTS.text("ib_leds.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "ib_leds.words")));
         ui.horizontal_wrapped(|ui| {
-            let View { leds } = view;
+            let LedsUiState { leds } = view;
             for (word, lamp, blinks) in [
                 ("UL", &mut leds.ul, false),
                 ("RC", &mut leds.rc, false),
                 ("BA", &mut leds.ba, true),
                 ("RBDA", &mut leds.rbda, false),
             ] {
-                lamp_ui(ui, skin, word, lamp, blinks);
+                lamp_ui(ui, theme, word, lamp, blinks);
             }
         });
-        ui.add_space(skin.space.inside);
+        ui.add_space(theme.space.inside);
         let Some(own) = view.leds.row() else {
-            paragraph(ui, RichText::new(say(skin, "ib_leds.unknown")).color(skin.palette.warn));
+            paragraph(ui, RichText::new(say(theme, "ib_leds.unknown")).color(theme.palette.warn));
             return;
         };
         let (says, remedy) = words::lamps(own);
-        ui.label(skin.value(skin.words(&says)));
-        paragraph(ui, skin.words(&remedy));
+        ui.label(theme.value(theme.words(&says)));
+        paragraph(ui, theme.words(&remedy));
     });
 }
 
 /// A lamp: pressed, it goes from dark to lit, and where it can to blinking.
-fn lamp_ui(ui: &mut Ui, skin: &Skin, word: &str, lamp: &mut Lamp, blinks: bool) {
-    let palette = skin.palette;
+fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut Lamp, blinks: bool) {
+    let palette = theme.palette;
     let (id, ink) = match lamp {
         Lamp::Off => ("ib_leds.off", palette.muted),
         Lamp::On => ("ib_leds.on", palette.good),
         Lamp::Blinking => ("ib_leds.blinking", palette.warn),
     };
-    let state = say(skin, id);
+    let state = say(theme, id);
     let icon = RichText::new(if *lamp == Lamp::Off { icons::STOP } else { icons::LIGHTNING }).color(ink);
     let button = egui::Button::new((icon, RichText::new(format!("{word}  {state}")))).min_size([LAMP, 28.0].into());
     if name(ui.add(button), true, &format!("{word}: {state}")).clicked() {
@@ -73,21 +73,21 @@ fn lamp_ui(ui: &mut Ui, skin: &Skin, word: &str, lamp: &mut Lamp, blinks: bool) 
     }
 }
 
-fn codes(ui: &mut Ui, skin: &Skin) {
-    card(ui, skin, TEXTS.text("ib_id.title"), |ui| {
-        paragraph(ui, skin.label(say(skin, "ib_id.words")));
+fn codes(ui: &mut Ui, theme: &Theme) {
+    card(ui, theme, TEXTS.text("ib_id.title"), |ui| {
+        paragraph(ui, theme.label(say(theme, "ib_id.words")));
         for class in Class::ALL {
             let codes: Vec<String> = Interface::ALL
                 .into_iter()
                 .map(|interface| {
                     let code = id_code(class, interface);
-                    format!("{} 0x{code:02X} ({code})", skin.words(&words::interface(interface)))
+                    format!("{} 0x{code:02X} ({code})", theme.words(&words::interface(interface)))
                 })
                 .collect();
             let (bytes_in, bytes_out) = class.bytes();
             let bytes = TEXTS.text("ib_id.bytes").with("in", bytes_in).with("out", bytes_out);
-            row(ui, skin, &format!("{class:?}"), codes.join(" · "));
-            paragraph(ui, skin.caption(skin.words(&bytes)));
+            row(ui, theme, &format!("{class:?}"), codes.join(" · "));
+            paragraph(ui, theme.caption(theme.words(&bytes)));
         }
     });
 }
